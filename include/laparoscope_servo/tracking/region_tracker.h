@@ -1,0 +1,77 @@
+// Tracks a region of interest (ROI) of tissue, taken for a plane, through a sequence of images: ESM on SL(3) with detection
+// of occlusions. The whole of section II of Bourger et al. (2007), with states that say what may be believed.
+//
+// Images are 8 bit, grey (CV_8UC1) or blue-green-red (CV_8UC3); times are seconds, from the images' stamps. The tracker keeps
+// no clock and no global state: the same images give the same results. It is not thread-safe.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+#include "laparoscope_servo/geometry/homography.h"
+#include "laparoscope_servo/tracking/tracker_config.h"
+
+namespace laparoscope_servo::tracking {
+
+// The values are those of Homography.msg and of the offline tool's table.
+enum class State { kIdle = 0, kTracking = 1, kSearching = 2, kLost = 3 };
+
+const char* stateName(State state);
+
+// The ROI's areas, row by row. Empty while no ROI is selected.
+struct AreaReport {
+  int rows = 0;
+  int columns = 0;
+  std::vector<float> distance;  // eq. (2), 0 to 1; NaN where an area could not be compared
+  std::vector<bool> occluded;   // did not drive ESM
+};
+
+struct TrackResult {
+  State state = State::kIdle;
+  std::string reason;                               // why the state is not TRACKING; empty when it is
+  Eigen::Matrix3d g = Eigen::Matrix3d::Identity();  // reference to current pixels, determinant 1; finite in every state
+  geometry::Rectangle roi;                          // in the reference image, px
+  double reference_stamp = 0.0;                     // s
+  double visible_fraction = 0.0;                    // 0 to 1, share of the ROI's pixels that the estimate used
+  double zncc = 0.0;                                // -1 to 1, over those pixels
+  int iterations = 0;                               // of ESM, all levels
+  AreaReport areas;
+  bool selected_now = false;                        // this image is the reference
+};
+
+class RegionTracker {
+ public:
+  // Throws std::invalid_argument that lists every error of the configuration.
+  explicit RegionTracker(const TrackerConfig& config);
+  ~RegionTracker();
+  RegionTracker(RegionTracker&&) noexcept;
+  RegionTracker& operator=(RegionTracker&&) noexcept;
+
+  // Takes `image` for the reference. Throws std::invalid_argument, with the ROI and what was expected, when the ROI is empty,
+  // too small, mostly outside the image or without texture; the tracker then goes on as before.
+  TrackResult select(const cv::Mat& image, double stamp, const geometry::Rectangle& roi);
+
+  // Processes the next image. A stamp before the last one, or an image of another size than the reference, resets to IDLE,
+  // with the reason. Throws std::invalid_argument for an image that is empty or of another type than those above; the
+  // tracker then goes on as if the image had not come.
+  TrackResult track(const cv::Mat& image, double stamp);
+
+  // Forgets the ROI.
+  void reset();
+
+  // 255 where a pixel of the ROI, as seen in the image that was processed last, is taken for occluded, 0 elsewhere; empty
+  // before the first image. Drawn only when asked for.
+  cv::Mat occlusionMask() const;
+
+  bool hasRoi() const;
+  const TrackerConfig& config() const;
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace laparoscope_servo::tracking
