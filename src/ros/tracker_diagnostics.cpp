@@ -66,6 +66,11 @@ void TrackerDiagnostics::summarise(double now, diagnostic_updater::DiagnosticSta
   }
 }
 
+std::string TrackerDiagnostics::colourGate() const {
+  if (config_.occlusion.colour == tracking::ColourGate::kOff) return "off";
+  return has_colour_ ? "on" : "stands aside: the images have no colour";
+}
+
 void TrackerDiagnostics::fill(double now, diagnostic_updater::DiagnosticStatusWrapper& status) {
   summarise(now, status);
   const double duration = now - window_.start;
@@ -81,14 +86,13 @@ void TrackerDiagnostics::fill(double now, diagnostic_updater::DiagnosticStatusWr
   status.add("last refusal", last_refusal_);
   status.addf("visible fraction", "%.3f", result_.visible_fraction);
   status.addf("zncc", "%.3f", result_.zncc);
+  status.addf("corner error [px]", "%.3f", result_.corner_error);
   status.add("ROI [px]", result_.state == State::kIdle ? "none" : roiText(result_.roi));
   status.add("intrinsics", has_camera_ ? "from camera_info" : camera_error_.empty() ? "unknown" : camera_error_);
   status.add("lens distortion", ignores_distortion_
                                     ? "not corrected: camera_info has some; let image_proc rectify the images"
                                     : "none, or corrected");
-  status.add("detection of occlusions", !config_.occlusion.enabled ? "off"
-                                        : has_colour_              ? "on"
-                                                                   : "off: the images have no colour");
+  status.add("colour gate", colourGate());
   window_ = Window();
   window_.start = now;
 }

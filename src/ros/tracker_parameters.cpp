@@ -1,6 +1,6 @@
 #include "laparoscope_servo/ros/tracker_parameters.h"
 
-#include <cmath>
+#include <algorithm>
 #include <cstdlib>
 #include <sstream>
 #include <stdexcept>
@@ -12,37 +12,49 @@ namespace laparoscope_servo::skin {
 namespace {
 
 constexpr double kMaxPixel = 65535.0;
-constexpr double kHuge = 1e9;
 
 void readOcclusion(ParameterReader& reader, tracking::OcclusionConfig& config) {
-  const std::vector<std::string> features{"hue_saturation", "hue_saturation_normalised"};
-  std::string feature = features[static_cast<std::size_t>(config.feature)];
-  reader.read("tracking/occlusion/enabled", config.enabled);
-  reader.read("tracking/occlusion/feature", feature, features);
+  // In the order of tracking::ColourGate.
+  const std::vector<std::string> gates{"off", "published", "normalised"};
+  std::string colour = gates[static_cast<std::size_t>(config.colour)];
+  reader.read("tracking/occlusion/colour", colour, gates);
+  config.colour = static_cast<tracking::ColourGate>(std::find(gates.begin(), gates.end(), colour) - gates.begin());
   reader.read("tracking/occlusion/rows", config.rows, 2, 64);
   reader.read("tracking/occlusion/columns", config.columns, 2, 64);
   reader.read("tracking/occlusion/bins", config.bins, 4, 256);
   reader.read("tracking/occlusion/threshold", config.threshold, 0.0, 1.0);
-  config.feature =
-      feature == features[0] ? tracking::AreaFeature::kHueSaturation : tracking::AreaFeature::kHueSaturationNormalised;
+  reader.read("tracking/occlusion/structure", config.structure);
+  reader.read("tracking/occlusion/hold", config.hold, 0, 100);
 }
 
 void readEsm(ParameterReader& reader, tracking::EsmConfig& config) {
   reader.read("tracking/esm/levels", config.levels, 1, 6);
   reader.read("tracking/esm/max_iterations", config.max_iterations, 1, 100);
-  reader.read("tracking/esm/min_step", config.min_step, 0.0, kHuge);
+  reader.read("tracking/esm/min_step", config.min_step, 0.0001, 1.0);
   reader.read("tracking/esm/illumination", config.illumination);
+  reader.read("tracking/esm/robust", config.robust);
   reader.read("tracking/esm/saturation", config.saturation, 1, 256);
+  reader.read("tracking/esm/adapt_channel", config.adapt_channel);
 }
 
 void readQuality(ParameterReader& reader, tracking::QualityConfig& config) {
-  reader.read("tracking/quality/min_zncc", config.min_zncc, -1.0, 1.0);
+  reader.read("tracking/quality/min_zncc", config.min_zncc, 0.0, 1.0);
   reader.read("tracking/quality/min_visible_fraction", config.min_visible_fraction, 0.0, 1.0);
-  reader.read("tracking/quality/max_area_ratio", config.max_area_ratio, 1.0, kHuge);
-  reader.read("tracking/quality/max_jump", config.max_jump, 0.0, kHuge);
-  reader.read("tracking/quality/min_spread", config.min_spread, 0.0, 1.0);
-  reader.read("tracking/quality/max_search_time", config.max_search_time, 0.0, kHuge);
+  reader.read("tracking/quality/max_corner_error", config.max_corner_error, 0.01, 100.0);
+  reader.read("tracking/quality/max_area_ratio", config.max_area_ratio, 1.01, 1000.0);
+  reader.read("tracking/quality/max_jump", config.max_jump, 0.01, 10.0);
+  reader.read("tracking/quality/max_search_time", config.max_search_time, 0.0, 3600.0);
   reader.read("tracking/quality/confirmations", config.confirmations, 1, 100);
+}
+
+void readTracking(ParameterReader& reader, tracking::TrackerConfig& config) {
+  readOcclusion(reader, config.occlusion);
+  readEsm(reader, config.esm);
+  readQuality(reader, config.quality);
+  reader.read("tracking/velocity_damping", config.velocity_damping, 0.0, 1.0);
+  reader.read("tracking/min_roi_side", config.min_roi_side, 8, 1000);
+  reader.read("tracking/min_texture", config.min_texture, 0.01, 10.0);
+  reader.refuseUnknown("tracking");
 }
 
 // A string "x,y,width,height" (empty: none), or a group of four numbers.
@@ -78,12 +90,7 @@ TrackerParameters readTrackerParameters(const XmlRpc::XmlRpcValue& tree, const s
                                         std::vector<std::string>& errors) {
   TrackerParameters parameters;
   ParameterReader reader(tree, name);
-  readOcclusion(reader, parameters.tracking.occlusion);
-  readEsm(reader, parameters.tracking.esm);
-  readQuality(reader, parameters.tracking.quality);
-  reader.read("tracking/min_roi_side", parameters.tracking.min_roi_side, 8.0, kMaxPixel);
-  reader.read("tracking/min_contrast", parameters.tracking.min_contrast, 0.0, 255.0);
-  reader.refuseUnknown("tracking");
+  readTracking(reader, parameters.tracking);
   readRoi(reader, name, parameters.roi);
   bool rectified = false;
   reader.read("rectified_images", rectified);

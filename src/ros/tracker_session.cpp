@@ -52,6 +52,7 @@ void TrackerSession::complete(Processed& processed, const std::optional<geometry
   if (jumped_back && start_roi_in_force_) start_roi_pending_ = true;
   processed.result = track(processed, request);
   last_stamp_ = stamp;
+  image_size_ = processed.image.size();
   if (processed.result.selected_now) reference_stamp_ = stamp;
   processed.reference_stamp = reference_stamp_;
   intrinsics_.update(processed.image.size(), processed.result.selected_now || !tracker_.hasRoi());
@@ -78,6 +79,11 @@ tracking::TrackResult TrackerSession::track(Processed& processed, const std::opt
     result.reason = "the ROI could not be selected: " + processed.selection_error;
   }
   return result;
+}
+
+cv::Mat TrackerSession::occlusionMask() const {
+  const cv::Mat mask = tracker_.occlusionMask();
+  return mask.empty() ? cv::Mat(cv::Mat::zeros(image_size_, CV_8UC1)) : mask;
 }
 
 void TrackerSession::reset() {

@@ -26,6 +26,7 @@ class TrackerDiagnostics {
 
  private:
   void summarise(double now, diagnostic_updater::DiagnosticStatusWrapper& status) const;
+  std::string colourGate() const;
 
   struct Window {
     double start = 0.0;

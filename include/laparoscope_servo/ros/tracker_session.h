@@ -53,8 +53,8 @@ class TrackerSession {
   // Forgets the ROI, also that of the parameters.
   void reset();
 
-  // Of the image processed last: see tracking::RegionTracker.
-  cv::Mat occlusionMask() const { return tracker_.occlusionMask(); }
+  // Of the image processed last, with its size: see tracking::RegionTracker. All 0 while no ROI is selected.
+  cv::Mat occlusionMask() const;
   // The camera has a lens distortion that nobody has taken out of the images.
   bool ignoresDistortion() const { return intrinsics_.ignoresDistortion(); }
   const TrackerParameters& parameters() const { return parameters_; }
@@ -69,6 +69,7 @@ class TrackerSession {
   bool start_roi_pending_ = false;   // the parameters' ROI waits for its image
   bool start_roi_in_force_ = false;  // nobody has chosen another one
   std::optional<ros::Time> last_stamp_;
+  cv::Size image_size_;
   ros::Time reference_stamp_;
 };
 
