@@ -10,11 +10,19 @@ function(laparoscope_servo_executable name)
   install(TARGETS ${target} RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 endfunction()
 
+# GoogleTest's main: an imported target where CMake finds GoogleTest installed (Debian 12), one of the build where catkin
+# compiles its sources (Noetic).
+if(TARGET GTest::gtest_main)
+  set(LAPAROSCOPE_SERVO_GTEST_MAIN GTest::gtest_main)
+else()
+  set(LAPAROSCOPE_SERVO_GTEST_MAIN gtest_main)
+endif()
+
 # laparoscope_servo_unit_test(NAME SOURCE...): a GoogleTest without a master, linked to the core alone
 function(laparoscope_servo_unit_test name)
   catkin_add_gtest(test_${name} ${ARGN})
   if(TARGET test_${name})
-    target_link_libraries(test_${name} ${PROJECT_NAME}_core)
+    target_link_libraries(test_${name} ${PROJECT_NAME}_core ${LAPAROSCOPE_SERVO_GTEST_MAIN})
   endif()
 endfunction()
 
@@ -22,7 +30,7 @@ endfunction()
 function(laparoscope_servo_skin_test name)
   catkin_add_gtest(test_${name} ${ARGN})
   if(TARGET test_${name})
-    target_link_libraries(test_${name} ${PROJECT_NAME}_ros)
+    target_link_libraries(test_${name} ${PROJECT_NAME}_ros ${LAPAROSCOPE_SERVO_GTEST_MAIN})
     add_dependencies(test_${name} ${PROJECT_NAME}_generate_messages_cpp ${catkin_EXPORTED_TARGETS})
   endif()
 endfunction()
