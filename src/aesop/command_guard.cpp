@@ -58,7 +58,7 @@ std::string CommandGuard::judge(double stamp, double stamp_now) const {
   } else if (!(stamp > last_stamp_)) {
     text << "its stamp is not newer than that of the one before";
   } else if (!(std::abs(stamp_now - stamp) <= config_.max_stamp_age)) {
-    text << "its stamp is " << stamp_now - stamp << " s old, at most " << config_.max_stamp_age << " s are accepted";
+    text << "its stamp is more than " << config_.max_stamp_age << " s from now";
   }
   return text.str();
 }

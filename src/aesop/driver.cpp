@@ -49,6 +49,7 @@ Driver::Driver(const DriverConfig& config)
 
 std::string Driver::enable(double stamp_now, double now) {
   guard_.reset(stamp_now);
+  refusal_.clear();
   return session_.enable(now);
 }
 
@@ -58,7 +59,21 @@ std::string Driver::resume(double stamp_now) {
 }
 
 std::string Driver::command(const ScopeVelocity& velocity, double stamp, double stamp_now, double now) {
-  return guard_.accept(velocity, stamp, stamp_now, now);
+  refusal_ = guard_.accept(velocity, stamp, stamp_now, now);
+  return refusal_;
+}
+
+OperatingState Driver::state(double now) const {
+  OperatingState state = session_.state();
+  if (state.mode != OperatingMode::kEnabled || !state.reason.empty()) return state;
+  if (!refusal_.empty()) {
+    state.reason = "command refused: " + refusal_;
+  } else if (guard_.timedOut(now)) {
+    state.reason = "the last command has run out";
+  } else {
+    state.reason = last_motion_.reason;
+  }
+  return state;
 }
 
 Bytes Driver::transmit(double now) {

@@ -148,7 +148,7 @@ class SerialTransport::Port {
     if (!port_.is_open()) return;
     if (exclusive_) ::ioctl(port_.native_handle(), TIOCNXCL);
     ::tcflush(port_.native_handle(), TCOFLUSH);  // or closing may wait half a minute for a line that takes nothing
-    error_code ignored;  // closing a line that has gone reports that it has gone
+    error_code ignored;                          // closing a line that has gone reports that it has gone
     port_.close(ignored);
   }
 

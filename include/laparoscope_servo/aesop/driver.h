@@ -40,12 +40,14 @@ class Driver {
   void receive(const std::uint8_t* data, std::size_t size, double now) { session_.receive(data, size, now); }
   Bytes transmit(double now);
 
-  OperatingState state() const { return session_.state(); }
+  // Session's state; while ENABLED its reason says why the arm does not do what was commanded, and is empty when it
+  // does.
+  OperatingState state(double now) const;
   const Session& session() const { return session_; }
   const CommandGuard& guard() const { return guard_; }
   const Kinematics& kinematics() const { return kinematics_; }
   const Eigen::Vector3d& insertionPoint() const { return insertion_point_; }
-  // Why the last motion was slowed or refused; empty when it was not.
+  // What the last call of transmit() made of the command.
   const JointMotion& lastMotion() const { return last_motion_; }
 
  private:
@@ -55,6 +57,7 @@ class Driver {
   CommandGuard guard_;
   Session session_;
   JointMotion last_motion_;
+  std::string refusal_;  // of the last command; empty when it was accepted
 };
 
 }  // namespace laparoscope_servo::aesop
