@@ -31,7 +31,11 @@ void readEsm(ParameterReader& reader, tracking::EsmConfig& config) {
   reader.read("tracking/esm/levels", config.levels, 1, 6);
   reader.read("tracking/esm/max_iterations", config.max_iterations, 1, 100);
   reader.read("tracking/esm/min_step", config.min_step, 0.0001, 1.0);
-  reader.read("tracking/esm/illumination", config.illumination);
+  // In the order of tracking::Light.
+  const std::vector<std::string> lights{"constant", "global", "local"};
+  std::string light = lights[static_cast<std::size_t>(config.light)];
+  reader.read("tracking/esm/light", light, lights);
+  config.light = static_cast<tracking::Light>(std::find(lights.begin(), lights.end(), light) - lights.begin());
   reader.read("tracking/esm/robust", config.robust);
   reader.read("tracking/esm/saturation", config.saturation, 1, 256);
   reader.read("tracking/esm/adapt_channel", config.adapt_channel);

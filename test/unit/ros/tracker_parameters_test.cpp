@@ -48,7 +48,7 @@ TEST(DefaultFile, EqualsTheDefaultsOfTheStructs) {
   EXPECT_EQ(f.esm.levels, c.esm.levels);
   EXPECT_EQ(f.esm.max_iterations, c.esm.max_iterations);
   EXPECT_EQ(f.esm.min_step, c.esm.min_step);
-  EXPECT_EQ(f.esm.illumination, c.esm.illumination);
+  EXPECT_EQ(f.esm.light, c.esm.light);
   EXPECT_EQ(f.esm.robust, c.esm.robust);
   EXPECT_EQ(f.esm.saturation, c.esm.saturation);
   EXPECT_EQ(f.esm.adapt_channel, c.esm.adapt_channel);
@@ -78,7 +78,7 @@ TEST(DefaultFile, NamesEveryParameter) {
                            "tracking/esm/levels",
                            "tracking/esm/max_iterations",
                            "tracking/esm/min_step",
-                           "tracking/esm/illumination",
+                           "tracking/esm/light",
                            "tracking/esm/robust",
                            "tracking/esm/saturation",
                            "tracking/esm/adapt_channel",
