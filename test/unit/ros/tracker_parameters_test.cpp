@@ -4,6 +4,8 @@
 
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "laparoscope_servo/ros/parameters.h"
 
@@ -118,6 +120,29 @@ TEST(TrackerParametersTest, ReadEveryKindOfValue) {
   EXPECT_EQ(parameters.tracking.esm.levels, 2);
   EXPECT_FALSE(parameters.tracking.esm.robust);
   EXPECT_EQ(parameters.tracking.quality.min_zncc, 0.5);
+}
+
+TEST(TrackerParametersTest, KnowEveryName) {
+  const std::pair<const char*, tracking::ColourGate> gates[] = {{"none", tracking::ColourGate::kOff},
+                                                                {"published", tracking::ColourGate::kPublished},
+                                                                {"normalised", tracking::ColourGate::kNormalised}};
+  for (const auto& [name, gate] : gates) {
+    XmlRpc::XmlRpcValue tree;
+    tree["tracking"]["occlusion"]["colour"] = name;
+    std::vector<std::string> errors;
+    EXPECT_EQ(readTrackerParameters(tree, "/tracker", errors).tracking.occlusion.colour, gate) << name;
+    EXPECT_TRUE(errors.empty()) << errorReport(errors);
+  }
+  const std::pair<const char*, tracking::Light> lights[] = {{"constant", tracking::Light::kConstant},
+                                                            {"global", tracking::Light::kGlobal},
+                                                            {"local", tracking::Light::kLocal}};
+  for (const auto& [name, light] : lights) {
+    XmlRpc::XmlRpcValue tree;
+    tree["tracking"]["esm"]["light"] = name;
+    std::vector<std::string> errors;
+    EXPECT_EQ(readTrackerParameters(tree, "/tracker", errors).tracking.esm.light, light) << name;
+    EXPECT_TRUE(errors.empty()) << errorReport(errors);
+  }
 }
 
 TEST(TrackerParametersTest, ReportsAllErrorsAtOnce) {
