@@ -1,0 +1,158 @@
+#include "laparoscope_servo/aesop/scope_motion.h"
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace laparoscope_servo::aesop {
+
+namespace {
+
+constexpr double kLength = 0.3;             // m, makes lengths comparable with angles
+constexpr double kLargestDeviation = 0.02;  // m, of the shaft's line from the insertion point
+constexpr double kLookAhead = 0.1;          // s, to see whether a motion leads towards a singularity
+
+// Columns of the joints that move: driven and passive ones in the order of the arm.
+std::vector<int> movingJoints(const Kinematics& kinematics) {
+  std::vector<int> joints = kinematics.driven();
+  joints.insert(joints.end(), kinematics.passive().begin(), kinematics.passive().end());
+  std::sort(joints.begin(), joints.end());
+  return joints;
+}
+
+geometry::Matrix6d movingJacobian(const Kinematics& kinematics, const JointVector& q) {
+  const Jacobian j = kinematics.jacobian(q);
+  const std::vector<int> joints = movingJoints(kinematics);
+  geometry::Matrix6d m;
+  for (int k = 0; k < 6; ++k) m.col(k) = j.col(joints[static_cast<std::size_t>(k)]);
+  return m;
+}
+
+// Keeps the strongest reason for slowing a motion.
+class Brake {
+ public:
+  // `room`: what is left before the motion has to stand, `margin`: where slowing begins.
+  void apply(double room, double margin, const std::string& what) {
+    limit(std::max(0.0, std::min(1.0, room / margin)), what);
+  }
+  void limit(double scale, const std::string& what) {
+    if (!(scale < scale_)) return;
+    scale_ = scale;
+    reason_ = what;
+  }
+  double scale() const { return scale_; }
+  const std::string& reason() const { return reason_; }
+
+ private:
+  double scale_ = 1.0;
+  std::string reason_;
+};
+
+std::string jointReason(int joint, const char* what) {
+  return "joint " + std::to_string(joint + 1) + what;
+}
+
+void brakeAtJointLimits(const Kinematics& kinematics, const MotionConfig& config, const JointVector& q,
+                        const JointVector& velocity, Brake& brake) {
+  for (int k = 0; k < kJoints; ++k) {
+    const DhJoint& joint = kinematics.config().joints[static_cast<std::size_t>(k)];
+    const double margin = joint.prismatic ? config.limit_margin_distance : config.limit_margin_angle;
+    if (velocity[k] > 0.0) brake.apply(joint.maximum - q[k], margin, jointReason(k, " is near its upper limit"));
+    if (velocity[k] < 0.0) brake.apply(q[k] - joint.minimum, margin, jointReason(k, " is near its lower limit"));
+    const double speed = std::abs(velocity[k]);
+    if (speed > joint.max_speed) brake.limit(joint.max_speed / speed, jointReason(k, " is at its highest speed"));
+  }
+}
+
+void brakeAtDepth(const KinematicsConfig& kinematics, const MotionConfig& config, double d2, double insertion,
+                  Brake& brake) {
+  const double margin = config.limit_margin_distance;
+  if (insertion > 0.0) brake.apply(kinematics.depth_maximum - d2, margin, "the scope is near its greatest depth");
+  if (insertion < 0.0) brake.apply(d2 - kinematics.depth_minimum, margin, "the scope is near its smallest depth");
+}
+
+void brakeAtSingularity(const Kinematics& kinematics, const MotionConfig& config, const JointVector& q,
+                        const JointVector& velocity, double now, Brake& brake) {
+  if (now >= config.singular_slow || conditioning(kinematics, q + kLookAhead * velocity) >= now) return;
+  brake.apply(now - config.singular_stop, config.singular_slow - config.singular_stop,
+              "the arm is near a singular position");
+}
+
+JointMotion refused(const std::string& reason) {
+  JointMotion motion;
+  motion.scale = 0.0;
+  motion.reason = reason;
+  return motion;
+}
+
+}  // namespace
+
+bool ScopeVelocity::isFinite() const {
+  return std::isfinite(pan) && std::isfinite(tilt) && std::isfinite(spin) && std::isfinite(insertion);
+}
+
+geometry::Vector6d endEffectorTwist(const ScopeVelocity& velocity, double d1) {
+  geometry::Vector6d twist;
+  twist << -d1 * velocity.pan, d1 * velocity.tilt, velocity.insertion, velocity.tilt, velocity.pan,
+      velocity.spin;  // eq. (12)
+  return twist;
+}
+
+double conditioning(const Kinematics& kinematics, const JointVector& q) {
+  geometry::Matrix6d j = movingJacobian(kinematics, q);
+  j.topRows<3>() /= kLength;
+  const std::vector<int> joints = movingJoints(kinematics);
+  for (int k = 0; k < 6; ++k) {
+    const auto joint = static_cast<std::size_t>(joints[static_cast<std::size_t>(k)]);
+    if (kinematics.config().joints[joint].prismatic) j.col(k) *= kLength;
+  }
+  return Eigen::JacobiSVD<geometry::Matrix6d>(j).singularValues()[5];
+}
+
+JointMotion jointMotion(const Kinematics& kinematics, const MotionConfig& config, const JointVector& q,
+                        const Eigen::Vector3d& insertion_point, const ScopeVelocity& velocity) {
+  if (!velocity.isFinite()) return refused("the velocity is not finite");
+  if (!q.allFinite()) return refused("the joint positions are not finite");
+  if (velocity.isZero()) return JointMotion();
+  const Eigen::Isometry3d base_T_end = kinematics.endEffector(q);
+  const Eigen::Vector3d p = base_T_end.inverse() * insertion_point;
+  if (!(p.head<2>().norm() <= kLargestDeviation)) {
+    std::ostringstream text;
+    text << "the shaft passes the insertion point at " << p.head<2>().norm() << " m, at most " << kLargestDeviation
+         << " m are accepted";
+    return refused(text.str());
+  }
+  const double well = conditioning(kinematics, q);
+  if (!(well > 0.1 * config.singular_stop)) return refused("the arm is in a singular position");
+
+  const double d1 = p.z();
+  const Eigen::Matrix3d base_R_end = base_T_end.linear();
+  geometry::Vector6d twist = endEffectorTwist(velocity, d1);
+  twist.head<3>() = base_R_end * twist.head<3>().eval();
+  twist.tail<3>() = base_R_end * twist.tail<3>().eval();
+  const geometry::Vector6d solution = movingJacobian(kinematics, q).partialPivLu().solve(twist);
+
+  JointMotion motion;
+  const std::vector<int> joints = movingJoints(kinematics);
+  for (int k = 0; k < 6; ++k) motion.velocity[joints[static_cast<std::size_t>(k)]] = solution[k];
+  Brake brake;
+  brakeAtJointLimits(kinematics, config, q, motion.velocity, brake);
+  brakeAtDepth(kinematics.config(), config, kinematics.config().scope_length - d1, velocity.insertion, brake);
+  brakeAtSingularity(kinematics, config, q, motion.velocity, well, brake);
+  motion.scale = brake.scale();
+  motion.reason = brake.reason();
+  motion.velocity *= motion.scale;
+  return motion;
+}
+
+ScopeVelocity scopeVelocity(const Kinematics& kinematics, const JointVector& q, const JointVector& qdot) {
+  const geometry::Vector6d twist = kinematics.jacobian(q) * qdot;
+  const Eigen::Matrix3d end_R_base = kinematics.endEffector(q).linear().transpose();
+  const Eigen::Vector3d v = end_R_base * twist.head<3>();
+  const Eigen::Vector3d w = end_R_base * twist.tail<3>();
+  return {w.y(), w.x(), w.z(), v.z()};
+}
+
+}  // namespace laparoscope_servo::aesop

@@ -1,0 +1,53 @@
+#include "laparoscope_servo/aesop/kinematics_config.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace laparoscope_servo::aesop {
+namespace {
+
+const double kNan = std::numeric_limits<double>::quiet_NaN();
+
+TEST(KinematicsConfig, defaultsAreValid) {
+  EXPECT_TRUE(validate(KinematicsConfig()).empty());
+  EXPECT_TRUE(validate(MotionConfig()).empty());
+}
+
+TEST(KinematicsConfig, everyErrorIsNamed) {
+  KinematicsConfig config;
+  config.joints[1].a = kNan;
+  config.joints[2].maximum = config.joints[2].minimum;
+  config.joints[6].max_speed = 0.0;
+  config.scope_length = -0.3;
+  const std::vector<std::string> errors = validate(config);
+  ASSERT_EQ(errors.size(), 5u);  // depth_maximum is above the wrong scope_length, too
+  EXPECT_NE(errors[0].find("joint 2: a = nan"), std::string::npos);
+  EXPECT_NE(errors[1].find("joint 3: maximum"), std::string::npos);
+  EXPECT_NE(errors[2].find("joint 7: max_speed = 0"), std::string::npos);
+  EXPECT_NE(errors[3].find("scope_length = -0.3"), std::string::npos);
+}
+
+TEST(KinematicsConfig, fourDrivenAndTwoPassiveJoints) {
+  KinematicsConfig config;
+  config.joints[3].role = JointRole::kDriven;
+  EXPECT_EQ(validate(config).size(), 1u);
+  config = KinematicsConfig();
+  config.joints[4].role = JointRole::kHand;
+  EXPECT_EQ(validate(config).size(), 1u);
+}
+
+TEST(KinematicsConfig, passiveJointsTurn) {
+  KinematicsConfig config;
+  config.joints[4].prismatic = true;
+  EXPECT_EQ(validate(config).size(), 1u);
+}
+
+TEST(MotionConfig, notANumberIsRefusedEverywhere) {
+  MotionConfig config;
+  config.limit_margin_angle = config.limit_margin_distance = config.singular_slow = config.singular_stop = kNan;
+  EXPECT_EQ(validate(config).size(), 4u);
+}
+
+}  // namespace
+}  // namespace laparoscope_servo::aesop
