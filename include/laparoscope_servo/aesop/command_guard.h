@@ -1,0 +1,62 @@
+// Decides which velocity of the scope counts at this moment. What does not convince is zero.
+//
+// Two clocks: `now` is seconds of a steady clock and measures the age of the last command; stamps and `stamp_now` are
+// seconds of the clock that stamps messages (ROS time, perhaps simulated, perhaps standing) and tell whether a command
+// is news.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "laparoscope_servo/aesop/scope_motion.h"
+
+namespace laparoscope_servo::aesop {
+
+// Defaults are those of config/aesop.yaml, group `command`.
+struct CommandConfig {
+  double timeout = 0.2;         // s, 0.02 to 2: a command that no other follows counts no longer
+  double max_stamp_age = 0.5;   // s, 0.02 to 10: between a command's stamp and now, either way
+  double max_pan = 0.15;        // rad/s, > 0 to 1; beyond a limit all four are scaled, so that the direction is kept
+  double max_tilt = 0.15;       // rad/s
+  double max_spin = 0.3;        // rad/s
+  double max_insertion = 0.03;  // m/s, > 0 to 0.2
+};
+
+std::vector<std::string> validate(const CommandConfig& config);
+
+class CommandGuard {
+ public:
+  explicit CommandGuard(const CommandConfig& config) : config_(config) {}
+
+  // Takes a command, or says why not. One that is not finite is a zero. A zero is taken whatever its stamp. Any other
+  // needs a stamp that is newer than the last one and than the last reset, and not too far from `stamp_now`.
+  std::string accept(const ScopeVelocity& velocity, double stamp, double stamp_now, double now);
+  // Zero until a command comes that was stamped after this moment.
+  void reset(double stamp_now);
+  // The command that counts now.
+  ScopeVelocity velocity(double now) const;
+  // s since the last command that was accepted; infinite before the first.
+  double age(double now) const { return now - accepted_at_; }
+  // Whether the last command accepted has run out.
+  bool timedOut(double now) const { return !last_.isZero() && !(age(now) <= config_.timeout); }
+
+  std::uint64_t accepted() const { return accepted_; }
+  std::uint64_t refused() const { return refused_; }
+
+ private:
+  std::string judge(double stamp, double stamp_now) const;
+  ScopeVelocity clamp(const ScopeVelocity& velocity) const;
+
+  CommandConfig config_;
+  ScopeVelocity last_;
+  double accepted_at_ = -std::numeric_limits<double>::infinity();
+  double last_stamp_ = -std::numeric_limits<double>::infinity();
+  double not_before_ = -std::numeric_limits<double>::infinity();
+  double last_stamp_now_ = -std::numeric_limits<double>::infinity();
+  std::uint64_t accepted_ = 0;
+  std::uint64_t refused_ = 0;
+};
+
+}  // namespace laparoscope_servo::aesop

@@ -1,0 +1,86 @@
+// The line to the controller as a sequence of sessions: identification, sequence numbers, ages, losses.
+//
+// Pure: bytes in, bytes out, and `now`, seconds of a steady clock. A link that is not up has to be taken for a robot of
+// which nothing is known.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include "laparoscope_servo/aesop/codec.h"
+#include "laparoscope_servo/aesop/session_config.h"
+
+namespace laparoscope_servo::aesop {
+
+enum class LinkState {
+  kClosed,       // no port
+  kIdentifying,  // port open, controller not (yet) answering as it has to
+  kUp,           // identified, statuses come
+};
+
+const char* name(LinkState state);
+
+struct LinkStatistics {
+  DecoderStatistics decoder;
+  std::uint64_t sent = 0;           // requests
+  std::uint64_t received = 0;       // statuses
+  std::uint64_t lost = 0;           // replies of the controller that never came, by its numbers
+  std::uint64_t sessions = 0;       // times that the link came up
+  double round_trip = 0.0;          // s, of the last status
+  double longest_round_trip = 0.0;  // s, since the link came up
+};
+
+class Link {
+ public:
+  // `driven`: bit k - 1 for each driven joint k, as the configuration has it; the controller has to agree.
+  Link(const SessionConfig& config, std::uint8_t driven) : config_(config), driven_(driven) {}
+
+  void opened(double now);
+  void closed(const std::string& reason);
+  // Statuses that have come with these bytes, oldest first.
+  std::vector<Status> receive(const std::uint8_t* data, std::size_t size, double now);
+  // Loses the link when no status has come for too long. To be called before every sending.
+  void watch(double now);
+  // The request that (re)begins the session, when one is due; to be sent while the link is not up.
+  Bytes identify(double now);
+  // One request. Throws std::invalid_argument like encode().
+  Bytes send(const Message& message, double now);
+  // Whether it is time for the next request.
+  bool due(double now) const { return now >= next_; }
+
+  LinkState state() const { return state_; }
+  bool isUp() const { return state_ == LinkState::kUp; }
+  // Why the link is not up; empty when it is.
+  const std::string& reason() const { return reason_; }
+  // Sequence number of the request sent last.
+  std::uint16_t sequence() const { return sequence_; }
+  // Last status of this session.
+  const std::optional<Status>& status() const { return status_; }
+  // s; infinite when there is none.
+  double statusAge(double now) const;
+  const LinkStatistics& statistics() const { return statistics_; }
+  const std::string& model() const { return model_; }
+
+ private:
+  void begin(const std::string& reason, double now);
+  void take(const Identity& identity, double now);
+  void take(const Status& status, double now);
+  void countLosses(std::uint16_t number);
+
+  SessionConfig config_;
+  std::uint8_t driven_;
+  LinkState state_ = LinkState::kClosed;
+  std::string reason_ = "the port is not open";
+  std::string model_;
+  Decoder decoder_;
+  LinkStatistics statistics_;
+  std::uint16_t sequence_ = 0;
+  std::array<double, 64> sent_at_{};  // s, of the last requests, by sequence number modulo 64
+  double next_ = 0.0;
+  std::optional<Status> status_;
+  double status_at_ = 0.0;
+  std::optional<std::uint16_t> last_number_;
+};
+
+}  // namespace laparoscope_servo::aesop

@@ -1,0 +1,75 @@
+// The state of the robot as the host sees it, and what to send next. Nothing leads to ENABLED but enable(): a lost
+// link, a fault, a controller that disables itself or restarts all end in DISABLED or FAULT.
+//
+// Pure, as Link is: `now` is seconds of a steady clock.
+#pragma once
+
+#include <string>
+
+#include "laparoscope_servo/aesop/link.h"
+
+namespace laparoscope_servo::aesop {
+
+// Names of the Collaborative Robotics Toolkit.
+enum class OperatingMode { kDisabled, kEnabled, kPaused, kFault };
+
+const char* name(OperatingMode mode);
+
+struct OperatingState {
+  OperatingMode mode = OperatingMode::kDisabled;
+  bool is_homed = false;
+  bool is_busy = false;  // the arm moves, or a request waits for its confirmation
+  std::string reason;
+
+  bool operator==(const OperatingState& other) const {
+    return mode == other.mode && is_homed == other.is_homed && is_busy == other.is_busy && reason == other.reason;
+  }
+};
+
+class Session {
+ public:
+  Session(const SessionConfig& config, std::uint8_t driven) : config_(config), link_(config, driven) {}
+
+  // Requests. Each returns why it cannot be, or an empty string when it is under way: state() tells how it ends.
+  std::string enable(double now);
+  std::string disable(double now);
+  std::string clearFault(double now);
+  std::string pause();
+  std::string resume();
+
+  void opened(double now) { link_.opened(now); }
+  void closed(const std::string& reason);
+  void receive(const std::uint8_t* data, std::size_t size, double now);
+  // What to send now, often nothing. `speed`: of the driven joints, as wanted at this moment; it reaches the wire only
+  // while ENABLED. All zero, one that is not finite or beyond kLargestNumber, is a stop, which is sent at once and
+  // until the controller confirms that it stands.
+  Bytes transmit(const std::array<double, kDrivenJoints>& speed, double now);
+
+  OperatingState state() const;
+  bool isEnabled() const;  // ENABLED and confirmed, and not paused
+  const Link& link() const { return link_; }
+
+ private:
+  enum class Wish { kDisabled, kEnabled };
+
+  void drop(const std::string& reason);
+  void watch(double now);
+  void take(const Status& status);
+  Message next(bool move, const std::array<double, kDrivenJoints>& speed);
+
+  SessionConfig config_;
+  Link link_;
+  Wish wish_ = Wish::kDisabled;
+  bool confirmed_ = false;  // the controller has confirmed the enable
+  bool paused_ = false;
+  bool clearing_ = false;
+  bool urgent_ = false;                 // send at once, not at the next slot
+  bool moved_ = false;                  // the last request was a velocity
+  bool stopping_ = false;               // stop not yet confirmed
+  std::uint16_t stop_sequence_ = 0;     // of the first stop after a velocity
+  std::uint16_t request_sequence_ = 0;  // of the last request before the enable
+  double deadline_ = 0.0;               // s, for the confirmation under way
+  std::string reason_ = "not enabled yet";
+};
+
+}  // namespace laparoscope_servo::aesop

@@ -1,0 +1,24 @@
+// Parameters of the aesop node and of the emulator: config/aesop.yaml and config/emulator.yaml name every one, with its
+// unit.
+#pragma once
+
+#include <string>
+
+#include "laparoscope_servo/aesop/driver.h"
+#include "laparoscope_servo/ros/parameters.h"
+#include "laparoscope_servo/sim/emulator.h"
+
+namespace laparoscope_servo::skin {
+
+struct AesopParameters {
+  aesop::DriverConfig driver;
+  std::string port;          // required
+  int baud_rate = 38400;     // 1200 to 1000000
+  std::string frame_prefix;  // in front of every frame's name
+};
+
+// Missing parameters keep their defaults. All errors are left in the reader.
+AesopParameters readAesopParameters(ParameterReader& reader);
+sim::EmulatorConfig readEmulatorConfig(ParameterReader& reader);
+
+}  // namespace laparoscope_servo::skin

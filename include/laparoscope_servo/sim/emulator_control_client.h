@@ -1,0 +1,49 @@
+// Client of the emulator's control socket, for the simulated camera, the demo director and tests. Blocks, for a bounded
+// time.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "laparoscope_servo/aesop/messages.h"
+#include "laparoscope_servo/aesop/scope_motion.h"
+
+namespace laparoscope_servo::sim {
+
+struct EmulatorState {
+  double time = 0.0;  // s since the emulator was switched on
+  aesop::JointVector q = aesop::JointVector::Zero();
+};
+
+struct EmulatorMotion {
+  std::string state;  // DISABLED, ENABLED or FAULT
+  bool moving = false;
+  int faults = 0;
+  aesop::JointVector qdot = aesop::JointVector::Zero();
+};
+
+class EmulatorControlClient {
+ public:
+  // Throws std::runtime_error when nothing listens at `path`. `timeout`: s, for each request.
+  explicit EmulatorControlClient(const std::string& path, double timeout = 1.0);
+  ~EmulatorControlClient();
+  EmulatorControlClient(const EmulatorControlClient&) = delete;
+  EmulatorControlClient& operator=(const EmulatorControlClient&) = delete;
+
+  // What follows "ok " in the answer to a line. Throws std::runtime_error: an answer "error ...", no answer in time, or
+  // the emulator has gone; after the last two the client is of no further use: make another.
+  std::string request(const std::string& line);
+
+  EmulatorState state();
+  EmulatorMotion motion();
+  // Displacements in rad and m, evenly within `seconds`.
+  void hand(const aesop::ScopeVelocity& displacement, double seconds);
+  void fault(const std::string& name) { request("fault " + name); }
+  void fault(const std::string& name, double value);
+
+ private:
+  class Connection;
+  std::unique_ptr<Connection> connection_;
+};
+
+}  // namespace laparoscope_servo::sim

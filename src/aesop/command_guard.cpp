@@ -1,0 +1,84 @@
+#include "laparoscope_servo/aesop/command_guard.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace laparoscope_servo::aesop {
+
+namespace {
+
+void check(const char* field, double value, double minimum, double maximum, std::vector<std::string>& errors) {
+  if (value >= minimum && value <= maximum) return;
+  std::ostringstream text;
+  text << field << " = " << value << ", expected a number from " << minimum << " to " << maximum;
+  errors.push_back(text.str());
+}
+
+}  // namespace
+
+std::vector<std::string> validate(const CommandConfig& config) {
+  std::vector<std::string> errors;
+  check("timeout", config.timeout, 0.02, 2.0, errors);
+  check("max_stamp_age", config.max_stamp_age, 0.02, 10.0, errors);
+  check("max_pan", config.max_pan, 1e-4, 1.0, errors);
+  check("max_tilt", config.max_tilt, 1e-4, 1.0, errors);
+  check("max_spin", config.max_spin, 1e-4, 1.0, errors);
+  check("max_insertion", config.max_insertion, 1e-5, 0.2, errors);
+  return errors;
+}
+
+std::string CommandGuard::accept(const ScopeVelocity& velocity, double stamp, double stamp_now, double now) {
+  if (stamp_now < last_stamp_now_) reset(stamp_now);  // the clock was set back: old stamps compare with nothing
+  last_stamp_now_ = stamp_now;
+  std::string reason;
+  if (!velocity.isFinite()) {
+    last_ = ScopeVelocity();
+    reason = "it is not finite";
+  } else if (!velocity.isZero()) {
+    reason = judge(stamp, stamp_now);
+  }
+  if (!reason.empty()) {
+    ++refused_;
+    return reason;
+  }
+  last_ = clamp(velocity);
+  accepted_at_ = now;
+  if (stamp > last_stamp_ && stamp <= stamp_now + config_.max_stamp_age) last_stamp_ = stamp;
+  ++accepted_;
+  return "";
+}
+
+std::string CommandGuard::judge(double stamp, double stamp_now) const {
+  std::ostringstream text;
+  if (!(stamp > 0.0)) {
+    text << "it has no stamp";
+  } else if (!(stamp > not_before_)) {
+    text << "it is older than the enable";
+  } else if (!(stamp > last_stamp_)) {
+    text << "its stamp is not newer than that of the one before";
+  } else if (!(std::abs(stamp_now - stamp) <= config_.max_stamp_age)) {
+    text << "its stamp is more than " << config_.max_stamp_age << " s from now";
+  }
+  return text.str();
+}
+
+ScopeVelocity CommandGuard::clamp(const ScopeVelocity& velocity) const {
+  const double excess =
+      std::max({std::abs(velocity.pan) / config_.max_pan, std::abs(velocity.tilt) / config_.max_tilt,
+                std::abs(velocity.spin) / config_.max_spin, std::abs(velocity.insertion) / config_.max_insertion});
+  if (excess <= 1.0) return velocity;
+  return {velocity.pan / excess, velocity.tilt / excess, velocity.spin / excess, velocity.insertion / excess};
+}
+
+void CommandGuard::reset(double stamp_now) {
+  last_ = ScopeVelocity();
+  last_stamp_ = -std::numeric_limits<double>::infinity();
+  not_before_ = stamp_now;
+}
+
+ScopeVelocity CommandGuard::velocity(double now) const {
+  return age(now) <= config_.timeout ? last_ : ScopeVelocity();
+}
+
+}  // namespace laparoscope_servo::aesop

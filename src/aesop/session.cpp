@@ -1,0 +1,190 @@
+#include "laparoscope_servo/aesop/session.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace laparoscope_servo::aesop {
+
+namespace {
+
+bool isFault(const Status& status) {
+  return status.state == RobotState::kFault || status.faults != 0;
+}
+
+std::string faultText(const Status& status) {
+  const std::string faults = describeFaults(status.faults);
+  return "fault: " + (faults.empty() ? std::string("the controller names no cause") : faults);
+}
+
+}  // namespace
+
+const char* name(OperatingMode mode) {
+  switch (mode) {
+    case OperatingMode::kDisabled:
+      return "DISABLED";
+    case OperatingMode::kEnabled:
+      return "ENABLED";
+    case OperatingMode::kPaused:
+      return "PAUSED";
+    case OperatingMode::kFault:
+      return "FAULT";
+  }
+  return "unknown";
+}
+
+std::string Session::enable(double now) {
+  if (!link_.isUp()) return "not connected: " + link_.reason();
+  if (!link_.status()) return "not connected: the controller has not sent its status yet";
+  if (isFault(*link_.status())) return faultText(*link_.status()) + "; clear_fault comes first";
+  if (!link_.status()->homed) return "the arm is not homed: its joint positions mean nothing";
+  if (wish_ == Wish::kEnabled) return "";
+  // The controller must come from DISABLED, so that what it did before cannot go on.
+  if (link_.status()->state != RobotState::kDisabled) return "still disabling; try again";
+  wish_ = Wish::kEnabled;
+  confirmed_ = false;
+  paused_ = false;
+  urgent_ = true;
+  request_sequence_ = link_.sequence();
+  deadline_ = now + config_.request_timeout;
+  reason_ = "enable asked for";
+  return "";
+}
+
+std::string Session::disable(double now) {
+  drop("disabled on request");
+  deadline_ = now + config_.request_timeout;
+  return link_.isUp() ? "" : "not connected: " + link_.reason();
+}
+
+std::string Session::clearFault(double now) {
+  if (!link_.isUp() || !link_.status()) return "not connected: " + link_.reason();
+  if (!isFault(*link_.status())) return "there is no fault";
+  clearing_ = true;
+  urgent_ = true;
+  deadline_ = now + config_.request_timeout;
+  return "";
+}
+
+std::string Session::pause() {
+  if (state().mode == OperatingMode::kPaused) return "";
+  if (!isEnabled()) return "only an enabled arm can be paused";
+  paused_ = true;
+  urgent_ = true;
+  reason_ = "paused on request";
+  return "";
+}
+
+std::string Session::resume() {
+  if (state().mode != OperatingMode::kPaused) return "the arm is not paused";
+  paused_ = false;
+  reason_.clear();
+  return "";
+}
+
+void Session::closed(const std::string& reason) {
+  link_.closed(reason);
+  drop(reason);
+}
+
+void Session::drop(const std::string& reason) {
+  if (wish_ == Wish::kEnabled) urgent_ = true;
+  wish_ = Wish::kDisabled;
+  confirmed_ = false;
+  paused_ = false;
+  clearing_ = false;
+  moved_ = false;
+  stopping_ = false;
+  reason_ = reason;
+}
+
+void Session::receive(const std::uint8_t* data, std::size_t size, double now) {
+  const bool was_up = link_.isUp();
+  for (const Status& status : link_.receive(data, size, now)) take(status);
+  if (was_up && !link_.isUp()) drop(link_.reason());
+}
+
+void Session::take(const Status& status) {
+  if (isFault(status)) {
+    if (wish_ == Wish::kEnabled || !clearing_) {
+      const bool clearing = clearing_;
+      drop(faultText(status));
+      clearing_ = clearing;
+    }
+    return;
+  }
+  if (clearing_) drop("fault cleared");
+  if (reason_.rfind("fault: ", 0) == 0) reason_ = "the fault has gone by itself";
+  if (wish_ != Wish::kEnabled) return;
+  if (status.state == RobotState::kEnabled && compareSequence(status.echo, request_sequence_) > 0) {
+    if (!confirmed_) reason_.clear();
+    confirmed_ = true;
+  } else if (confirmed_ && status.state == RobotState::kDisabled) {
+    drop("the controller has disabled itself");
+    return;
+  }
+  if (stopping_ && compareSequence(status.echo, stop_sequence_) >= 0 && !status.moving) stopping_ = false;
+}
+
+void Session::watch(double now) {
+  const bool was_up = link_.isUp();
+  link_.watch(now);
+  if (was_up && !link_.isUp()) drop(link_.reason());
+  if (wish_ == Wish::kEnabled && !confirmed_ && now > deadline_) drop("the controller has not confirmed the enable");
+  if (clearing_ && now > deadline_) {
+    clearing_ = false;
+    if (link_.status()) reason_ = faultText(*link_.status()) + "; it could not be cleared";
+  }
+}
+
+Message Session::next(bool move, const std::array<double, kDrivenJoints>& speed) {
+  const Status& status = *link_.status();
+  if (clearing_) return ClearFault();
+  if (wish_ == Wish::kDisabled) return status.state == RobotState::kEnabled ? Message(Disable()) : Message(Poll());
+  if (!confirmed_) return Enable();
+  if (move) return Velocity{speed, config_.time_to_live};
+  return stopping_ ? Message(Stop()) : Message(Poll());
+}
+
+Bytes Session::transmit(const std::array<double, kDrivenJoints>& speed, double now) {
+  watch(now);
+  if (!link_.isUp()) return link_.identify(now);
+  if (!link_.status()) return link_.due(now) ? link_.send(Poll(), now) : Bytes();
+  // What the wire format cannot carry is refused here rather than thrown from the last link to the arm.
+  const bool sane = std::all_of(speed.begin(), speed.end(), [](double v) { return std::abs(v) <= kLargestNumber; });
+  const bool zero = std::all_of(speed.begin(), speed.end(), [](double v) { return v == 0.0; });
+  const bool move = isEnabled() && sane && !zero;
+  if (moved_ && !move) {
+    stopping_ = true;
+    stop_sequence_ = static_cast<std::uint16_t>(link_.sequence() + 1);
+    urgent_ = true;
+  }
+  moved_ = move;
+  if (!urgent_ && !link_.due(now)) return {};
+  urgent_ = false;
+  return link_.send(next(move, speed), now);
+}
+
+bool Session::isEnabled() const {
+  return link_.isUp() && link_.status() && wish_ == Wish::kEnabled && confirmed_ && !paused_;
+}
+
+OperatingState Session::state() const {
+  OperatingState state;
+  state.reason = reason_;
+  if (!link_.isUp() || !link_.status()) {
+    if (!link_.isUp()) state.reason = "not connected: " + link_.reason();
+    return state;
+  }
+  const Status& status = *link_.status();
+  state.is_homed = status.homed;
+  state.is_busy = status.moving || clearing_ || (wish_ == Wish::kEnabled && !confirmed_) ||
+                  (wish_ == Wish::kDisabled && status.state == RobotState::kEnabled);
+  if (isFault(status)) {
+    state.mode = OperatingMode::kFault;
+  } else if (wish_ == Wish::kEnabled && confirmed_) {
+    state.mode = paused_ ? OperatingMode::kPaused : OperatingMode::kEnabled;
+  }
+  return state;
+}
+
+}  // namespace laparoscope_servo::aesop

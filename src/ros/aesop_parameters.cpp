@@ -1,0 +1,146 @@
+#include "laparoscope_servo/ros/aesop_parameters.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace laparoscope_servo::skin {
+
+namespace {
+
+using aesop::DhJoint;
+using aesop::JointRole;
+
+constexpr double kLarge = 100.0;  // m or rad: beyond it a number is a typing error; narrower bounds are validate()'s
+
+std::vector<double> gather(const std::array<DhJoint, aesop::kJoints>& joints, double DhJoint::*field) {
+  std::vector<double> values;
+  for (const DhJoint& joint : joints) values.push_back(joint.*field);
+  return values;
+}
+
+void readField(ParameterReader& reader, const std::string& path, std::array<DhJoint, aesop::kJoints>& joints,
+               double DhJoint::*field) {
+  std::vector<double> values = gather(joints, field);
+  reader.read(path, values, aesop::kJoints, -kLarge, kLarge);
+  for (std::size_t k = 0; k < joints.size(); ++k) joints[k].*field = values[k];
+}
+
+// Joint numbers, 1 to 7, as a list; `apply(index, listed)` for every joint when the list is there and right.
+template <typename Apply>
+void readJointNumbers(ParameterReader& reader, const std::string& path, Apply apply) {
+  if (!reader.has(path)) return;
+  const std::size_t errors = reader.errors().size();
+  std::vector<double> numbers;
+  reader.read(path, numbers, 0, 1.0, aesop::kJoints);
+  if (reader.errors().size() != errors) return;
+  for (const double number : numbers) {
+    if (number != std::floor(number)) return reader.addError(path + ": joint numbers are whole, 1 to 7");
+  }
+  for (std::size_t k = 0; k < aesop::kJoints; ++k) {
+    apply(k, std::find(numbers.begin(), numbers.end(), static_cast<double>(k + 1)) != numbers.end());
+  }
+}
+
+void readRoles(ParameterReader& reader, std::array<DhJoint, aesop::kJoints>& joints) {
+  readJointNumbers(reader, "kinematics/prismatic", [&](std::size_t k, bool listed) { joints[k].prismatic = listed; });
+  // Both lists together say what every joint is, so either one alone starts from the other's default.
+  std::array<bool, aesop::kJoints> driven{};
+  std::array<bool, aesop::kJoints> by_hand{};
+  for (std::size_t k = 0; k < joints.size(); ++k) {
+    driven[k] = joints[k].role == JointRole::kDriven;
+    by_hand[k] = joints[k].role == JointRole::kHand;
+  }
+  readJointNumbers(reader, "kinematics/driven", [&](std::size_t k, bool listed) { driven[k] = listed; });
+  readJointNumbers(reader, "kinematics/by_hand", [&](std::size_t k, bool listed) { by_hand[k] = listed; });
+  for (std::size_t k = 0; k < joints.size(); ++k) {
+    if (driven[k] && by_hand[k])
+      reader.addError("joint " + std::to_string(k + 1) + " is listed as driven and as by_hand");
+    joints[k].role = driven[k] ? JointRole::kDriven : by_hand[k] ? JointRole::kHand : JointRole::kPassive;
+  }
+}
+
+void readKinematics(ParameterReader& reader, aesop::KinematicsConfig& config) {
+  readRoles(reader, config.joints);
+  readField(reader, "kinematics/alpha", config.joints, &DhJoint::alpha);
+  readField(reader, "kinematics/a", config.joints, &DhJoint::a);
+  readField(reader, "kinematics/d", config.joints, &DhJoint::d);
+  readField(reader, "kinematics/theta", config.joints, &DhJoint::theta);
+  readField(reader, "kinematics/minimum", config.joints, &DhJoint::minimum);
+  readField(reader, "kinematics/maximum", config.joints, &DhJoint::maximum);
+  readField(reader, "kinematics/max_speed", config.joints, &DhJoint::max_speed);
+  reader.read("kinematics/scope_length", config.scope_length, -kLarge, kLarge);
+  reader.read("kinematics/depth_minimum", config.depth_minimum, -kLarge, kLarge);
+  reader.read("kinematics/depth_maximum", config.depth_maximum, -kLarge, kLarge);
+  reader.refuseUnknown("kinematics");
+}
+
+void readPoint(ParameterReader& reader, const std::string& path, Eigen::Vector3d& point) {
+  std::vector<double> values(point.data(), point.data() + 3);
+  reader.read(path, values, 3, -kLarge, kLarge);
+  point = Eigen::Vector3d(values[0], values[1], values[2]);
+}
+
+void readJoints(ParameterReader& reader, const std::string& path, aesop::JointVector& joints) {
+  std::vector<double> values(joints.data(), joints.data() + aesop::kJoints);
+  reader.read(path, values, aesop::kJoints, -kLarge, kLarge);
+  for (int k = 0; k < aesop::kJoints; ++k) joints[k] = values[static_cast<std::size_t>(k)];
+}
+
+void readMotion(ParameterReader& reader, aesop::MotionConfig& config) {
+  reader.read("motion/limit_margin_angle", config.limit_margin_angle, -kLarge, kLarge);
+  reader.read("motion/limit_margin_distance", config.limit_margin_distance, -kLarge, kLarge);
+  reader.read("motion/singular_slow", config.singular_slow, -kLarge, kLarge);
+  reader.read("motion/singular_stop", config.singular_stop, -kLarge, kLarge);
+  reader.refuseUnknown("motion");
+}
+
+void readCommand(ParameterReader& reader, aesop::CommandConfig& config) {
+  reader.read("command/timeout", config.timeout, -kLarge, kLarge);
+  reader.read("command/max_stamp_age", config.max_stamp_age, -kLarge, kLarge);
+  reader.read("command/max_pan", config.max_pan, -kLarge, kLarge);
+  reader.read("command/max_tilt", config.max_tilt, -kLarge, kLarge);
+  reader.read("command/max_spin", config.max_spin, -kLarge, kLarge);
+  reader.read("command/max_insertion", config.max_insertion, -kLarge, kLarge);
+  reader.refuseUnknown("command");
+}
+
+void readLink(ParameterReader& reader, aesop::SessionConfig& config) {
+  reader.read("link/rate", config.rate, 0.0, 1000.0);
+  reader.read("link/time_to_live", config.time_to_live, -kLarge, kLarge);
+  reader.read("link/status_timeout", config.status_timeout, -kLarge, kLarge);
+  reader.read("link/request_timeout", config.request_timeout, -kLarge, kLarge);
+  reader.refuseUnknown("link");
+}
+
+}  // namespace
+
+AesopParameters readAesopParameters(ParameterReader& reader) {
+  AesopParameters parameters;
+  reader.require("port", "the name of the serial port, e.g. /dev/ttyUSB0");
+  reader.read("port", parameters.port);
+  reader.read("baud_rate", parameters.baud_rate, 1200, 1000000);
+  reader.read("frame_prefix", parameters.frame_prefix);
+  readKinematics(reader, parameters.driver.kinematics);
+  readMotion(reader, parameters.driver.motion);
+  readCommand(reader, parameters.driver.command);
+  readLink(reader, parameters.driver.session);
+  readPoint(reader, "insertion_point", parameters.driver.insertion_point);
+  reader.addErrors(aesop::validate(parameters.driver));
+  return parameters;
+}
+
+sim::EmulatorConfig readEmulatorConfig(ParameterReader& reader) {
+  sim::EmulatorConfig config;
+  readKinematics(reader, config.kinematics);
+  readJoints(reader, "emulator/start", config.arm.start);
+  readPoint(reader, "emulator/insertion_point", config.arm.insertion_point);
+  reader.read("emulator/delay", config.arm.delay, -kLarge, kLarge);
+  readJoints(reader, "emulator/dead_zone", config.arm.dead_zone);
+  reader.read("emulator/breakaway", config.arm.breakaway, -kLarge, kLarge);
+  reader.read("emulator/time_constant", config.arm.time_constant, -kLarge, kLarge);
+  reader.refuseUnknown("emulator");
+  reader.addErrors(sim::validate(config));
+  return config;
+}
+
+}  // namespace laparoscope_servo::skin
