@@ -103,7 +103,7 @@ servo::ControllerInput ControllerNode::input() {
     const ros::Time now = ros::Time::now();
     input.task_error.age = task_error_watch_.age(now, steady_now);
     if (task_error_watch_.isAhead(now, config_.control.safety.max_task_error_age)) {
-      input.task_error.problem = "task error is stamped in the future: do the clocks of the machines agree?";
+      input.task_error.problem = "task error is stamped in the future, compare the clocks of the machines";
     }
   }
   input.depth = depth(steady_now);
@@ -126,7 +126,7 @@ servo::DepthInput ControllerNode::depth(double steady_now) {
     const ros::Time now = ros::Time::now();
     depth.age = depth_watch_.age(now, steady_now);
     if (depth_watch_.isAhead(now, config_.control.safety.max_depth_age)) {
-      depth.problem = "tf is stamped in the future: do the clocks of the machines agree?";
+      depth.problem = "tf is stamped in the future, compare the clocks of the machines";
     }
   } catch (const tf2::ExtrapolationException&) {  // its text holds times, which change with every step
     depth.problem = "tf from " + config_.camera + " to " + config_.insertion_point + " has no common time";

@@ -35,6 +35,13 @@ Eigen::Matrix<double, 2, 8> cornerJacobian(double u, double v) {
   return j;
 }
 
+// Blocks of light are as wide as a twelfth of the ROI, to follow its shading, and at least this wide, to leave the texture's own
+// contrast to the motion.
+constexpr int kLightBlock = 16;  // px of the level
+constexpr int kLightBlocksAlong = 12;
+
+int blocksAlong(int pixels) { return std::clamp((pixels + kLightBlock / 2) / kLightBlock, 1, kLightBlocksAlong); }
+
 }  // namespace
 
 void Esm::setReference(const image::RegionPyramid& reference, const geometry::Rectangle& roi) {
@@ -43,6 +50,7 @@ void Esm::setReference(const image::RegionPyramid& reference, const geometry::Re
   n_ = scaling(1.0 / half_size_, -roi.centre().x() / half_size_, -roi.centre().y() / half_size_);
   n_inv_ = n_.inverse();
   levels_.clear();
+  forgetLight();
   const int x = static_cast<int>(roi.x) - reference.origin().x;
   const int y = static_cast<int>(roi.y) - reference.origin().y;
   const int right = x + static_cast<int>(roi.width) - 1;
@@ -57,6 +65,8 @@ void Esm::setReference(const image::RegionPyramid& reference, const geometry::Re
     level.value = reference.level(l)(patch).clone();
     image::gradients(level.value, level.gx, level.gy);
     level.weight = cv::Mat1f::ones(patch.size());
+    level.blocks = image::AreaGrid(patch.width, patch.height, blocksAlong(patch.height), blocksAlong(patch.width));
+    level.bias.assign(level.blocks.count(), 0.0);
     level.scale = size;
     level.first = begin * size - cv::Point(x, y);
     level.image_T_patch = scaling(size, roi.x + level.first.x, roi.y + level.first.y);
@@ -108,18 +118,48 @@ void Esm::warp(const image::RegionPyramid& current, const EsmLevel& level, int l
   image::gradients(warped_, gx_, gy_);
 }
 
-double Esm::residualScale(const EsmLevel& level, const EsmState& state) {
-  samples_.clear();
-  const std::size_t pixels = level.value.total();
-  const int stride = static_cast<int>(std::max<std::size_t>(1, pixels / kMaxSamples));
+void Esm::forgetLight() { light_known_ = false; }
+
+void Esm::startLight(EsmLevel& level, const EsmState& state) {
+  for (int row = 0; row < level.blocks.rows(); ++row) {
+    for (int column = 0; column < level.blocks.columns(); ++column) {
+      double sum = 0.0;
+      double weight = 0.0;
+      for (int j = level.blocks.rowBegin(row); j < level.blocks.rowBegin(row + 1); ++j) {
+        for (int i = level.blocks.columnBegin(column); i < level.blocks.columnBegin(column + 1); ++i) {
+          const double w = level.weight(j, i) * valid_(j, i);
+          sum += w * (level.value(j, i) - state.gain * warped_(j, i));
+          weight += w;
+        }
+      }
+      level.bias[row * level.blocks.columns() + column] = weight > 0.0 ? sum / weight : state.bias;
+    }
+  }
+}
+
+void Esm::computeResidual(const EsmLevel& level, const EsmState& state) {
+  residual_.create(level.value.size());
   const float gain = static_cast<float>(state.gain);
-  const float bias = static_cast<float>(state.bias);
+  for (int j = 0; j < level.value.rows; ++j) {
+    const float* t = level.value.ptr<float>(j);
+    const float* image = warped_.ptr<float>(j);
+    float* r = residual_.ptr<float>(j);
+    const double* bias = level.bias.data() + level.blocks.rowOf(j) * level.blocks.columns();
+    for (int column = 0; column < level.blocks.columns(); ++column) {
+      const float b = static_cast<float>(bias[column]);
+      const int end = level.blocks.columnBegin(column + 1);
+      for (int k = level.blocks.columnBegin(column); k < end; ++k) r[k] = gain * image[k] + b - t[k];
+    }
+  }
+}
+
+double Esm::residualScale(const EsmLevel& level) {
+  samples_.clear();
+  const int stride = static_cast<int>(std::max<std::size_t>(1, level.value.total() / kMaxSamples));
   // A stride along the rows that starts elsewhere in each row, so that no pattern of the image is preferred.
   for (int j = 0; j < level.value.rows; ++j) {
     for (int i = (j * 7) % stride; i < level.value.cols; i += stride) {
-      if (level.weight(j, i) * valid_(j, i) > 0.0f) {
-        samples_.push_back(std::abs(gain * warped_(j, i) + bias - level.value(j, i)));
-      }
+      if (level.weight(j, i) * valid_(j, i) > 0.0f) samples_.push_back(std::abs(residual_(j, i)));
     }
   }
   if (samples_.empty()) return kMinSigma;
@@ -129,50 +169,55 @@ double Esm::residualScale(const EsmLevel& level, const EsmState& state) {
 }
 
 void Esm::accumulate(const EsmLevel& level, const EsmState& state, double sigma) {
-  const int width = level.value.cols;
-  for (std::vector<float>* row : {&row_gx_, &row_gy_, &row_residual_, &row_intensity_, &row_weight_}) row->resize(width);
   const float gain = static_cast<float>(state.gain);
-  const float bias = static_cast<float>(state.bias);
   const float half_per_unit = static_cast<float>(0.5 * half_size_ / level.scale);
   const float rejection = config_.robust ? static_cast<float>(1.0 / (kTukey * sigma)) : 0.0f;
   const Eigen::Matrix3d unit_T_patch = n_ * level.image_T_patch;
+  for (std::vector<float>* row : {&row_gx_, &row_gy_, &row_intensity_, &row_weight_}) row->resize(level.value.cols);
   PixelRow row;
-  row.count = width;
-  row.u0 = static_cast<float>(unit_T_patch(0, 2));
   row.du = static_cast<float>(unit_T_patch(0, 0));
   row.gx = row_gx_.data();
   row.gy = row_gy_.data();
-  row.residual = row_residual_.data();
   row.intensity = row_intensity_.data();
   row.weight = row_weight_.data();
-  equations_.reset();
-  for (int j = 0; j < level.value.rows; ++j) {
-    const float* t = level.value.ptr<float>(j);
-    const float* i = warped_.ptr<float>(j);
-    const float* tx = level.gx.ptr<float>(j);
-    const float* ty = level.gy.ptr<float>(j);
-    const float* ix = gx_.ptr<float>(j);
-    const float* iy = gy_.ptr<float>(j);
-    const float* w = level.weight.ptr<float>(j);
-    const float* valid = valid_.ptr<float>(j);
+  equations_.reset(config_.light);
+  block_sums_.clear();
+  for (int block_row = 0; block_row < level.blocks.rows(); ++block_row) {
+    for (int column = 0; column < level.blocks.columns(); ++column) {
+      const int begin = level.blocks.columnBegin(column);
+      row.count = level.blocks.columnBegin(column + 1) - begin;
+      row.u0 = static_cast<float>(unit_T_patch(0, 2) + unit_T_patch(0, 0) * begin);
+      for (int j = level.blocks.rowBegin(block_row); j < level.blocks.rowBegin(block_row + 1); ++j) {
+        const float* t = level.value.ptr<float>(j) + begin;
+        const float* image = warped_.ptr<float>(j) + begin;
+        const float* tx = level.gx.ptr<float>(j) + begin;
+        const float* ty = level.gy.ptr<float>(j) + begin;
+        const float* ix = gx_.ptr<float>(j) + begin;
+        const float* iy = gy_.ptr<float>(j) + begin;
+        const float* w = level.weight.ptr<float>(j) + begin;
+        const float* valid = valid_.ptr<float>(j) + begin;
+        const float* r = residual_.ptr<float>(j) + begin;
 #pragma omp simd
-    for (int k = 0; k < width; ++k) {
-      const float r = gain * i[k] + bias - t[k];
-      const float e = r * rejection;
-      const float tukey = std::max(0.0f, 1.0f - e * e);
-      row_residual_[k] = r;
-      row_intensity_[k] = 0.5f * (i[k] + t[k]);
-      row_gx_[k] = half_per_unit * (gain * ix[k] + tx[k]);  // the mean of both gradients makes the step second-order
-      row_gy_[k] = half_per_unit * (gain * iy[k] + ty[k]);
-      row_weight_[k] = w[k] * valid[k] * tukey * tukey;
+        for (int k = 0; k < row.count; ++k) {
+          const float e = r[k] * rejection;
+          const float tukey = std::max(0.0f, 1.0f - e * e);
+          row_intensity_[k] = 0.5f * (image[k] + t[k]);
+          row_gx_[k] = half_per_unit * (gain * ix[k] + tx[k]);  // the mean of both gradients makes the step second-order
+          row_gy_[k] = half_per_unit * (gain * iy[k] + ty[k]);
+          row_weight_[k] = w[k] * valid[k] * tukey * tukey;
+        }
+        row.residual = r;
+        row.v = unit_T_patch(1, 1) * j + unit_T_patch(1, 2);
+        equations_.add(row);
+      }
+      equations_.endBlock();
+      block_sums_.push_back({equations_.blockWeight(), equations_.blockResidual(), equations_.blockJacobian()});
     }
-    row.v = unit_T_patch(1, 1) * j + unit_T_patch(1, 2);
-    equations_.add(row, config_.illumination);
   }
 }
 
-bool Esm::solve(EsmState& state, double& step) {
-  const Matrix10d a = equations_.matrix();
+bool Esm::solve(EsmLevel& level, EsmState& state, double& step) {
+  const Matrix10d& a = equations_.matrix();
   // Unit diagonal first: grey levels and normalised coordinates have nothing to do with each other.
   const Vector10d d = a.diagonal().cwiseMax(1e-12).cwiseSqrt().cwiseInverse();
   const Eigen::LDLT<Matrix10d> factors(d.asDiagonal() * a * d.asDiagonal());
@@ -185,6 +230,19 @@ bool Esm::solve(EsmState& state, double& step) {
   state.g /= std::cbrt(state.g.determinant());
   state.gain += x[8];
   state.bias += x[9];
+  double bias = 0.0;
+  double weight = 0.0;
+  for (std::size_t k = 0; k < block_sums_.size(); ++k) {
+    const BlockSums& sums = block_sums_[k];
+    if (config_.light == Light::kLocal && sums.weight > 0.0) {
+      level.bias[k] -= (sums.residual + sums.jacobian.dot(x)) / sums.weight;
+      bias += sums.weight * level.bias[k];
+      weight += sums.weight;
+    } else {
+      level.bias[k] = state.bias;
+    }
+  }
+  if (weight > 0.0) state.bias = bias / weight;
   const geometry::Quadrilateral after = geometry::apply(state.g, roi_.corners());
   step = 0.0;
   for (int k = 0; k < 4; ++k) step = std::max(step, (after[k] - before[k]).norm());
@@ -214,6 +272,7 @@ double Esm::referenceCornerError(double sigma) {
   level.gx.copyTo(gx_);
   level.gy.copyTo(gy_);
   valid_ = cv::Mat1f::ones(level.value.size());
+  computeResidual(level, EsmState());
   accumulate(level, EsmState(), sigma);
   return predictedCornerError(std::sqrt(2.0) * sigma);
 }
@@ -223,7 +282,7 @@ EsmResult Esm::align(const image::RegionPyramid& current, const EsmState& start,
   result.state = start;
   result.corner_error = std::numeric_limits<double>::infinity();
   for (int l = std::min({coarsest, levels() - 1, current.levels() - 1}); l >= finest; --l) {
-    const EsmLevel& level = levels_[l];
+    EsmLevel& level = levels_[l];
     const double min_step = l == finest ? config_.min_step : std::max(config_.min_step, 0.1 * level.scale);
     result.status = EsmStatus::kMaxIterations;
     for (int k = 0; k < config_.max_iterations; ++k) {
@@ -232,10 +291,12 @@ EsmResult Esm::align(const image::RegionPyramid& current, const EsmState& start,
         return result;
       }
       warp(current, level, l, result.state.g);
-      result.sigma = residualScale(level, result.state);
+      if (k == 0 && !(light_known_ && config_.light == Light::kLocal)) startLight(level, result.state);
+      computeResidual(level, result.state);
+      result.sigma = residualScale(level);
       accumulate(level, result.state, result.sigma);
       ++result.iterations;
-      if (!solve(result.state, result.last_step)) {
+      if (!solve(level, result.state, result.last_step)) {
         result.status = EsmStatus::kIllConditioned;
         return result;
       }
@@ -245,6 +306,7 @@ EsmResult Esm::align(const image::RegionPyramid& current, const EsmState& start,
       }
     }
   }
+  light_known_ = true;
   result.corner_error = predictedCornerError(result.sigma);
   return result;
 }

@@ -34,16 +34,16 @@ double single(const Monomial& s, const double* moments) {
 struct RowSums {
   float xx[5], xy[5], yy[5];
   float xr[3], yr[3], xm[3], ym[3], x1[3], y1[3];
-  float w, m, mm, r, mr, rr;
+  float w, m, mm, r, mr;
 };
 
 void sumGeometry(const PixelRow& p, RowSums& s) {
   float xx0 = 0, xx1 = 0, xx2 = 0, xx3 = 0, xx4 = 0;
   float xy0 = 0, xy1 = 0, xy2 = 0, xy3 = 0, xy4 = 0;
   float yy0 = 0, yy1 = 0, yy2 = 0, yy3 = 0, yy4 = 0;
-  float xr0 = 0, xr1 = 0, xr2 = 0, yr0 = 0, yr1 = 0, yr2 = 0, w_sum = 0, rr = 0;
+  float xr0 = 0, xr1 = 0, xr2 = 0, yr0 = 0, yr1 = 0, yr2 = 0, w_sum = 0;
 #pragma omp simd reduction(+ : xx0, xx1, xx2, xx3, xx4, xy0, xy1, xy2, xy3, xy4, yy0, yy1, yy2, yy3, yy4, xr0, xr1, xr2, \
-                               yr0, yr1, yr2, w_sum, rr)
+                               yr0, yr1, yr2, w_sum)
   for (int i = 0; i < p.count; ++i) {
     const float u = p.u0 + p.du * static_cast<float>(i);
     const float u2 = u * u;
@@ -78,10 +78,9 @@ void sumGeometry(const PixelRow& p, RowSums& s) {
     yr1 += yr * u;
     yr2 += yr * u2;
     w_sum += w;
-    rr += w * r * r;
   }
   s = {{xx0, xx1, xx2, xx3, xx4}, {xy0, xy1, xy2, xy3, xy4}, {yy0, yy1, yy2, yy3, yy4}, {xr0, xr1, xr2}, {yr0, yr1, yr2},
-       {}, {}, {}, {}, w_sum, 0, 0, 0, 0, rr};
+       {}, {}, {}, {}, w_sum, 0, 0, 0, 0};
 }
 
 void sumIllumination(const PixelRow& p, RowSums& s) {
@@ -136,13 +135,19 @@ Eigen::Matrix<double, 1, 8> esmJacobianRow(double gx, double gy, double u, doubl
   return j;
 }
 
-void NormalEquations::reset() { sums_ = {}; }
+void NormalEquations::reset(Light light) {
+  light_ = light;
+  sums_ = {};
+  matrix_.setZero();
+  vector_.setZero();
+  if (light == Light::kConstant) matrix_(8, 8) = 1.0;
+  if (light != Light::kGlobal) matrix_(9, 9) = 1.0;
+}
 
-void NormalEquations::add(const PixelRow& row, bool illumination) {
-  illumination_ = illumination;
+void NormalEquations::add(const PixelRow& row) {
   RowSums s;
   sumGeometry(row, s);
-  if (illumination) sumIllumination(row, s);
+  if (light_ != Light::kConstant) sumIllumination(row, s);
   double power = 1.0;  // v^b
   for (int b = 0; b <= 4; ++b, power *= row.v) {
     for (int a = 0; a + b <= 4; ++a) {
@@ -155,7 +160,6 @@ void NormalEquations::add(const PixelRow& row, bool illumination) {
       const int k = indexOfDegree2(a, b);
       sums_.xr[k] += power * s.xr[a];
       sums_.yr[k] += power * s.yr[a];
-      if (!illumination) continue;
       sums_.xm[k] += power * s.xm[a];
       sums_.ym[k] += power * s.ym[a];
       sums_.x1[k] += power * s.x1[a];
@@ -163,42 +167,46 @@ void NormalEquations::add(const PixelRow& row, bool illumination) {
     }
   }
   sums_.w += s.w;
-  sums_.rr += s.rr;
-  if (!illumination) return;
   sums_.m += s.m;
   sums_.mm += s.mm;
   sums_.r += s.r;
   sums_.mr += s.mr;
 }
 
-Matrix10d NormalEquations::matrix() const {
-  Matrix10d m = Matrix10d::Identity();
+void NormalEquations::endBlock() {
+  block_jacobian_.setZero();
   for (int k = 0; k < 8; ++k) {
     for (int l = k; l < 8; ++l) {
-      m(k, l) = product(kP[k], kP[l], sums_.xx) + product(kP[k], kQ[l], sums_.xy) + product(kQ[k], kP[l], sums_.xy) +
-                product(kQ[k], kQ[l], sums_.yy);
-      m(l, k) = m(k, l);
+      const double sum = product(kP[k], kP[l], sums_.xx) + product(kP[k], kQ[l], sums_.xy) + product(kQ[k], kP[l], sums_.xy) +
+                         product(kQ[k], kQ[l], sums_.yy);
+      matrix_(k, l) += sum;
+      if (k != l) matrix_(l, k) += sum;
     }
-    if (!illumination_) continue;
-    m(k, 8) = m(8, k) = single(kP[k], sums_.xm) + single(kQ[k], sums_.ym);
-    m(k, 9) = m(9, k) = single(kP[k], sums_.x1) + single(kQ[k], sums_.y1);
+    vector_[k] += single(kP[k], sums_.xr) + single(kQ[k], sums_.yr);
+    block_jacobian_[k] = single(kP[k], sums_.x1) + single(kQ[k], sums_.y1);
   }
-  if (illumination_) {
-    m(8, 8) = sums_.mm;
-    m(8, 9) = m(9, 8) = sums_.m;
-    m(9, 9) = sums_.w;
+  block_weight_ = sums_.w;
+  block_residual_ = sums_.r;
+  if (light_ != Light::kConstant) {
+    for (int k = 0; k < 8; ++k) {
+      const double sum = single(kP[k], sums_.xm) + single(kQ[k], sums_.ym);
+      matrix_(k, 8) += sum;
+      matrix_(8, k) += sum;
+    }
+    matrix_(8, 8) += sums_.mm;
+    vector_[8] += sums_.mr;
+    block_jacobian_[8] = sums_.m;
   }
-  return m;
-}
-
-Vector10d NormalEquations::vector() const {
-  Vector10d x = Vector10d::Zero();
-  for (int k = 0; k < 8; ++k) x[k] = single(kP[k], sums_.xr) + single(kQ[k], sums_.yr);
-  if (illumination_) {
-    x[8] = sums_.mr;
-    x[9] = sums_.r;
+  if (light_ == Light::kGlobal) {
+    matrix_.col(9).head<9>() += block_jacobian_.head<9>();
+    matrix_.row(9).head<9>() += block_jacobian_.head<9>();
+    matrix_(9, 9) += sums_.w;
+    vector_[9] += sums_.r;
+  } else if (light_ == Light::kLocal && sums_.w > 0.0) {
+    matrix_ -= block_jacobian_ * block_jacobian_.transpose() / sums_.w;
+    vector_ -= block_jacobian_ * sums_.r / sums_.w;
   }
-  return x;
+  sums_ = {};
 }
 
 }  // namespace laparoscope_servo::tracking

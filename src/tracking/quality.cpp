@@ -9,7 +9,7 @@ namespace laparoscope_servo::tracking {
 namespace {
 
 // px: an alignment that still moves by less than this after all its iterations is as good as converged.
-constexpr double kNearlyConverged = 0.25;
+constexpr double kNearlyConverged = 1.0;
 
 std::string text(const char* what, double value, const char* limit, double bound) {
   std::ostringstream stream;

@@ -9,6 +9,8 @@
 
 #include <Eigen/Core>
 
+#include "laparoscope_servo/tracking/tracker_config.h"
+
 namespace laparoscope_servo::tracking {
 
 // Order of the unknowns: x_1 .. x_8 of sl(3), then the changes of gain and bias.
@@ -33,16 +35,20 @@ struct PixelRow {
 
 class NormalEquations {
  public:
-  void reset();
-  // Illumination costs about twice as much: without it the last two unknowns are left out, and their block is the identity.
-  void add(const PixelRow& row, bool illumination);
+  // Starts a sum. Blocks follow: rows of pixels, then endBlock().
+  void reset(Light light);
+  void add(const PixelRow& row);
+  // Adds the rows since the last call. With Light::kLocal the block's own bias is eliminated: what remains are the equations
+  // of the other unknowns at the bias that is best for them.
+  void endBlock();
 
-  // J'WJ and J'Wr of everything added since reset().
-  Matrix10d matrix() const;
-  Vector10d vector() const;
-  double weightSum() const { return sums_.w; }
-  // sum w r^2
-  double cost() const { return sums_.rr; }
+  // J'WJ and J'Wr of all blocks. Unknowns that `light` does not have get a row of the identity, and 0.
+  const Matrix10d& matrix() const { return matrix_; }
+  const Vector10d& vector() const { return vector_; }
+  // sum w of the last block, sum w r, and sum w J: the best bias of a block after a step x changes by -(sum w r + sum w J x) / sum w.
+  double blockWeight() const { return block_weight_; }
+  double blockResidual() const { return block_residual_; }
+  const Vector10d& blockJacobian() const { return block_jacobian_; }
 
  private:
   static constexpr int kSecond = 15;  // monomials u^a v^b with a + b <= 4
@@ -52,10 +58,15 @@ class NormalEquations {
     double xr[kFirst], yr[kFirst];  // gradient times residual
     double xm[kFirst], ym[kFirst];  // gradient times intensity
     double x1[kFirst], y1[kFirst];  // gradient
-    double w, m, mm, r, mr, rr;
+    double w, m, mm, r, mr;
   };
   Sums sums_ = {};
-  bool illumination_ = false;
+  Light light_ = Light::kConstant;
+  Matrix10d matrix_ = Matrix10d::Identity();
+  Vector10d vector_ = Vector10d::Zero();
+  Vector10d block_jacobian_ = Vector10d::Zero();
+  double block_weight_ = 0.0;
+  double block_residual_ = 0.0;
 };
 
 }  // namespace laparoscope_servo::tracking

@@ -13,6 +13,13 @@ enum class ColourGate {
   kNormalised,  // the same divided by the pixel's intensity: bears changes of brightness
 };
 
+// How the light of the image and that of the reference are related.
+enum class Light {
+  kConstant,  // not at all: the residual is their difference
+  kGlobal,    // one gain, one bias
+  kLocal,     // one gain, a bias for each block of 16 x 16 px: shading and shadows that move do not pull the estimate
+};
+
 struct OcclusionConfig {
   ColourGate colour = ColourGate::kNormalised;
   int rows = 14;           // 2 to 64; 14 x 14 = 196 areas in the paper
@@ -27,7 +34,7 @@ struct EsmConfig {
   int levels = 3;            // 1 to 6, of the pyramid; a level twice as coarse each
   int max_iterations = 10;   // 1 to 100, per level
   double min_step = 0.02;    // px, 0.0001 to 1: converged when no corner of the ROI moves by more in an iteration
-  bool illumination = true;  // estimate a gain and a bias with the motion
+  Light light = Light::kLocal;
   bool robust = true;        // Tukey's weights on the residuals
   int saturation = 250;      // 1 to 256 grey levels: pixels as bright as this in any channel weigh nothing; 256 turns it off
   bool adapt_channel = true; // track the combination of colours that varies most across the ROI; false: luma
