@@ -37,14 +37,14 @@ DemoConfig demoConfig(ParameterReader& reader) {
   reader.read("cross_instrument", config.cross_instrument);
   reader.read("startup_timeout", config.startup_timeout, 1.0, 600.0);
   reader.read("timeout", config.timeout, 1.0, 600.0);
-  config.kinematics = readEmulatorConfig(reader).kinematics;
+  config.emulator = readEmulatorConfig(reader);
   return config;
 }
 
 DemoDirector::DemoDirector(ros::NodeHandle node, const DemoConfig& config)
     : config_(config),
       node_(node),
-      kinematics_(config.kinematics),
+      kinematics_(config.emulator.kinematics),
       settling_(config.settled_error, config.settled_scale, config.settled_time) {
   camera_info_subscriber_ = node_.subscribe<sensor_msgs::CameraInfo>(
       "camera/camera_info", 1, [this](const sensor_msgs::CameraInfoConstPtr& info) { camera_info_ = *info; });
@@ -111,6 +111,10 @@ Eigen::Isometry3d DemoDirector::truePose() {
   return kinematics_.optical(emulator_->state().q);
 }
 
+PoseError DemoDirector::truth() {
+  return poseError(start_pose_, truePose(), config_.emulator.arm.insertion_point);
+}
+
 void DemoDirector::waitForNodes() {
   waitFor("the emulated arm at " + config_.control, config_.startup_timeout, [this] {
     try {
@@ -154,7 +158,7 @@ void DemoDirector::moveByHand() {
   if (homography_->state != Homography::TRACKING) throw Failed("the ROI was lost while the scope was moved by hand");
   summary_.start_error_px = error_.centre;
   summary_.start_scale_error = error_.scale;
-  summary_.start_truth = poseError(start_pose_, truePose());
+  summary_.start_truth = truth();
 }
 
 void DemoDirector::closeLoop() {
@@ -176,6 +180,7 @@ void DemoDirector::crossInstrument() {
   // It is over when the region was partly covered and is not any more.
   waitFor("the instrument in front of the ROI", config_.timeout,
           [this] { return summary_.crossing_visible_fraction < 0.9; });
+  ROS_INFO("the instrument is in front of the region");
   waitFor("the end of the crossing", config_.timeout,
           [this] { return homography_->state == Homography::TRACKING && homography_->visible_fraction > 0.95; });
   crossing_ = false;
@@ -187,7 +192,7 @@ void DemoDirector::crossInstrument() {
 void DemoDirector::finish() {
   summary_.final_error_px = error_.centre;
   summary_.final_scale_error = error_.scale;
-  summary_.final_truth = poseError(start_pose_, truePose());
+  summary_.final_truth = truth();
 }
 
 }  // namespace laparoscope_servo::skin

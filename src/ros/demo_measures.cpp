@@ -48,10 +48,13 @@ ViewError viewError(const Homography& message, const geometry::Rectangle& roi) {
   return {(geometry::apply(g, roi.centre()) - roi.centre()).norm(), std::abs(std::sqrt(area / reference_area) - 1.0)};
 }
 
-PoseError poseError(const Eigen::Isometry3d& base_T_reference, const Eigen::Isometry3d& base_T_camera) {
+PoseError poseError(const Eigen::Isometry3d& base_T_reference, const Eigen::Isometry3d& base_T_camera,
+                    const Eigen::Vector3d& insertion_point) {
   const Eigen::Isometry3d difference = base_T_reference.inverse() * base_T_camera;
   const Eigen::Vector3d axis = difference.linear().col(2);
-  return {std::atan2(axis.head<2>().norm(), axis.z()), difference.translation().z(),
+  const double reference_depth = (base_T_reference.translation() - insertion_point).norm();
+  return {std::atan2(axis.head<2>().norm(), axis.z()),
+          (base_T_camera.translation() - insertion_point).norm() - reference_depth,
           difference.translation().head<2>().norm()};
 }
 

@@ -88,7 +88,7 @@ cv::Mat tissueTexture(int side, std::uint64_t seed) {
   blend(image, vessels(side, random) * 0.7, {40.0F, 28.0F, 110.0F});
 
   const cv::Mat1f fine = fractalNoise(side, 32, side / 2, 0.65F, random);
-  image.forEach([&](cv::Vec3f& pixel, const int* at) { pixel *= 0.45F + 1.1F * fine(at[0], at[1]); });
+  image.forEach([&](cv::Vec3f& pixel, const int* at) { pixel *= 0.2F + 1.6F * fine(at[0], at[1]); });
   cv::Mat result;
   image.convertTo(result, CV_8UC3);
   return result;

@@ -21,6 +21,7 @@
 #include "laparoscope_servo/aesop/kinematics.h"
 #include "laparoscope_servo/ros/demo_measures.h"
 #include "laparoscope_servo/ros/parameters.h"
+#include "laparoscope_servo/sim/emulator.h"
 #include "laparoscope_servo/sim/emulator_control_client.h"
 
 namespace laparoscope_servo::skin {
@@ -40,7 +41,7 @@ struct DemoConfig {
   bool cross_instrument = true;        // once it has settled
   double startup_timeout = 60.0;       // s, 1 to 600: for the nodes to be there
   double timeout = 90.0;               // s, 1 to 600: for each of the loop's tasks
-  aesop::KinematicsConfig kinematics;  // config/aesop.yaml
+  sim::EmulatorConfig emulator;     // config/aesop.yaml, kinematics, and config/emulator.yaml
 };
 
 // Reads the private parameters; errors stay in the reader.
@@ -72,6 +73,7 @@ class DemoDirector {
   void waitFor(const std::string& what, double timeout, const std::function<bool()>& condition);
   void onHomography(const Homography& message);
   Eigen::Isometry3d truePose();
+  PoseError truth();
   template <typename Service>
   void call(const std::string& name, Service service);
 

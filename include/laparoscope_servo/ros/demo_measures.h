@@ -19,14 +19,16 @@ struct ViewError {
 // From g of the message, which has to be in the state TRACKING.
 ViewError viewError(const Homography& message, const geometry::Rectangle& roi);
 
-// How far the camera is from another pose, in the other's frame.
+// How far the camera is from another pose.
 struct PoseError {
   double angle = 0.0;    // rad, between the optical axes
-  double depth = 0.0;    // m, along the other's optical axis, positive: deeper
-  double lateral = 0.0;  // m, across it
+  double depth = 0.0;    // m, of d2, the distance from the insertion point; positive: deeper
+  double lateral = 0.0;  // m, across the other pose's optical axis
 };
 
-PoseError poseError(const Eigen::Isometry3d& base_T_reference, const Eigen::Isometry3d& base_T_camera);
+// `insertion_point` in the base [m].
+PoseError poseError(const Eigen::Isometry3d& base_T_reference, const Eigen::Isometry3d& base_T_camera,
+                    const Eigen::Vector3d& insertion_point);
 
 // Says when the error has become small and stays so.
 class Settling {
