@@ -109,7 +109,8 @@ void ParameterReader::read(const std::string& path, double& value, double minimu
   const XmlRpcValue* found = take(path);
   if (found == nullptr) return;
   std::ostringstream range;
-  range << "a number from " << minimum << " to " << maximum;
+  range << "a number";
+  if (std::isfinite(minimum) || std::isfinite(maximum)) range << " from " << minimum << " to " << maximum;
   double result = 0.0;
   if (!number(*found, result)) return wrongType(path, *found, range.str());
   if (!(result >= minimum && result <= maximum)) {
@@ -205,7 +206,7 @@ void ParameterReader::refuseUnknown(const std::string& group) {
   const XmlRpcValue* value = find(group);
   if (value == nullptr || value->getType() != XmlRpcValue::TypeStruct) return;
   for (const auto& member : (*value)) {
-    const std::string path = group + "/" + member.first;
+    const std::string path = group.empty() ? member.first : group + "/" + member.first;
     if (member.second.getType() == XmlRpcValue::TypeStruct) {
       refuseUnknown(path);
     } else if (read_.count(path) == 0) {

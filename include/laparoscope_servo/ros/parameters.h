@@ -36,6 +36,7 @@ class ParameterReader {
   // Adds an error when the parameter is absent.
   void require(const std::string& path, const std::string& what);
   // Adds an error for each parameter under `group` that nobody has read: a typing error in a file must not go unnoticed.
+  // An empty `group` stands for the root.
   void refuseUnknown(const std::string& group);
   void addError(const std::string& error) { errors_.push_back(error); }
   void addErrors(const std::vector<std::string>& errors) { errors_.insert(errors_.end(), errors.begin(), errors.end()); }

@@ -6,46 +6,58 @@
 
 namespace laparoscope_servo::tracking {
 
-// Which feature the colour histograms of the areas are made of.
-enum class AreaFeature {
-  kHueSaturation,            // S0 cos H as published, eq. (4) and (5)
-  kHueSaturationNormalised,  // the same divided by the pixel's intensity: bears a change of brightness
+// What the histograms of the areas are made of, before ESM.
+enum class ColourGate {
+  kOff,
+  kPublished,   // S0 cos H, eq. (4) and (5) of Bourger et al. (2007)
+  kNormalised,  // the same divided by the pixel's intensity: bears changes of brightness
+};
+
+// How the light of the image and that of the reference are related.
+enum class Light {
+  kConstant,  // not at all: the residual is their difference
+  kGlobal,    // one gain, one bias
+  kLocal,     // one gain, a bias for each block of 16 x 16 px: shading and shadows that move do not pull the estimate
 };
 
 struct OcclusionConfig {
-  bool enabled = true;
-  AreaFeature feature = AreaFeature::kHueSaturation;
+  ColourGate colour = ColourGate::kNormalised;
   int rows = 14;           // 2 to 64; 14 x 14 = 196 areas in the paper
   int columns = 14;        // 2 to 64
   int bins = 32;           // 4 to 256, m of eq. (1)
-  double threshold = 0.5;  // 0 to 1, tau_b
+  double threshold = 0.5;  // 0 to 1, tau_b: an area at a greater distance (2) is occluded
+  bool structure = true;   // after ESM, areas that do not correlate with the reference are occluded, too
+  int hold = 2;            // 0 to 100 images: how long an area that failed the structure gate stays out
 };
 
 struct EsmConfig {
-  int levels = 3;               // 1 to 6, of the pyramid; a level twice as coarse each
-  int max_iterations = 10;      // 1 to 100, per level
-  double min_step = 0.02;       // px, > 0: converged when no corner of the ROI moves by more in an iteration
-  bool illumination = true;     // estimate gain and bias with the motion
-  int saturation = 250;         // 1 to 256 grey levels: brighter pixels (any channel) weigh nothing; 256 turns it off
+  int levels = 3;            // 1 to 6, of the pyramid; a level twice as coarse each
+  int max_iterations = 10;   // 1 to 100, per level
+  double min_step = 0.02;    // px, 0.0001 to 1: converged when no corner of the ROI moves by more in an iteration
+  Light light = Light::kLocal;
+  bool robust = true;        // Tukey's weights on the residuals
+  int saturation = 250;      // 1 to 256 grey levels: pixels as bright as this in any channel weigh nothing; 256 turns it off
+  bool adapt_channel = true; // track the combination of colours that varies most across the ROI; false: luma
 };
 
 // When an estimate is believed.
 struct QualityConfig {
-  double min_zncc = 0.6;              // -1 to 1
-  double min_visible_fraction = 0.1;  // 0 to 1, of the ROI
-  double max_area_ratio = 4.0;        // > 1: the ROI's area in the image over that in the reference, or its inverse
-  double max_jump = 0.35;             // > 0, of the ROI's diagonal: how far a corner may move between images
-  double min_spread = 0.02;           // 0 to 1: smallest over largest eigenvalue of the visible pixels' covariance in the ROI's frame
-  double max_search_time = 2.0;       // s, > 0: SEARCHING for longer is LOST
-  int confirmations = 2;              // 1 to 100: consecutive good images before SEARCHING or LOST become TRACKING again
+  double min_zncc = 0.7;              // 0 to 1, over the pixels used
+  double min_visible_fraction = 0.1;  // 0 to 1, share of the ROI's pixels used
+  double max_corner_error = 1.5;      // px, 0.01 to 100: standard deviation of the worst corner that the residuals predict
+  double max_area_ratio = 6.0;        // 1.01 to 1000: area of the ROI in the image over that in the reference, or its inverse
+  double max_jump = 0.35;             // 0.01 to 10 of the ROI's diagonal: how far a corner may be from its prediction
+  double max_search_time = 2.0;       // s, 0 to 3600: SEARCHING for longer is LOST
+  int confirmations = 2;              // 1 to 100 images in a row that pass every test, before TRACKING is said again
 };
 
 struct TrackerConfig {
   OcclusionConfig occlusion;
   EsmConfig esm;
   QualityConfig quality;
-  double min_roi_side = 16.0;     // px, >= 8
-  double min_contrast = 2.0;      // grey levels: root mean square gradient per pixel that a ROI must have
+  double velocity_damping = 0.8;  // 0 to 1: share of the last motion that is expected to go on
+  int min_roi_side = 16;          // px, 8 to 1000
+  double min_texture = 0.5;       // px, 0.01 to 10: corner error that two grey levels of noise may cause in a ROI
 };
 
 // Every error, each naming the field, its value and what was expected. Empty when the configuration can be used.

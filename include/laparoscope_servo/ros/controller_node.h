@@ -1,0 +1,61 @@
+// The controller as a node: task error and tf in, scope velocity out.
+//
+// Subscribes `task_error` (TaskError); publishes `servo_command` (ScopeVelocity, at a fixed rate, zero unless the arm
+// may move), `~state` (ControllerState, latched) and diagnostics; service `~engage` (std_srvs/SetBool). d2 comes from
+// tf. The rate and all ages run on a steady clock: ROS time that stands still or jumps back stops the arm. Not
+// thread-safe: one thread calls all callbacks.
+#pragma once
+
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <laparoscope_servo/TaskError.h>
+#include <ros/ros.h>
+#include <std_srvs/SetBool.h>
+#include <tf2_ros/transform_listener.h>
+
+#include "laparoscope_servo/ros/controller_parameters.h"
+#include "laparoscope_servo/ros/stamp_watch.h"
+#include "laparoscope_servo/servo/controller.h"
+
+namespace laparoscope_servo::skin {
+
+class ControllerNode {
+ public:
+  // Throws std::invalid_argument when the configuration is not valid.
+  ControllerNode(ros::NodeHandle node, ros::NodeHandle private_node, const ControllerNodeConfig& config);
+
+  // Disengages and publishes zeros. For the end of the process: call it while publishers are still open.
+  void stop();
+
+ private:
+  void onTaskError(const TaskError& message);
+  bool onEngage(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
+  void onTick();
+  void checkTime();
+  servo::ControllerInput input();
+  servo::DepthInput depth(double steady_now);
+  void publish(const servo::ControllerOutput& output);
+  void publishState(const servo::ControllerOutput& output);
+  void report(diagnostic_updater::DiagnosticStatusWrapper& status);
+
+  ControllerNodeConfig config_;
+  servo::Controller controller_;
+  servo::TaskErrorInput task_error_;
+  StampWatch task_error_watch_;
+  StampWatch depth_watch_;
+  ros::Time last_now_;
+  servo::ControllerInput last_input_;
+  servo::ControllerOutput last_output_;
+  bool state_published_ = false;
+
+  tf2_ros::Buffer tf_;
+  tf2_ros::TransformListener tf_listener_;
+  diagnostic_updater::Updater diagnostics_;
+  ros::Publisher command_publisher_;
+  ros::Publisher state_publisher_;
+  ros::Subscriber task_error_subscriber_;
+  ros::ServiceServer engage_service_;
+  ros::SteadyTimer tick_timer_;
+  ros::SteadyTimer diagnostics_timer_;
+};
+
+}  // namespace laparoscope_servo::skin

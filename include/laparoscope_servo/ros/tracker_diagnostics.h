@@ -1,0 +1,53 @@
+// What the tracker says on /diagnostics.
+#pragma once
+
+#include <diagnostic_updater/DiagnosticStatusWrapper.h>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "laparoscope_servo/ros/tracker_session.h"
+
+namespace laparoscope_servo::skin {
+
+// Times are seconds of any steady clock.
+class TrackerDiagnostics {
+ public:
+  explicit TrackerDiagnostics(const tracking::TrackerConfig& config) : config_(config) {}
+
+  void processed(double now, const Processed& processed, bool ignores_distortion);
+  // An image came that could not be used.
+  void refused(double now, const std::string& error);
+
+  // Level: OK while idle or tracking, WARN while searching, without images, or without intrinsics, ERROR when lost or
+  // when the newest image could not be used. Rate and times are those since the last call.
+  void fill(double now, diagnostic_updater::DiagnosticStatusWrapper& status);
+
+ private:
+  void summarise(double now, diagnostic_updater::DiagnosticStatusWrapper& status) const;
+  std::string colourGate() const;
+
+  struct Window {
+    double start = 0.0;
+    int images = 0;
+    double total_time = 0.0;
+    double longest_time = 0.0;
+  };
+
+  tracking::TrackerConfig config_;
+  Window window_;
+  std::uint64_t images_ = 0;
+  std::uint64_t refused_ = 0;
+  std::optional<double> last_image_;
+  std::string refusal_;  // of the newest image, empty when it was fine
+  std::string last_refusal_;
+  std::string last_reset_;
+  tracking::TrackResult result_;
+  std::string camera_error_;
+  bool has_camera_ = false;
+  bool has_colour_ = true;
+  bool ignores_distortion_ = false;
+};
+
+}  // namespace laparoscope_servo::skin

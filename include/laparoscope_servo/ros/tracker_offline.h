@@ -1,0 +1,42 @@
+// Tracks through a file of images, as fast as it goes, and writes what it found.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "laparoscope_servo/ros/image_source.h"
+#include "laparoscope_servo/ros/tracker_parameters.h"
+
+namespace laparoscope_servo::skin {
+
+struct OfflineOptions {
+  std::string input;  // see image_source.h
+  SourceOptions source;
+  TrackerParameters parameters;  // with a ROI
+  // Files to write; empty: none.
+  std::string csv;  // see tracker_csv.h
+  std::string
+      bag;  // Homography, TaskError, AreaSelection, ROI on the nodelet's topics, with the images' headers and times
+  std::string overlay;  // video
+};
+
+struct OfflineSummary {
+  std::size_t images = 0;             // processed
+  std::size_t refused = 0;            // not processed: each was reported
+  std::vector<std::size_t> by_state;  // images in each state, indexed by tracking::State
+  std::vector<double> times;          // s, of the tracker, per image
+};
+
+// Of the images so far.
+using OfflineProgress = std::function<void(const OfflineSummary& summary, std::size_t expected)>;
+// An image could not be processed and is left out.
+using OfflineReport = std::function<void(std::size_t frame, const std::string& error)>;
+
+// Throws std::runtime_error (SourceError for the input) or std::invalid_argument when nothing can be done: input,
+// outputs, ROI or parameters are not usable, or the first image is not.
+OfflineSummary trackOffline(const OfflineOptions& options, const OfflineProgress& progress,
+                            const OfflineReport& report);
+
+}  // namespace laparoscope_servo::skin

@@ -1,0 +1,76 @@
+// The tracker as ROS sees it: images and camera_info in, results that messages are made of out. The nodelet and the
+// offline tool both use it, so that they give the same numbers. Not thread-safe.
+#pragma once
+
+#include <ros/time.h>
+#include <sensor_msgs/CameraInfo.h>
+#include <sensor_msgs/Image.h>
+#include <std_msgs/Header.h>
+
+#include <opencv2/core.hpp>
+#include <optional>
+#include <string>
+
+#include "laparoscope_servo/geometry/camera.h"
+#include "laparoscope_servo/geometry/homography.h"
+#include "laparoscope_servo/ros/camera_info.h"
+#include "laparoscope_servo/ros/tracker_parameters.h"
+#include "laparoscope_servo/tracking/region_tracker.h"
+
+namespace laparoscope_servo::skin {
+
+// What is known of one image.
+struct Processed {
+  std_msgs::Header header;  // the image's
+  cv::Mat image;            // as the tracker took it, 8UC1 or 8UC3; may share the data of the message
+  tracking::TrackResult result;
+  ros::Time reference_stamp;
+  std::optional<geometry::PinholeCamera> camera;  // empty when H cannot be given
+  std::string camera_error;                       // why it cannot
+  std::string selection_error;                    // a ROI should have been selected in this image and was not: why
+  double processing_time = 0.0;                   // s, from the decoded image to the result
+};
+
+class TrackerSession {
+ public:
+  // `parameters` without errors; throws std::invalid_argument otherwise. The ROI of the parameters is selected in the
+  // first image where that is possible, and again after the time has jumped back (a looped bag), until another one is
+  // selected or reset() is called.
+  explicit TrackerSession(const TrackerParameters& parameters);
+
+  // Holds for the images that follow.
+  void setCameraInfo(const sensor_msgs::CameraInfo& info) { intrinsics_.set(info); }
+
+  // Processes the next image; `request` is a ROI to select in it. Throws ImageError or std::invalid_argument when the
+  // image cannot be used: the session then goes on as if it had not come. The message has to outlive the result's
+  // image.
+  Processed process(const sensor_msgs::Image& message,
+                    const std::optional<geometry::Rectangle>& request = std::nullopt);
+  // The same for an image that OpenCV decoded.
+  Processed process(const cv::Mat& decoded, const std_msgs::Header& header,
+                    const std::optional<geometry::Rectangle>& request = std::nullopt);
+
+  // Forgets the ROI, also that of the parameters.
+  void reset();
+
+  // Of the image processed last, with its size: see tracking::RegionTracker. All 0 while no ROI is selected.
+  cv::Mat occlusionMask() const;
+  // The camera has a lens distortion that nobody has taken out of the images.
+  bool ignoresDistortion() const { return intrinsics_.ignoresDistortion(); }
+  const TrackerParameters& parameters() const { return parameters_; }
+
+ private:
+  tracking::TrackResult track(Processed& processed, const std::optional<geometry::Rectangle>& request);
+  void complete(Processed& processed, const std::optional<geometry::Rectangle>& request);
+
+  TrackerParameters parameters_;
+  tracking::RegionTracker tracker_;
+  Intrinsics intrinsics_;
+  bool start_roi_pending_ = false;   // the parameters' ROI waits for its image
+  bool start_roi_in_force_ = false;  // nobody has chosen another one
+  std::optional<ros::Time> last_stamp_;
+  cv::Size image_size_;
+  ros::Time reference_stamp_;
+};
+
+}  // namespace laparoscope_servo::skin

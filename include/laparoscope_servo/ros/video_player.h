@@ -1,0 +1,74 @@
+// The node `video_player`: plays a video or a folder of images as a camera driver would publish them, and the time that
+// goes with them as `rosbag play --clock` would.
+//
+// Publishes: image_raw (sensor_msgs/Image), camera_info (sensor_msgs/CameraInfo; all zero when no calibration is given,
+// so that nobody takes it for one), and /clock. Stamps are first_stamp + frame / rate of the video, whatever the speed
+// at which it is played; everything is paced by a steady clock. At a loop, time jumps back as with a looped bag.
+#pragma once
+
+#include <image_transport/image_transport.h>
+#include <ros/ros.h>
+#include <sensor_msgs/CameraInfo.h>
+
+#include <chrono>
+#include <memory>
+#include <string>
+
+#include "laparoscope_servo/ros/image_source.h"
+#include "laparoscope_servo/ros/parameters.h"
+
+namespace laparoscope_servo::skin {
+
+struct VideoPlayerConfig {
+  std::string video;        // file, or folder of images
+  std::string camera_info;  // file of camera_calibration (YAML or INI); empty: intrinsics unknown
+  std::string frame_id = "laparoscope_optical";
+  double fps = 25.0;         // Hz, 0.1 to 1000, of a folder and of a video that does not tell its own
+  double speed = 1.0;        // 0.01 to 100: 2 plays twice as fast
+  double start = 0.0;        // s, >= 0: what comes before is skipped
+  double first_stamp = 1.0;  // s, > 0, of the video's first image: 0 means `no time` to ROS
+  bool loop = false;         // begin again at the end
+  bool restart_time = true;  // false: stamps go on at a loop instead of jumping back
+  bool clock = true;         // publish /clock
+  int subscribers = 1;       // 0 to 100: wait for so many of image_raw before the first image
+};
+
+// Reads the private parameters of the same names; errors stay in the reader.
+VideoPlayerConfig videoPlayerConfig(ParameterReader& reader);
+
+class VideoPlayer {
+ public:
+  // Throws SourceError when the video cannot be opened, std::runtime_error when the calibration cannot be read or is
+  // for images of another size.
+  VideoPlayer(ros::NodeHandle node, const VideoPlayerConfig& config);
+
+  // Plays until the end or the node's. Throws SourceError when the video is damaged or has no image at all.
+  void run();
+
+  std::size_t published() const { return published_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void waitForSubscribers() const;
+  void playOnce();
+  void waitUntil(double time);
+  void publish(const SourceImage& image, const ros::Time& stamp);
+  void publishClock(double time);
+  double stampOf(const SourceImage& image) const { return offset_ + image.header.stamp.toSec(); }
+
+  VideoPlayerConfig config_;
+  SourceOptions options_;
+  std::unique_ptr<ImageSource> source_;
+  sensor_msgs::CameraInfo camera_info_;
+  image_transport::ImageTransport transport_;
+  image_transport::CameraPublisher publisher_;
+  ros::Publisher clock_publisher_;
+  std::size_t published_ = 0;
+  double offset_ = 0.0;           // s, stamp of the video's time 0
+  double last_stamp_ = 0.0;       // s
+  double begin_stamp_ = 0.0;      // s, stamp that was due ...
+  Clock::time_point begin_time_;  // ... at this time
+};
+
+}  // namespace laparoscope_servo::skin

@@ -1,0 +1,62 @@
+// Both gates together, over time: which pixels of the region of interest (ROI) drive ESM in an image.
+//
+// The colour gate decides before ESM and afresh in each image. The structure gate decides after ESM: what it rejects stays out
+// for the next images, too, so that an occluder that moves on does not pull the estimate with it.
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "laparoscope_servo/image/area_grid.h"
+#include "laparoscope_servo/tracking/colour_gate.h"
+#include "laparoscope_servo/tracking/structure_gate.h"
+#include "laparoscope_servo/tracking/tracker_config.h"
+
+namespace laparoscope_servo::tracking {
+
+class OcclusionGates {
+ public:
+  OcclusionGates(const OcclusionConfig& config, int saturation);
+
+  // The reference's ROI. Throws std::invalid_argument when it has fewer pixels than areas in a direction.
+  void setReference(const cv::Mat& patch);
+
+  // Before ESM: `patch` is the ROI warped from the current image, with what is valid of it (see image::warpNearest).
+  void observeColour(const cv::Mat& patch, const cv::Mat1b& valid);
+
+  // After ESM: see structureDissimilarity. Returns how many areas that drove ESM turned out to be occluded.
+  int observeStructure(const cv::Mat1f& image, const cv::Mat1f& reference, const cv::Mat1f& valid, const LightModel& light,
+                       double sigma);
+
+  // Forgets what the structure gate rejected: the place has changed.
+  void forget();
+
+  // Called once when an image is done: time passes for what is held.
+  void advance();
+
+  // 1 for the ROI's pixels that may drive ESM, else 0: area not occluded, in the image, not saturated in it or the reference.
+  const cv::Mat1f& weights();
+
+  // False when the image has no colour, or the gate is off: the colour gate then stands aside.
+  bool colourUsed() const { return colour_used_; }
+  bool occluded(int area) const { return colour_rejects_[area] || held_[area] > 0; }
+  const std::vector<float>& distances() const { return distances_; }
+  const image::AreaGrid& grid() const { return grid_; }
+
+ private:
+  OcclusionConfig config_;
+  int saturation_;
+  image::AreaGrid grid_;
+  ColourHistograms reference_;
+  ColourHistograms current_;
+  bool reference_has_colour_ = false;
+  bool colour_used_ = false;
+  cv::Mat1b reference_saturated_, saturated_, valid_;
+  std::vector<float> distances_;       // (2) per area
+  std::vector<char> colour_rejects_;   // per area, in this image
+  std::vector<int> held_;              // per area: images for which the structure gate keeps it out
+  std::vector<float> dissimilarity_;
+  cv::Mat1f weights_;
+};
+
+}  // namespace laparoscope_servo::tracking

@@ -1,0 +1,23 @@
+# What setup, demo and test share. Sourced, not run.
+set -eu -o pipefail
+
+root="$(dirname "$(dirname "$(realpath "${BASH_SOURCE[0]}")")")"
+workspace="$root/.catkin_ws"
+
+# The system's python3 has the ROS modules; one that the user put in front of it does not.
+export PATH="/usr/bin:$PATH"
+
+say() { echo "[laparoscope_servo] $*"; }
+
+fail() {
+  echo "[laparoscope_servo] error: $*" >&2
+  exit 1
+}
+
+# Sources a setup.bash, which was not written for `set -u`.
+source_ros() {
+  set +u
+  # shellcheck disable=SC1090
+  source "$1"
+  set -u
+}

@@ -1,0 +1,67 @@
+// The nodelet laparoscope_servo/Tracker: wires topics, services and parameters to skin::TrackerSession.
+#pragma once
+
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <image_transport/image_transport.h>
+#include <laparoscope_servo/SelectRoi.h>
+#include <nodelet/nodelet.h>
+#include <ros/callback_queue.h>
+#include <ros/ros.h>
+#include <sensor_msgs/CameraInfo.h>
+#include <sensor_msgs/Image.h>
+#include <std_srvs/Trigger.h>
+
+#include <memory>
+#include <string>
+
+#include "laparoscope_servo/ros/tracker_diagnostics.h"
+#include "laparoscope_servo/ros/tracker_request.h"
+#include "laparoscope_servo/ros/tracker_session.h"
+
+namespace laparoscope_servo::nodelets {
+
+class Tracker : public nodelet::Nodelet {
+ public:
+  ~Tracker() override;
+
+ private:
+  void onInit() override;
+  void start(const skin::TrackerParameters& parameters);
+  void standAside(const std::string& why);
+
+  // All in the nodelet's own single-threaded queue.
+  void imageCallback(const sensor_msgs::ImageConstPtr& message);
+  void cameraInfoCallback(const sensor_msgs::CameraInfoConstPtr& message);
+  bool reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
+  void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
+  // In a queue and a thread of its own, because it waits for an image.
+  bool selectRoi(SelectRoi::Request& request, SelectRoi::Response& response);
+
+  void process(const sensor_msgs::ImageConstPtr& message);
+  void publish(const skin::Processed& processed);
+  void refuse(const std::string& error);
+
+  std::unique_ptr<skin::TrackerSession> session_;
+  std::unique_ptr<skin::TrackerDiagnostics> statistics_;
+  std::unique_ptr<diagnostic_updater::Updater> diagnostics_;
+  std::string why_aside_;
+
+  skin::RoiRequest request_;
+  ros::CallbackQueue request_queue_;
+  std::unique_ptr<ros::AsyncSpinner> request_spinner_;
+
+  std::unique_ptr<image_transport::ImageTransport> transport_;
+  image_transport::Subscriber image_subscriber_;
+  ros::Subscriber camera_info_subscriber_;
+  ros::Publisher homography_publisher_;
+  ros::Publisher task_error_publisher_;
+  ros::Publisher areas_publisher_;
+  ros::Publisher roi_publisher_;
+  ros::Publisher mask_publisher_;
+  ros::Publisher overlay_publisher_;
+  ros::ServiceServer select_server_;
+  ros::ServiceServer reset_server_;
+  ros::WallTimer diagnostics_timer_;
+};
+
+}  // namespace laparoscope_servo::nodelets

@@ -1,0 +1,32 @@
+// Node `controller`: see laparoscope_servo/ros/controller_node.h.
+#include "laparoscope_servo/ros/controller_node.h"
+
+#include <ros/callback_queue.h>
+#include <ros/ros.h>
+
+#include "laparoscope_servo/ros/stop_request.h"
+
+namespace skin = laparoscope_servo::skin;
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "controller", ros::init_options::NoSigintHandler);
+  ros::NodeHandle node;
+  ros::NodeHandle private_node("~");
+  skin::catchStopRequests();
+
+  skin::ParameterReader reader(skin::parametersOf(private_node), private_node.getNamespace());
+  const skin::ControllerNodeConfig config = skin::controllerNodeConfig(reader);
+  if (!reader.errors().empty()) {
+    ROS_FATAL("%s", reader.report().c_str());
+    return 1;
+  }
+
+  skin::ControllerNode controller(node, private_node, config);
+  while (ros::ok() && !skin::stopRequested()) {
+    ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.05));
+  }
+  controller.stop();
+  ros::WallDuration(0.05).sleep();  // publishing is asynchronous: the zeros have to leave before the connections close
+  ros::shutdown();
+  return 0;
+}

@@ -1,0 +1,32 @@
+// Node `video_player`: see laparoscope_servo/ros/video_player.h.
+#include <ros/ros.h>
+
+#include <cstdlib>
+#include <exception>
+
+#include "laparoscope_servo/ros/video_player.h"
+
+namespace skin = laparoscope_servo::skin;
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "video_player");
+  ros::NodeHandle node;
+  const ros::NodeHandle private_node("~");
+  skin::ParameterReader reader(skin::parametersOf(private_node), private_node.getNamespace());
+  const skin::VideoPlayerConfig config = skin::videoPlayerConfig(reader);
+  if (!reader.errors().empty()) {
+    ROS_FATAL("%s", reader.report().c_str());
+    return EXIT_FAILURE;
+  }
+  try {
+    skin::VideoPlayer player(node, config);
+    player.run();
+    ROS_INFO("played %zu images", player.published());
+    // Publishing is asynchronous: the last images have to leave before the connections close.
+    ros::WallDuration(0.5).sleep();
+  } catch (const std::exception& error) {
+    ROS_FATAL("%s", error.what());
+    return EXIT_FAILURE;
+  }
+  return EXIT_SUCCESS;
+}

@@ -1,0 +1,184 @@
+#include "laparoscope_servo/ros/controller_node.h"
+
+#include <laparoscope_servo/ControllerState.h>
+#include <laparoscope_servo/ScopeVelocity.h>
+
+#include "laparoscope_servo/ros/controller_conversions.h"
+
+namespace laparoscope_servo::skin {
+
+namespace {
+
+// s. A correction of the machine's clock by less is no jump.
+constexpr double kClockCorrection = 0.1;
+
+double steadyNow() {
+  return ros::SteadyTime::now().toSec();
+}
+
+}  // namespace
+
+ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_node, const ControllerNodeConfig& config)
+    : config_(config),
+      controller_(config.control),
+      last_now_(ros::Time::now()),
+      tf_listener_(tf_),
+      diagnostics_(node, private_node),
+      command_publisher_(node.advertise<ScopeVelocity>("servo_command", 1)),
+      state_publisher_(private_node.advertise<ControllerState>("state", 1, true)) {
+  diagnostics_.setHardwareID("none");
+  diagnostics_.add("control", this, &ControllerNode::report);
+  publish(controller_.update(input()));
+  // Only the newest task error counts, and it must not wait for a full packet.
+  task_error_subscriber_ =
+      node.subscribe("task_error", 1, &ControllerNode::onTaskError, this, ros::TransportHints().tcpNoDelay());
+  engage_service_ = private_node.advertiseService("engage", &ControllerNode::onEngage, this);
+  tick_timer_ =
+      node.createSteadyTimer(ros::WallDuration(1.0 / config_.rate), [this](const ros::SteadyTimerEvent&) { onTick(); });
+  // Not Updater::update(): it waits for ROS time, which may have jumped back.
+  diagnostics_timer_ = node.createSteadyTimer(ros::WallDuration(diagnostics_.getPeriod()),
+                                              [this](const ros::SteadyTimerEvent&) { diagnostics_.force_update(); });
+}
+
+void ControllerNode::stop() {
+  controller_.disengage("the controller ends");
+  publish(controller_.update(input()));
+}
+
+void ControllerNode::onTaskError(const TaskError& message) {
+  checkTime();
+  const StampWatch::Arrival arrival = task_error_watch_.arrived(message.header.stamp, steadyNow());
+  if (arrival == StampWatch::Arrival::kRepeated) return;
+  if (arrival == StampWatch::Arrival::kBack && controller_.engaged()) {
+    controller_.disengage("stamps of the task error jumped back; engage again");
+  }
+  task_error_.problem.clear();
+  task_error_.valid = message.valid;
+  task_error_.error = fromMessage(message);
+}
+
+bool ControllerNode::onEngage(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response) {
+  checkTime();
+  if (!request.data) {
+    controller_.disengage("not engaged");
+    response.success = true;
+    response.message = "disengaged";
+  } else if (controller_.engaged()) {
+    response.success = true;
+    response.message = "was engaged already" + (last_output_.reason.empty() ? "" : ", holds: " + last_output_.reason);
+  } else {
+    const std::string problem = controller_.engage(input());
+    response.success = problem.empty();
+    response.message = problem.empty() ? "engaged" : "not engaged: " + problem;
+  }
+  onTick();
+  return true;
+}
+
+void ControllerNode::onTick() {
+  checkTime();
+  last_input_ = input();
+  publish(controller_.update(last_input_));
+}
+
+// A looped bag, a restarted simulation: nothing that was known holds, and nobody expects the arm to go on.
+void ControllerNode::checkTime() {
+  const ros::Time now = ros::Time::now();
+  const bool back = (last_now_ - now).toSec() > kClockCorrection;
+  last_now_ = now;
+  if (!back) return;
+  task_error_ = servo::TaskErrorInput();
+  task_error_watch_.clear();
+  depth_watch_.clear();
+  tf_.clear();
+  if (controller_.engaged()) controller_.disengage("ROS time jumped back; engage again");
+}
+
+servo::ControllerInput ControllerNode::input() {
+  const double steady_now = steadyNow();
+  servo::ControllerInput input;
+  input.time = steady_now;
+  input.task_error = task_error_;
+  if (!task_error_watch_.empty()) {
+    const ros::Time now = ros::Time::now();
+    input.task_error.age = task_error_watch_.age(now, steady_now);
+    if (task_error_watch_.isAhead(now, config_.control.safety.max_task_error_age)) {
+      input.task_error.problem = "task error is stamped in the future, compare the clocks of the machines";
+    }
+  }
+  input.depth = depth(steady_now);
+  return input;
+}
+
+servo::DepthInput ControllerNode::depth(double steady_now) {
+  servo::DepthInput depth;
+  try {
+    const auto transform = tf_.lookupTransform(config_.camera, config_.insertion_point, ros::Time(0));
+    depth = fromTransform(transform.transform);
+    depth.problem.clear();
+    if (transform.header.stamp.isZero()) {
+      // d2 changes when the scope is inserted: a transform that cannot change says nothing about the arm.
+      depth.problem =
+          "tf from " + config_.camera + " to " + config_.insertion_point + " is static, expected the robot's";
+      return depth;
+    }
+    depth_watch_.arrived(transform.header.stamp, steady_now);
+    const ros::Time now = ros::Time::now();
+    depth.age = depth_watch_.age(now, steady_now);
+    if (depth_watch_.isAhead(now, config_.control.safety.max_depth_age)) {
+      depth.problem = "tf is stamped in the future, compare the clocks of the machines";
+    }
+  } catch (const tf2::ExtrapolationException&) {  // its text holds times, which change with every step
+    depth.problem = "tf from " + config_.camera + " to " + config_.insertion_point + " has no common time";
+  } catch (const tf2::TransformException& error) {
+    depth.problem = std::string("depth d2 is unknown: ") + error.what();
+  }
+  return depth;
+}
+
+void ControllerNode::publish(const servo::ControllerOutput& output) {
+  ScopeVelocity command = toMessage(output.command);
+  command.header.stamp = ros::Time::now();
+  command.header.frame_id = config_.camera;
+  command_publisher_.publish(command);
+  const bool changed = output.state != last_output_.state || output.reason != last_output_.reason;
+  const servo::ControllerState before = last_output_.state;
+  last_output_ = output;
+  if (!changed && state_published_) return;
+  publishState(output);
+  if (output.state == servo::ControllerState::kServo) {
+    ROS_INFO("The scope follows the region of interest.");
+  } else if (before != servo::ControllerState::kIdle) {
+    ROS_WARN("The scope stands still: %s.", output.reason.c_str());
+  }
+}
+
+void ControllerNode::publishState(const servo::ControllerOutput& output) {
+  ControllerState state = toMessage(output);
+  state.header.stamp = ros::Time::now();
+  state_publisher_.publish(state);
+  state_published_ = true;
+}
+
+void ControllerNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  using diagnostic_msgs::DiagnosticStatus;
+  const ControllerState state = toMessage(last_output_);
+  if (last_output_.state == servo::ControllerState::kHold) {
+    status.summary(DiagnosticStatus::WARN, "holds: " + state.reason);
+  } else {
+    status.summary(DiagnosticStatus::OK, last_output_.engaged() ? "follows the region of interest" : state.reason);
+  }
+  status.add("state", state.state);
+  const std::string problem = servo::problemWith(last_input_, config_.control.safety);
+  status.add("ready to move", problem.empty() ? "yes" : "no: " + problem);
+  status.add("age of the task error [s]", last_input_.task_error.age);
+  status.add("age of d2 [s]", last_input_.depth.age);
+  status.add("d2 [m]", last_input_.depth.d2);
+  status.add("insertion point beside the shaft [m]", last_input_.depth.lateral_offset);
+  status.add("pan [rad/s]", last_output_.command.pan);
+  status.add("tilt [rad/s]", last_output_.command.tilt);
+  status.add("spin [rad/s]", last_output_.command.spin);
+  status.add("insertion [m/s]", last_output_.command.insertion);
+}
+
+}  // namespace laparoscope_servo::skin

@@ -1,0 +1,24 @@
+#include "laparoscope_servo/ros/stamp_watch.h"
+
+#include <algorithm>
+
+namespace laparoscope_servo::skin {
+
+StampWatch::Arrival StampWatch::arrived(const ros::Time& stamp, double steady_now) {
+  if (!empty_ && stamp == stamp_) return Arrival::kRepeated;
+  const bool back = !empty_ && stamp < stamp_;
+  empty_ = false;
+  stamp_ = stamp;
+  steady_arrival_ = steady_now;
+  return back ? Arrival::kBack : Arrival::kNew;
+}
+
+double StampWatch::age(const ros::Time& now, double steady_now) const {
+  return std::max({0.0, steady_now - steady_arrival_, now.toSec() - stamp_.toSec()});
+}
+
+bool StampWatch::isAhead(const ros::Time& now, double tolerance) const {
+  return stamp_.toSec() - now.toSec() > tolerance;
+}
+
+}  // namespace laparoscope_servo::skin

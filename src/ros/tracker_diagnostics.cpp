@@ -1,0 +1,100 @@
+#include "laparoscope_servo/ros/tracker_diagnostics.h"
+
+#include <diagnostic_msgs/DiagnosticStatus.h>
+
+#include <algorithm>
+
+namespace laparoscope_servo::skin {
+
+namespace {
+
+using diagnostic_msgs::DiagnosticStatus;
+using tracking::State;
+
+constexpr double kSilence = 2.0;  // s without an image that are worth a warning
+
+int levelOf(State state) {
+  switch (state) {
+    case State::kSearching:
+      return DiagnosticStatus::WARN;
+    case State::kLost:
+      return DiagnosticStatus::ERROR;
+    default:
+      return DiagnosticStatus::OK;
+  }
+}
+
+std::string withReason(const tracking::TrackResult& result) {
+  return tracking::stateName(result.state) + (result.reason.empty() ? "" : ": " + result.reason);
+}
+
+}  // namespace
+
+void TrackerDiagnostics::processed(double now, const Processed& processed, bool ignores_distortion) {
+  const bool had_roi = result_.state != State::kIdle;
+  result_ = processed.result;
+  if (had_roi && result_.state == State::kIdle) last_reset_ = result_.reason;
+  ++images_;
+  ++window_.images;
+  window_.total_time += processed.processing_time;
+  window_.longest_time = std::max(window_.longest_time, processed.processing_time);
+  last_image_ = now;
+  refusal_.clear();
+  has_camera_ = processed.camera.has_value();
+  camera_error_ = processed.camera_error;
+  has_colour_ = processed.image.channels() == 3;
+  ignores_distortion_ = ignores_distortion;
+}
+
+void TrackerDiagnostics::refused(double now, const std::string& error) {
+  ++refused_;
+  last_image_ = now;
+  refusal_ = last_refusal_ = error;
+}
+
+void TrackerDiagnostics::summarise(double now, diagnostic_updater::DiagnosticStatusWrapper& status) const {
+  if (!last_image_) {
+    status.summary(DiagnosticStatus::WARN, "no image has come yet");
+  } else if (now - *last_image_ > kSilence) {
+    status.summary(DiagnosticStatus::WARN, "no image for more than 2 s; before: " + withReason(result_));
+  } else if (!refusal_.empty()) {
+    status.summary(DiagnosticStatus::ERROR, "image refused: " + refusal_);
+  } else {
+    status.summary(static_cast<unsigned char>(levelOf(result_.state)), withReason(result_));
+    if (!has_camera_)
+      status.mergeSummary(DiagnosticStatus::WARN, "no homography in normalised coordinates: " + camera_error_);
+  }
+}
+
+std::string TrackerDiagnostics::colourGate() const {
+  if (config_.occlusion.colour == tracking::ColourGate::kOff) return "off";
+  return has_colour_ ? "on" : "stands aside: the images have no colour";
+}
+
+void TrackerDiagnostics::fill(double now, diagnostic_updater::DiagnosticStatusWrapper& status) {
+  summarise(now, status);
+  const double duration = now - window_.start;
+  status.add("state", tracking::stateName(result_.state));
+  status.add("reason", result_.reason);
+  status.add("last reset", last_reset_);
+  status.addf("rate [Hz]", "%.2f", duration > 0.0 ? window_.images / duration : 0.0);
+  status.addf("time per image, mean [ms]", "%.3f",
+              window_.images > 0 ? 1e3 * window_.total_time / window_.images : 0.0);
+  status.addf("time per image, longest [ms]", "%.3f", 1e3 * window_.longest_time);
+  status.add("images processed", images_);
+  status.add("images refused", refused_);
+  status.add("last refusal", last_refusal_);
+  status.addf("visible fraction", "%.3f", result_.visible_fraction);
+  status.addf("zncc", "%.3f", result_.zncc);
+  status.addf("corner error [px]", "%.3f", result_.corner_error);
+  status.add("ROI [px]", result_.state == State::kIdle ? "none" : roiText(result_.roi));
+  status.add("intrinsics", has_camera_ ? "from camera_info" : camera_error_.empty() ? "unknown" : camera_error_);
+  status.add("lens distortion", ignores_distortion_
+                                    ? "not corrected: camera_info has some; let image_proc rectify the images"
+                                    : "none, or corrected");
+  status.add("colour gate", colourGate());
+  window_ = Window();
+  window_.start = now;
+}
+
+}  // namespace laparoscope_servo::skin

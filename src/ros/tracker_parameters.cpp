@@ -1,0 +1,140 @@
+#include "laparoscope_servo/ros/tracker_parameters.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <sstream>
+#include <stdexcept>
+
+#include "laparoscope_servo/ros/parameters.h"
+
+namespace laparoscope_servo::skin {
+
+namespace {
+
+constexpr double kMaxPixel = 65535.0;
+
+void readOcclusion(ParameterReader& reader, tracking::OcclusionConfig& config) {
+  // In the order of tracking::ColourGate.
+  const std::vector<std::string> gates{"off", "published", "normalised"};
+  std::string colour = gates[static_cast<std::size_t>(config.colour)];
+  reader.read("tracking/occlusion/colour", colour, gates);
+  config.colour = static_cast<tracking::ColourGate>(std::find(gates.begin(), gates.end(), colour) - gates.begin());
+  reader.read("tracking/occlusion/rows", config.rows, 2, 64);
+  reader.read("tracking/occlusion/columns", config.columns, 2, 64);
+  reader.read("tracking/occlusion/bins", config.bins, 4, 256);
+  reader.read("tracking/occlusion/threshold", config.threshold, 0.0, 1.0);
+  reader.read("tracking/occlusion/structure", config.structure);
+  reader.read("tracking/occlusion/hold", config.hold, 0, 100);
+}
+
+void readEsm(ParameterReader& reader, tracking::EsmConfig& config) {
+  reader.read("tracking/esm/levels", config.levels, 1, 6);
+  reader.read("tracking/esm/max_iterations", config.max_iterations, 1, 100);
+  reader.read("tracking/esm/min_step", config.min_step, 0.0001, 1.0);
+  reader.read("tracking/esm/illumination", config.illumination);
+  reader.read("tracking/esm/robust", config.robust);
+  reader.read("tracking/esm/saturation", config.saturation, 1, 256);
+  reader.read("tracking/esm/adapt_channel", config.adapt_channel);
+}
+
+void readQuality(ParameterReader& reader, tracking::QualityConfig& config) {
+  reader.read("tracking/quality/min_zncc", config.min_zncc, 0.0, 1.0);
+  reader.read("tracking/quality/min_visible_fraction", config.min_visible_fraction, 0.0, 1.0);
+  reader.read("tracking/quality/max_corner_error", config.max_corner_error, 0.01, 100.0);
+  reader.read("tracking/quality/max_area_ratio", config.max_area_ratio, 1.01, 1000.0);
+  reader.read("tracking/quality/max_jump", config.max_jump, 0.01, 10.0);
+  reader.read("tracking/quality/max_search_time", config.max_search_time, 0.0, 3600.0);
+  reader.read("tracking/quality/confirmations", config.confirmations, 1, 100);
+}
+
+void readTracking(ParameterReader& reader, tracking::TrackerConfig& config) {
+  readOcclusion(reader, config.occlusion);
+  readEsm(reader, config.esm);
+  readQuality(reader, config.quality);
+  reader.read("tracking/velocity_damping", config.velocity_damping, 0.0, 1.0);
+  reader.read("tracking/min_roi_side", config.min_roi_side, 8, 1000);
+  reader.read("tracking/min_texture", config.min_texture, 0.01, 10.0);
+  reader.refuseUnknown("tracking");
+}
+
+// A string "x,y,width,height" (empty: none), or a group of four numbers.
+void readRoi(ParameterReader& reader, const std::string& name, std::optional<geometry::Rectangle>& roi) {
+  if (!reader.has("roi")) return;
+  bool is_group = false;
+  for (const char* part : {"roi/x", "roi/y", "roi/width", "roi/height"}) is_group = is_group || reader.has(part);
+  if (!is_group) {
+    std::string text;
+    reader.read("roi", text);
+    if (text.empty()) return;
+    try {
+      roi = parseRoi(text);
+    } catch (const std::invalid_argument& error) {
+      reader.addError(name + "/roi: " + error.what());
+    }
+    return;
+  }
+  geometry::Rectangle rectangle;
+  const std::string what = "px, with x, y, width and height";
+  for (const char* part : {"roi/x", "roi/y", "roi/width", "roi/height"}) reader.require(part, what);
+  reader.read("roi/x", rectangle.x, 0.0, kMaxPixel);
+  reader.read("roi/y", rectangle.y, 0.0, kMaxPixel);
+  reader.read("roi/width", rectangle.width, 1.0, kMaxPixel);
+  reader.read("roi/height", rectangle.height, 1.0, kMaxPixel);
+  reader.refuseUnknown("roi");
+  roi = rectangle;
+}
+
+}  // namespace
+
+TrackerParameters readTrackerParameters(const XmlRpc::XmlRpcValue& tree, const std::string& name,
+                                        std::vector<std::string>& errors) {
+  TrackerParameters parameters;
+  ParameterReader reader(tree, name);
+  readTracking(reader, parameters.tracking);
+  readRoi(reader, name, parameters.roi);
+  bool rectified = false;
+  reader.read("rectified_images", rectified);
+  parameters.image_kind = rectified ? ImageKind::kRectified : ImageKind::kRaw;
+  reader.read("select_timeout", parameters.select_timeout, 0.1, 60.0);
+  if (reader.errors().empty()) reader.addErrors(tracking::validate(parameters.tracking));
+  errors.insert(errors.end(), reader.errors().begin(), reader.errors().end());
+  return parameters;
+}
+
+geometry::Rectangle parseRoi(const std::string& text) {
+  const std::string expected = "ROI '" + text + "', expected x,y,width,height in px, e.g. 580,180,220,340";
+  double values[4];
+  int count = 0;
+  std::istringstream parts(text);
+  for (std::string part; std::getline(parts, part, ',');) {
+    char* end = nullptr;
+    const double value = std::strtod(part.c_str(), &end);
+    while (end != nullptr && *end == ' ') ++end;
+    if (count == 4 || part.empty() || end == part.c_str() || *end != '\0') throw std::invalid_argument(expected);
+    values[count++] = value;
+  }
+  if (count != 4 || text.back() == ',') throw std::invalid_argument(expected);
+  for (const double value : values) {
+    if (!(value >= 0.0 && value <= kMaxPixel)) throw std::invalid_argument(expected + ", each from 0 to 65535");
+  }
+  if (!(values[2] >= 1.0) || !(values[3] >= 1.0)) {
+    throw std::invalid_argument(expected + ", with a width and a height of at least 1");
+  }
+  return {values[0], values[1], values[2], values[3]};
+}
+
+std::string roiText(const geometry::Rectangle& roi) {
+  std::ostringstream stream;
+  stream << roi.x << ',' << roi.y << ',' << roi.width << ',' << roi.height;
+  return stream.str();
+}
+
+std::string errorReport(const std::vector<std::string>& errors) {
+  if (errors.empty()) return "";
+  std::string text =
+      std::to_string(errors.size()) + (errors.size() == 1 ? " error" : " errors") + " in the parameters:";
+  for (const std::string& error : errors) text += "\n  " + error;
+  return text;
+}
+
+}  // namespace laparoscope_servo::skin

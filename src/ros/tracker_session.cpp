@@ -1,0 +1,94 @@
+#include "laparoscope_servo/ros/tracker_session.h"
+
+#include <chrono>
+#include <stdexcept>
+
+#include "laparoscope_servo/ros/image_conversion.h"
+
+namespace laparoscope_servo::skin {
+
+namespace {
+
+class Stopwatch {
+ public:
+  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace
+
+TrackerSession::TrackerSession(const TrackerParameters& parameters)
+    : parameters_(parameters), tracker_(parameters.tracking), intrinsics_(parameters.image_kind) {
+  start_roi_pending_ = start_roi_in_force_ = parameters.roi.has_value();
+}
+
+Processed TrackerSession::process(const sensor_msgs::Image& message,
+                                  const std::optional<geometry::Rectangle>& request) {
+  const Stopwatch watch;
+  Processed processed;
+  processed.header = message.header;
+  processed.image = trackerImage(message);
+  complete(processed, request);
+  processed.processing_time = watch.seconds();
+  return processed;
+}
+
+Processed TrackerSession::process(const cv::Mat& decoded, const std_msgs::Header& header,
+                                  const std::optional<geometry::Rectangle>& request) {
+  const Stopwatch watch;
+  Processed processed;
+  processed.header = header;
+  processed.image = trackerImage(decoded);
+  complete(processed, request);
+  processed.processing_time = watch.seconds();
+  return processed;
+}
+
+void TrackerSession::complete(Processed& processed, const std::optional<geometry::Rectangle>& request) {
+  const ros::Time stamp = processed.header.stamp;
+  const bool jumped_back = last_stamp_ && stamp < *last_stamp_;
+  if (jumped_back && start_roi_in_force_) start_roi_pending_ = true;
+  processed.result = track(processed, request);
+  last_stamp_ = stamp;
+  image_size_ = processed.image.size();
+  if (processed.result.selected_now) reference_stamp_ = stamp;
+  processed.reference_stamp = reference_stamp_;
+  intrinsics_.update(processed.image.size(), processed.result.selected_now || !tracker_.hasRoi());
+  processed.camera = intrinsics_.camera();
+  processed.camera_error = intrinsics_.error();
+}
+
+tracking::TrackResult TrackerSession::track(Processed& processed, const std::optional<geometry::Rectangle>& request) {
+  const double stamp = processed.header.stamp.toSec();
+  const bool from_parameters = !request && start_roi_pending_;
+  if (request || from_parameters) {
+    try {
+      const auto result = tracker_.select(processed.image, stamp, request ? *request : *parameters_.roi);
+      start_roi_pending_ = false;
+      if (request) start_roi_in_force_ = false;
+      return result;
+    } catch (const std::invalid_argument& error) {
+      // The parameters' ROI stays pending: the first images of a camera may be black.
+      processed.selection_error = error.what();
+    }
+  }
+  tracking::TrackResult result = tracker_.track(processed.image, stamp);
+  if (!processed.selection_error.empty() && result.state == tracking::State::kIdle) {
+    result.reason = "the ROI could not be selected: " + processed.selection_error;
+  }
+  return result;
+}
+
+cv::Mat TrackerSession::occlusionMask() const {
+  const cv::Mat mask = tracker_.occlusionMask();
+  return mask.empty() ? cv::Mat(cv::Mat::zeros(image_size_, CV_8UC1)) : mask;
+}
+
+void TrackerSession::reset() {
+  tracker_.reset();
+  start_roi_pending_ = start_roi_in_force_ = false;
+}
+
+}  // namespace laparoscope_servo::skin

@@ -1,0 +1,146 @@
+#include "laparoscope_servo/ros/video_player.h"
+
+#include <camera_calibration_parsers/parse.h>
+#include <rosgraph_msgs/Clock.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <thread>
+
+#include "laparoscope_servo/ros/image_conversion.h"
+#include "laparoscope_servo/ros/result_messages.h"
+
+namespace laparoscope_servo::skin {
+
+namespace {
+
+constexpr std::chrono::milliseconds kClockPeriod(10);
+
+sensor_msgs::CameraInfo calibration(const std::string& file) {
+  sensor_msgs::CameraInfo info;
+  if (file.empty()) return info;
+  std::string name;
+  if (!camera_calibration_parsers::readCalibration(file, name, info)) {
+    throw std::runtime_error("'" + file + "' cannot be read, expected a calibration as camera_calibration writes it");
+  }
+  return info;
+}
+
+}  // namespace
+
+VideoPlayerConfig videoPlayerConfig(ParameterReader& reader) {
+  VideoPlayerConfig config;
+  reader.require("video", "a video file or a folder of images");
+  reader.read("video", config.video);
+  reader.read("camera_info", config.camera_info);
+  reader.read("frame_id", config.frame_id);
+  reader.read("fps", config.fps, 0.1, 1000.0);
+  reader.read("speed", config.speed, 0.01, 100.0);
+  reader.read("start", config.start, 0.0, 1e6);
+  reader.read("first_stamp", config.first_stamp, 1e-3, 1e9);
+  reader.read("loop", config.loop);
+  reader.read("restart_time", config.restart_time);
+  reader.read("clock", config.clock);
+  reader.read("subscribers", config.subscribers, 0, 100);
+  reader.refuseUnknown("");
+  return config;
+}
+
+VideoPlayer::VideoPlayer(ros::NodeHandle node, const VideoPlayerConfig& config)
+    : config_(config), transport_(node), offset_(config.first_stamp) {
+  options_.start = config.start;
+  options_.folder_rate = config.fps;
+  source_ = openImageSource(config.video, options_);
+  camera_info_ = calibration(config.camera_info);
+  if (config.clock) clock_publisher_ = node.advertise<rosgraph_msgs::Clock>("/clock", 10);
+  // A queue long enough that a burst after a slow read loses nothing.
+  publisher_ = transport_.advertiseCamera("image_raw", 50);
+}
+
+void VideoPlayer::run() {
+  waitForSubscribers();
+  do {
+    const std::size_t before = published_;
+    playOnce();
+    if (ros::ok() && published_ == before) {
+      throw SourceError("'" + config_.video + "' has no image after " + std::to_string(config_.start) + " s");
+    }
+    if (!config_.loop) break;
+    if (!config_.restart_time) offset_ = last_stamp_ + 1.0 / source_->rate() - config_.start;
+    source_ = openImageSource(config_.video, options_);
+  } while (ros::ok());
+}
+
+void VideoPlayer::waitForSubscribers() const {
+  for (int waited = 0; ros::ok(); ++waited) {
+    const auto subscribers = static_cast<int>(publisher_.getNumSubscribers());
+    if (subscribers >= config_.subscribers) return;
+    if (waited % 500 == 100) {
+      ROS_INFO("waiting for subscribers of %s: %d of %d", publisher_.getTopic().c_str(), subscribers,
+               config_.subscribers);
+    }
+    std::this_thread::sleep_for(kClockPeriod);
+  }
+}
+
+void VideoPlayer::playOnce() {
+  bool first = true;
+  while (ros::ok()) {
+    const std::optional<SourceImage> image = source_->next();
+    if (!image) return;
+    const double stamp = stampOf(*image);
+    if (first) {
+      begin_stamp_ = stamp;
+      begin_time_ = Clock::now();
+      first = false;
+    }
+    waitUntil(stamp);
+    publishClock(stamp);
+    if (image->error.empty()) {
+      publish(*image, ros::Time(stamp));
+    } else {
+      ROS_ERROR("image %zu is left out: %s", image->frame, image->error.c_str());
+    }
+    last_stamp_ = stamp;
+    ros::spinOnce();
+  }
+}
+
+void VideoPlayer::waitUntil(double time) {
+  const auto due = begin_time_ + std::chrono::duration_cast<Clock::duration>(
+                                     std::chrono::duration<double>((time - begin_stamp_) / config_.speed));
+  for (auto next = Clock::now() + kClockPeriod; next < due && ros::ok(); next += kClockPeriod) {
+    std::this_thread::sleep_until(next);
+    const std::chrono::duration<double> elapsed = next - begin_time_;
+    publishClock(std::min(time, begin_stamp_ + elapsed.count() * config_.speed));
+  }
+  std::this_thread::sleep_until(due);
+}
+
+void VideoPlayer::publishClock(double time) {
+  if (!config_.clock) return;
+  rosgraph_msgs::Clock message;
+  message.clock = ros::Time(time);
+  clock_publisher_.publish(message);
+}
+
+void VideoPlayer::publish(const SourceImage& image, const ros::Time& stamp) {
+  std_msgs::Header header;
+  header.stamp = stamp;
+  header.frame_id = config_.frame_id;
+  const sensor_msgs::ImagePtr message = imageMessage(header, trackerImage(image.decoded));
+  if (config_.camera_info.empty()) {
+    camera_info_.width = message->width;
+    camera_info_.height = message->height;
+  } else if (camera_info_.width != message->width || camera_info_.height != message->height) {
+    throw std::runtime_error("calibration '" + config_.camera_info + "' is for images of " +
+                             std::to_string(camera_info_.width) + "x" + std::to_string(camera_info_.height) +
+                             " px, but those of '" + config_.video + "' have " + std::to_string(message->width) + "x" +
+                             std::to_string(message->height) + " px");
+  }
+  camera_info_.header = header;
+  publisher_.publish(*message, camera_info_);
+  ++published_;
+}
+
+}  // namespace laparoscope_servo::skin

@@ -1,0 +1,143 @@
+// Tracks through a bag, a video or a folder of images without a master: see --help.
+#include <ros/package.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <boost/program_options.hpp>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "laparoscope_servo/ros/parameters.h"
+#include "laparoscope_servo/ros/tracker_offline.h"
+#include "laparoscope_servo/tracking/region_tracker.h"
+
+namespace {
+
+namespace options = boost::program_options;
+namespace skin = laparoscope_servo::skin;
+
+constexpr int kBadUsage = 2;
+
+options::options_description describeOptions(skin::OfflineOptions& offline, std::string& roi, std::string& parameters) {
+  options::options_description description("Options");
+  auto add = description.add_options();
+  add("help", "print this and end");
+  add("input", options::value(&offline.input), "bag, video, or folder of images (in the order of their names)");
+  add("roi", options::value(&roi), "x,y,width,height: region in the first image, px");
+  add("image-topic", options::value(&offline.source.image_topic), "of a bag with several topics of images");
+  add("start", options::value(&offline.source.start), "skip so many seconds of the input");
+  add("rate", options::value(&offline.source.folder_rate), "images per second of a folder (default 25)");
+  add("params", options::value(&parameters), "YAML file laid over the package's config/tracker.yaml");
+  add("csv", options::value(&offline.csv), "table to write, a line per image");
+  add("output", options::value(&offline.bag), "bag to write: homography, task_error, areas, roi under /tracker");
+  add("overlay", options::value(&offline.overlay),
+      "video to write (.mp4, .avi): the images with ROI and occluded areas");
+  return description;
+}
+
+// The package's parameters, as the launch files load them, then the user's.
+skin::TrackerParameters readParameters(const std::string& file) {
+  const std::string share = ros::package::getPath("laparoscope_servo");
+  XmlRpc::XmlRpcValue tree;
+  const std::string defaults = share + "/config/tracker.yaml";
+  if (!share.empty() && std::filesystem::exists(defaults)) tree = skin::parametersFromYaml(defaults);
+  if (!file.empty()) tree = skin::mergeParameters(tree, skin::parametersFromYaml(file));
+  std::vector<std::string> errors;
+  const auto parameters = skin::readTrackerParameters(tree, file.empty() ? defaults : file, errors);
+  if (!errors.empty()) throw std::runtime_error(skin::errorReport(errors));
+  return parameters;
+}
+
+class ProgressLine {
+ public:
+  void operator()(const skin::OfflineSummary& summary, std::size_t expected) {
+    const auto now = std::chrono::steady_clock::now();
+    if (!terminal_ || now - last_ < std::chrono::milliseconds(200)) return;
+    last_ = now;
+    std::fprintf(stderr, "\rimage %zu", summary.images);
+    if (expected > 0) std::fprintf(stderr, " of %zu", expected);
+    shown_ = true;
+  }
+  void end() {
+    if (shown_) std::fputs("\r\033[K", stderr);
+    shown_ = false;
+  }
+
+ private:
+  bool terminal_ = isatty(STDERR_FILENO) != 0;  // a log has no use for it
+  bool shown_ = false;
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+double quantile(std::vector<double> values, double share) {
+  const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1) + 0.5);
+  std::nth_element(values.begin(), values.begin() + rank, values.end());
+  return values[static_cast<std::size_t>(rank)];
+}
+
+void printSummary(const skin::OfflineSummary& summary) {
+  std::fprintf(stderr, "%zu images:", summary.images);
+  for (std::size_t state = 0; state < summary.by_state.size(); ++state) {
+    const char* name = laparoscope_servo::tracking::stateName(static_cast<laparoscope_servo::tracking::State>(state));
+    if (summary.by_state[state] > 0) std::fprintf(stderr, " %s %zu", name, summary.by_state[state]);
+  }
+  std::fprintf(stderr, "; time per image: median %.2f ms, 99 %% below %.2f ms\n", 1e3 * quantile(summary.times, 0.5),
+               1e3 * quantile(summary.times, 0.99));
+}
+
+int run(const skin::OfflineOptions& offline) {
+  ProgressLine line;
+  const skin::OfflineSummary summary = skin::trackOffline(
+      offline, [&line](const skin::OfflineSummary& so_far, std::size_t expected) { line(so_far, expected); },
+      [&line](std::size_t frame, const std::string& error) {
+        line.end();
+        std::cerr << "image " << frame << " is left out: " << error << '\n';
+      });
+  line.end();
+  printSummary(summary);
+  if (summary.refused == 0) return EXIT_SUCCESS;
+  std::cerr << summary.refused << " of " << summary.refused + summary.images << " images could not be processed\n";
+  return EXIT_FAILURE;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  skin::OfflineOptions offline;
+  std::string roi;
+  std::string parameters;
+  const options::options_description description = describeOptions(offline, roi, parameters);
+  try {
+    options::positional_options_description positional;
+    positional.add("input", 1);
+    options::variables_map map;
+    options::store(options::command_line_parser(argc, argv).options(description).positional(positional).run(), map);
+    options::notify(map);
+    if (map.count("help") > 0) {
+      std::cout << "track_bag INPUT --roi x,y,w,h [options]: tracks a region through recorded images.\n"
+                << "Ends with status 0 when every image was processed, whatever the tracker found.\n"
+                << description;
+      return EXIT_SUCCESS;
+    }
+  } catch (const options::error& error) {
+    std::cerr << "track_bag: " << error.what() << "; --help lists the options\n";
+    return kBadUsage;
+  }
+  try {
+    if (offline.input.empty())
+      throw std::invalid_argument("no input is given, expected a bag, a video or a folder of images");
+    offline.parameters = readParameters(parameters);
+    if (!roi.empty()) offline.parameters.roi = skin::parseRoi(roi);
+    if (!offline.parameters.roi) throw std::invalid_argument("no ROI is given, expected --roi x,y,width,height in px");
+    return run(offline);
+  } catch (const std::exception& error) {
+    std::cerr << "track_bag: " << error.what() << '\n';
+    return EXIT_FAILURE;
+  }
+}

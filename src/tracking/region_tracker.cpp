@@ -1,0 +1,421 @@
+#include "laparoscope_servo/tracking/region_tracker.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <sstream>
+#include <stdexcept>
+
+#include "laparoscope_servo/geometry/sl3.h"
+#include "laparoscope_servo/image/colour_patch.h"
+#include "laparoscope_servo/image/pyramid.h"
+#include "laparoscope_servo/tracking/esm.h"
+#include "laparoscope_servo/tracking/occlusion_gates.h"
+#include "laparoscope_servo/tracking/quality.h"
+#include "laparoscope_servo/tracking/relocalisation.h"
+
+namespace laparoscope_servo::tracking {
+
+namespace {
+
+constexpr double kTypicalNoise = 2.0;    // grey levels, of a laparoscope's camera
+constexpr int kSearchCandidates = 3;
+constexpr int kMaxStructureRounds = 3;
+constexpr double kGateShift = 2.0;       // px: masks drawn further from the estimate than this are drawn again
+
+cv::Rect boundingBox(const geometry::Quadrilateral& q, double margin) {
+  double left = q[0].x(), right = q[0].x(), top = q[0].y(), bottom = q[0].y();
+  for (const Eigen::Vector2d& corner : q) {
+    left = std::min(left, corner.x());
+    right = std::max(right, corner.x());
+    top = std::min(top, corner.y());
+    bottom = std::max(bottom, corner.y());
+  }
+  // Far outside any image; keeps the conversion to int defined.
+  const auto bounded = [](double x) { return static_cast<int>(std::clamp(x, -1e6, 1e6)); };
+  const cv::Point first(bounded(std::floor(left - margin)), bounded(std::floor(top - margin)));
+  const cv::Point last(bounded(std::ceil(right + margin)), bounded(std::ceil(bottom + margin)));
+  return {first, last + cv::Point(1, 1)};
+}
+
+double farthestCorner(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b, const geometry::Rectangle& roi) {
+  const geometry::Quadrilateral p = geometry::apply(a, roi.corners());
+  const geometry::Quadrilateral q = geometry::apply(b, roi.corners());
+  double distance = 0.0;
+  for (int k = 0; k < 4; ++k) distance = std::max(distance, (p[k] - q[k]).norm());
+  return distance;
+}
+
+// The combination of the channels whose gradient is strongest for its noise: the principal axis of sum grad_c grad_d. Scaled
+// so that the weights' magnitudes sum to one, which keeps the range of grey levels.
+image::ChannelWeights strongestChannel(const cv::Mat& patch) {
+  cv::Mat3f gx, gy, smooth;
+  patch.convertTo(smooth, CV_32FC3);
+  cv::GaussianBlur(smooth, smooth, cv::Size(), 1.0);
+  cv::Sobel(smooth, gx, CV_32F, 1, 0, 1, 0.5);
+  cv::Sobel(smooth, gy, CV_32F, 0, 1, 1, 0.5);
+  Eigen::Matrix3d energy = Eigen::Matrix3d::Zero();
+  for (int j = 0; j < patch.rows; ++j) {
+    for (int i = 0; i < patch.cols; ++i) {
+      const Eigen::Vector3d x(gx(j, i)[0], gx(j, i)[1], gx(j, i)[2]);
+      const Eigen::Vector3d y(gy(j, i)[0], gy(j, i)[1], gy(j, i)[2]);
+      energy += x * x.transpose() + y * y.transpose();
+    }
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(energy);
+  Eigen::Vector3d axis = solver.eigenvectors().col(2);
+  const double magnitude = axis.cwiseAbs().sum();
+  if (solver.info() != Eigen::Success || !(magnitude > 0.0)) return image::kLuma;
+  axis *= (axis.sum() < 0.0 ? -1.0 : 1.0) / magnitude;
+  return {static_cast<float>(axis[0]), static_cast<float>(axis[1]), static_cast<float>(axis[2])};
+}
+
+std::string roiText(const geometry::Rectangle& roi) {
+  std::ostringstream text;
+  text << "ROI x=" << roi.x << " y=" << roi.y << " width=" << roi.width << " height=" << roi.height;
+  return text.str();
+}
+
+void checkImage(const cv::Mat& image) {
+  if (image.empty()) throw std::invalid_argument("image is empty, expected at least one pixel");
+  if (image.type() != CV_8UC1 && image.type() != CV_8UC3) {
+    throw std::invalid_argument("image of OpenCV type " + std::to_string(image.type()) +
+                                ", expected 8 bit with one channel or three");
+  }
+}
+
+}  // namespace
+
+const char* stateName(State state) {
+  switch (state) {
+    case State::kIdle: return "IDLE";
+    case State::kTracking: return "TRACKING";
+    case State::kSearching: return "SEARCHING";
+    case State::kLost: return "LOST";
+  }
+  return "unknown";
+}
+
+class RegionTracker::Implementation {
+ public:
+  explicit Implementation(const TrackerConfig& config)
+      : config_(config), esm_(config.esm), gates_(config.occlusion, config.esm.saturation) {}
+
+  TrackResult select(const cv::Mat& image, double stamp, const geometry::Rectangle& roi);
+  TrackResult track(const cv::Mat& image, double stamp);
+  void reset();
+  cv::Mat occlusionMask() const;
+  bool hasRoi() const { return state_ != State::kIdle; }
+  const TrackerConfig& config() const { return config_; }
+
+ private:
+  struct Attempt {
+    Evidence evidence;
+    std::string doubt;
+  };
+
+  geometry::Rectangle checkedRoi(const cv::Mat& image, const geometry::Rectangle& roi) const;
+  Eigen::Matrix3d predict(double stamp) const;
+  Attempt attempt(const cv::Mat& image, const EsmState& start, bool from_track);
+  Attempt search(const cv::Mat& image);
+  void look(const cv::Mat& image, const Eigen::Matrix3d& g);
+  void decide(const Attempt& best, double stamp);
+  TrackResult report(const Attempt& attempt, double stamp) const;
+  TrackResult idle(double stamp, const std::string& reason) const;
+
+  TrackerConfig config_;
+  Esm esm_;
+  OcclusionGates gates_;
+  image::RegionPyramid pyramid_;
+  image::ChannelWeights channel_ = image::kLuma;
+  cv::Mat patch_;
+  cv::Mat1b valid_;
+
+  State state_ = State::kIdle;
+  cv::Size image_size_;
+  double reference_stamp_ = 0.0;
+  double last_stamp_ = 0.0;
+  EsmState last_;                      // last estimate that was believed
+  double last_good_stamp_ = 0.0;
+  geometry::Vector8d velocity_ = geometry::Vector8d::Zero();  // 1/s, of the last motion, in normalised template coordinates
+  bool has_velocity_ = false;
+  int confirmations_ = 0;
+  EsmState candidate_;                 // while searching: what is being confirmed
+  Eigen::Matrix3d n_ = Eigen::Matrix3d::Identity();  // N, see Esm
+  Eigen::Matrix3d shown_ = Eigen::Matrix3d::Identity();
+};
+
+geometry::Rectangle RegionTracker::Implementation::checkedRoi(const cv::Mat& image, const geometry::Rectangle& roi) const {
+  const std::string name = roiText(roi);
+  const std::string size = std::to_string(image.cols) + " x " + std::to_string(image.rows);
+  if (!(roi.width >= config_.min_roi_side) || !(roi.height >= config_.min_roi_side)) {
+    throw std::invalid_argument(name + " is too small, expected at least " + std::to_string(config_.min_roi_side) +
+                                " px in width and height");
+  }
+  const bool inside = roi.x >= 0.0 && roi.y >= 0.0 && roi.x + roi.width <= image.cols && roi.y + roi.height <= image.rows;
+  if (!inside) {  // also for NaN
+    throw std::invalid_argument(name + " is not inside the image of " + size + " px");
+  }
+  return {std::floor(roi.x), std::floor(roi.y), std::floor(roi.width), std::floor(roi.height)};
+}
+
+TrackResult RegionTracker::Implementation::select(const cv::Mat& image, double stamp, const geometry::Rectangle& wanted) {
+  checkImage(image);
+  const geometry::Rectangle roi = checkedRoi(image, wanted);
+  const cv::Rect box(static_cast<int>(roi.x), static_cast<int>(roi.y), static_cast<int>(roi.width), static_cast<int>(roi.height));
+
+  // Everything is built aside, so that a ROI that is refused leaves the tracker as it was.
+  Implementation fresh(config_);
+  if (image.channels() == 3 && config_.esm.adapt_channel) fresh.channel_ = strongestChannel(image(box));
+  fresh.pyramid_.build(image, boundingBox(roi.corners(), 4.0 * (1 << config_.esm.levels)), config_.esm.levels, fresh.channel_);
+  fresh.esm_.setReference(fresh.pyramid_, roi);
+  fresh.gates_.setReference(image(box).clone());
+  fresh.esm_.setWeights(fresh.gates_.weights());
+  const double error = fresh.esm_.referenceCornerError(kTypicalNoise);
+  if (!(error <= config_.min_texture)) {
+    std::ostringstream message;
+    message.precision(3);
+    message << roiText(roi) << " has too little texture: " << kTypicalNoise << " grey levels of noise would move a corner by "
+            << error << " px, expected at most " << config_.min_texture;
+    throw std::invalid_argument(message.str());
+  }
+  fresh.state_ = State::kTracking;
+  fresh.image_size_ = image.size();
+  fresh.reference_stamp_ = fresh.last_stamp_ = fresh.last_good_stamp_ = stamp;
+  fresh.n_ = fresh.esm_.normalisation();
+  *this = std::move(fresh);
+
+  Attempt attempt;
+  attempt.evidence.roi = roi;
+  attempt.evidence.esm.status = EsmStatus::kConverged;
+  attempt.evidence.esm.corner_error = error;
+  attempt.evidence.visible_fraction = cv::sum(gates_.weights())[0] / roi.width / roi.height;
+  attempt.evidence.zncc = 1.0;
+  TrackResult result = report(attempt, stamp);
+  result.selected_now = true;
+  return result;
+}
+
+TrackResult RegionTracker::Implementation::track(const cv::Mat& image, double stamp) {
+  checkImage(image);
+  if (state_ == State::kIdle) return idle(stamp, "no region of interest selected");
+  if (!std::isfinite(stamp)) throw std::invalid_argument("image stamp is not finite");
+  std::ostringstream why;
+  if (stamp < last_stamp_) {
+    why << "time jumped back by " << last_stamp_ - stamp << " s";
+  } else if (image.size() != image_size_) {
+    why << "image size changed from " << image_size_.width << " x " << image_size_.height << " to " << image.cols << " x "
+        << image.rows << " px";
+  }
+  if (!why.str().empty()) {
+    reset();
+    return idle(stamp, why.str());
+  }
+  Attempt best;
+  if (state_ == State::kTracking) {
+    EsmState start = last_;
+    start.g = predict(stamp);
+    best = attempt(image, start, true);
+  } else {
+    best = search(image);
+  }
+  decide(best, stamp);
+  gates_.advance();
+  last_stamp_ = stamp;
+  return report(best, stamp);
+}
+
+Eigen::Matrix3d RegionTracker::Implementation::predict(double stamp) const {
+  const double dt = stamp - last_good_stamp_;
+  if (!has_velocity_ || !(dt > 0.0)) return last_.g;
+  const Eigen::Matrix3d motion = geometry::sl3Exp(config_.velocity_damping * dt * velocity_);
+  const Eigen::Matrix3d g = last_.g * n_.inverse() * motion * n_;
+  return geometry::isConvex(geometry::apply(g, esm_.roi().corners())) ? g : last_.g;
+}
+
+// The gates' view of the image where the ROI is taken to be.
+void RegionTracker::Implementation::look(const cv::Mat& image, const Eigen::Matrix3d& g) {
+  const geometry::Rectangle& roi = esm_.roi();
+  Eigen::Matrix3d from_patch = Eigen::Matrix3d::Identity();
+  from_patch.topRightCorner<2, 1>() << roi.x, roi.y;
+  image::warpNearest(image, g * from_patch, cv::Size(gates_.grid().width(), gates_.grid().height()), patch_, valid_);
+  gates_.observeColour(patch_, valid_);
+  esm_.setWeights(gates_.weights());
+  shown_ = g;
+}
+
+RegionTracker::Implementation::Attempt RegionTracker::Implementation::attempt(const cv::Mat& image, const EsmState& start,
+                                                                              bool from_track) {
+  const geometry::Rectangle& roi = esm_.roi();
+  Attempt result;
+  Evidence& e = result.evidence;
+  e.roi = roi;
+  e.predicted = start.g;
+  e.predicted_from_track = from_track;
+  e.esm.state = start;
+  e.esm.status = EsmStatus::kOutOfView;
+  const cv::Rect box = boundingBox(geometry::apply(start.g, roi.corners()), std::max(32.0, 0.25 * std::max(roi.width, roi.height)));
+  if ((box & cv::Rect(cv::Point(0, 0), image.size())).empty()) {
+    result.doubt = "the ROI is outside the image";
+    return result;
+  }
+  pyramid_.build(image, box, config_.esm.levels, channel_);
+  look(image, start.g);
+  e.esm = esm_.align(pyramid_, start);
+  int iterations = e.esm.iterations;
+  const auto refine = [&] {
+    e.esm = esm_.align(pyramid_, e.esm.state, 0, 0);
+    iterations += e.esm.iterations;
+  };
+  const auto usable = [&] { return e.esm.status == EsmStatus::kConverged || e.esm.status == EsmStatus::kMaxIterations; };
+  if (usable() && farthestCorner(shown_, e.esm.state.g, roi) > kGateShift) {
+    look(image, e.esm.state.g);
+    refine();
+  }
+  for (int round = 0; round < kMaxStructureRounds && usable(); ++round) {
+    const LightModel light = {e.esm.state.gain, e.esm.state.bias};
+    if (gates_.observeStructure(esm_.warped(), esm_.level(0).value, esm_.valid(), light, e.esm.sigma) == 0) break;
+    esm_.setWeights(gates_.weights());
+    refine();
+  }
+  e.esm.iterations = iterations;
+  if (usable()) {
+    const cv::Mat1f used = gates_.weights().mul(esm_.valid());
+    e.visible_fraction = cv::sum(used)[0] / static_cast<double>(used.total());
+    e.zncc = zncc(esm_.warped(), esm_.level(0).value, used);
+  }
+  result.doubt = doubt(e, config_.quality);
+  return result;
+}
+
+RegionTracker::Implementation::Attempt RegionTracker::Implementation::search(const cv::Mat& image) {
+  gates_.forget();
+  // What the last image suggested comes first, then where the ROI was last seen, then the whole image.
+  std::vector<EsmState> starts;
+  if (confirmations_ > 0) starts.push_back(candidate_);
+  starts.push_back(last_);
+  Attempt best;
+  for (const EsmState& start : starts) {
+    best = attempt(image, start, false);
+    if (best.doubt.empty()) return best;
+    gates_.forget();
+  }
+  const int l = esm_.levels() - 1;
+  image::RegionPyramid whole;
+  whole.build(image, cv::Rect(0, 0, image.cols, image.rows), l + 1, channel_);
+  const EsmLevel& level = esm_.level(l);
+  for (const Candidate& candidate : searchByCorrelation(level.value, level.image_T_patch, whole.level(l), level.scale, esm_.roi(),
+                                                        last_.g, kSearchCandidates)) {
+    EsmState start = last_;
+    start.g = candidate.g;
+    const Attempt next = attempt(image, start, false);
+    if (next.doubt.empty()) return next;
+    gates_.forget();
+  }
+  return best;
+}
+
+void RegionTracker::Implementation::decide(const Attempt& best, double stamp) {
+  const QualityConfig& quality = config_.quality;
+  if (!best.doubt.empty()) {
+    confirmations_ = 0;
+    has_velocity_ = false;
+    if (state_ == State::kTracking) state_ = State::kSearching;
+    if (stamp - last_good_stamp_ > quality.max_search_time) state_ = State::kLost;
+    return;
+  }
+  const EsmState& now = best.evidence.esm.state;
+  if (state_ != State::kTracking) {
+    const bool agrees = confirmations_ == 0 || farthestCorner(candidate_.g, now.g, esm_.roi()) <
+                                                   quality.max_jump * std::hypot(esm_.roi().width, esm_.roi().height);
+    confirmations_ = agrees ? confirmations_ + 1 : 1;
+    candidate_ = now;
+    if (confirmations_ < quality.confirmations) return;
+    state_ = State::kTracking;
+    has_velocity_ = false;
+  } else {
+    const double dt = stamp - last_good_stamp_;
+    has_velocity_ = dt > 0.0;
+    if (has_velocity_) {
+      velocity_ = geometry::sl3Log(geometry::normaliseDeterminant(n_ * last_.g.inverse() * now.g * n_.inverse())) / dt;
+      has_velocity_ = velocity_.allFinite();
+    }
+  }
+  confirmations_ = 0;
+  last_ = now;
+  last_good_stamp_ = stamp;
+}
+
+TrackResult RegionTracker::Implementation::report(const Attempt& attempt, double stamp) const {
+  TrackResult result = idle(stamp, attempt.doubt);
+  result.state = state_;
+  if (state_ != State::kTracking && attempt.doubt.empty()) result.reason = "found, waits for confirmation";
+  result.g = state_ == State::kTracking ? last_.g : (confirmations_ > 0 ? candidate_.g : last_.g);
+  result.roi = esm_.roi();
+  result.reference_stamp = reference_stamp_;
+  result.visible_fraction = attempt.evidence.visible_fraction;
+  result.zncc = attempt.evidence.zncc;
+  result.iterations = attempt.evidence.esm.iterations;
+  result.corner_error = attempt.evidence.esm.corner_error;
+  result.gain = attempt.evidence.esm.state.gain;
+  result.bias = attempt.evidence.esm.state.bias;
+  result.colour_used = gates_.colourUsed();
+  const image::AreaGrid& grid = gates_.grid();
+  result.areas = {grid.rows(), grid.columns(), gates_.distances(), std::vector<bool>(grid.count())};
+  for (int area = 0; area < grid.count(); ++area) result.areas.occluded[area] = gates_.occluded(area);
+  return result;
+}
+
+TrackResult RegionTracker::Implementation::idle(double stamp, const std::string& reason) const {
+  TrackResult result;
+  result.reason = reason;
+  result.reference_stamp = stamp;
+  return result;
+}
+
+void RegionTracker::Implementation::reset() { *this = Implementation(config_); }
+
+cv::Mat RegionTracker::Implementation::occlusionMask() const {
+  if (state_ == State::kIdle) return {};
+  const image::AreaGrid& grid = gates_.grid();
+  cv::Mat1b areas(grid.height(), grid.width());
+  for (int j = 0; j < grid.height(); ++j) {
+    for (int i = 0; i < grid.width(); ++i) areas(j, i) = gates_.occluded(grid.areaOf(i, j)) ? 255 : 0;
+  }
+  Eigen::Matrix3d from_patch = Eigen::Matrix3d::Identity();
+  from_patch.topRightCorner<2, 1>() << esm_.roi().x, esm_.roi().y;
+  const Eigen::Matrix3d g = (state_ == State::kTracking || confirmations_ == 0 ? last_.g : candidate_.g) * from_patch;
+  cv::Matx33d warp;
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c) warp(r, c) = g(r, c);
+  }
+  cv::Mat mask;
+  cv::warpPerspective(areas, mask, warp, image_size_, cv::INTER_NEAREST, cv::BORDER_CONSTANT, cv::Scalar(0));
+  return mask;
+}
+
+RegionTracker::RegionTracker(const TrackerConfig& config) {
+  const std::vector<std::string> errors = validate(config);
+  if (!errors.empty()) {
+    std::string message = "tracker configuration:";
+    for (const std::string& error : errors) message += "\n  " + error;
+    throw std::invalid_argument(message);
+  }
+  implementation_ = std::make_unique<Implementation>(config);
+}
+
+RegionTracker::~RegionTracker() = default;
+RegionTracker::RegionTracker(RegionTracker&&) noexcept = default;
+RegionTracker& RegionTracker::operator=(RegionTracker&&) noexcept = default;
+
+TrackResult RegionTracker::select(const cv::Mat& image, double stamp, const geometry::Rectangle& roi) {
+  return implementation_->select(image, stamp, roi);
+}
+TrackResult RegionTracker::track(const cv::Mat& image, double stamp) { return implementation_->track(image, stamp); }
+void RegionTracker::reset() { implementation_->reset(); }
+cv::Mat RegionTracker::occlusionMask() const { return implementation_->occlusionMask(); }
+bool RegionTracker::hasRoi() const { return implementation_->hasRoi(); }
+const TrackerConfig& RegionTracker::config() const { return implementation_->config(); }
+
+}  // namespace laparoscope_servo::tracking

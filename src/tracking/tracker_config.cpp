@@ -1,0 +1,47 @@
+#include "laparoscope_servo/tracking/tracker_config.h"
+
+#include <sstream>
+
+namespace laparoscope_servo::tracking {
+
+namespace {
+
+class Checker {
+ public:
+  template <typename T>
+  void range(const char* name, T value, T minimum, T maximum) {
+    if (value >= minimum && value <= maximum) return;  // false for NaN
+    std::ostringstream error;
+    error << name << " = " << value << ", expected " << minimum << " to " << maximum;
+    errors.push_back(error.str());
+  }
+  std::vector<std::string> errors;
+};
+
+}  // namespace
+
+std::vector<std::string> validate(const TrackerConfig& c) {
+  Checker check;
+  check.range("occlusion/rows", c.occlusion.rows, 2, 64);
+  check.range("occlusion/columns", c.occlusion.columns, 2, 64);
+  check.range("occlusion/bins", c.occlusion.bins, 4, 256);
+  check.range("occlusion/threshold", c.occlusion.threshold, 0.0, 1.0);
+  check.range("occlusion/hold", c.occlusion.hold, 0, 100);
+  check.range("esm/levels", c.esm.levels, 1, 6);
+  check.range("esm/max_iterations", c.esm.max_iterations, 1, 100);
+  check.range("esm/min_step", c.esm.min_step, 0.0001, 1.0);
+  check.range("esm/saturation", c.esm.saturation, 1, 256);
+  check.range("quality/min_zncc", c.quality.min_zncc, 0.0, 1.0);
+  check.range("quality/min_visible_fraction", c.quality.min_visible_fraction, 0.0, 1.0);
+  check.range("quality/max_corner_error", c.quality.max_corner_error, 0.01, 100.0);
+  check.range("quality/max_area_ratio", c.quality.max_area_ratio, 1.01, 1000.0);
+  check.range("quality/max_jump", c.quality.max_jump, 0.01, 10.0);
+  check.range("quality/max_search_time", c.quality.max_search_time, 0.0, 3600.0);
+  check.range("quality/confirmations", c.quality.confirmations, 1, 100);
+  check.range("velocity_damping", c.velocity_damping, 0.0, 1.0);
+  check.range("min_roi_side", c.min_roi_side, 8, 1000);
+  check.range("min_texture", c.min_texture, 0.01, 10.0);
+  return check.errors;
+}
+
+}  // namespace laparoscope_servo::tracking

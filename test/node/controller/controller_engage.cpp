@@ -1,0 +1,200 @@
+// The controller among tracker and robot: it moves when engaged and everything is there, and stands still otherwise.
+#include <diagnostic_msgs/DiagnosticArray.h>
+
+#include <limits>
+
+#include "fake_cart.h"
+
+namespace laparoscope_servo {
+namespace {
+
+class ControllerEngage : public ::testing::Test {
+ protected:
+  // One for all tests: connections take longer than the tests.
+  static FakeCart& cart() {
+    static FakeCart instance;
+    return instance;
+  }
+  static void TearDownTestSuite() { cart().end(); }
+
+  void SetUp() override {
+    cart_.set([](Feed& feed) {
+      feed = Feed();
+      feed.message = offTarget();
+    });
+    ASSERT_TRUE(cart_.waitForController());
+    bool success = false;
+    cart_.engage(false, success);
+    ASSERT_TRUE(success);
+  }
+
+  void engageAndMove() {
+    cart_.set([](Feed& feed) { feed.message = offTarget(); });
+    ASSERT_TRUE(cart_.engageWhenReady());
+    ASSERT_TRUE(cart_.waitForState(ControllerState::SERVO));
+    ASSERT_TRUE(waitFor([this] { return cart_.moves(); }));
+  }
+
+  // After this change of what is published, the arm stands and the reason holds these words.
+  void expectHold(const std::function<void(Feed&)>& change, const std::string& words) {
+    engageAndMove();
+    cart_.set(change);
+    ASSERT_TRUE(cart_.waitForState(ControllerState::HOLD, 1.0)) << words << ": " << cart_.state().reason;
+    EXPECT_NE(cart_.state().reason.find(words), std::string::npos) << cart_.state().reason;
+    EXPECT_TRUE(cart_.state().engaged);
+    EXPECT_TRUE(cart_.stands()) << words;
+  }
+
+  void expectRefused(const std::function<void(Feed&)>& change, const std::string& words) {
+    cart_.set(change);
+    bool success = true;
+    std::string message;
+    EXPECT_TRUE(waitFor([&] {
+      message = cart_.engage(true, success);
+      if (success) cart_.engage(false, success = false);  // the change has not come through yet
+      return message.find(words) != std::string::npos;
+    })) << message;
+    EXPECT_FALSE(success);
+    EXPECT_TRUE(cart_.stands());
+    EXPECT_EQ(cart_.state().state, ControllerState::IDLE);
+  }
+
+  FakeCart& cart_ = cart();
+};
+
+TEST_F(ControllerEngage, PublishesZerosWhileNotEngaged) {
+  EXPECT_TRUE(waitFor([this] { return cart_.state().reason == "not engaged"; })) << cart_.state().reason;
+  EXPECT_TRUE(cart_.stands());
+  EXPECT_EQ(cart_.state().state, ControllerState::IDLE);
+  EXPECT_FALSE(cart_.state().engaged);
+}
+
+TEST_F(ControllerEngage, FollowsOnceEngagedAndStopsWhenDisengaged) {
+  engageAndMove();
+  const ScopeVelocity command = cart_.nextCommands(20).back();
+  EXPECT_GT(command.pan, 0.0);
+  EXPECT_GT(command.tilt, 0.0);
+  EXPECT_LT(command.spin, 0.0);
+  EXPECT_GT(command.insertion, 0.0);
+  EXPECT_EQ(command.header.frame_id, "laparoscope_optical");
+  EXPECT_FALSE(command.header.stamp.isZero());
+  EXPECT_EQ(cart_.state().reason, "");
+  bool success = false;
+  cart_.engage(false, success);
+  EXPECT_TRUE(success);
+  EXPECT_TRUE(waitFor([this] { return cart_.stands(); }, 1.0));
+  EXPECT_TRUE(cart_.waitForState(ControllerState::IDLE));
+}
+
+TEST_F(ControllerEngage, KeepsItsLimits) {
+  engageAndMove();
+  cart_.set([](Feed& feed) { feed.message.e_v.x = 1e6; });
+  EXPECT_TRUE(waitFor([this] { return cart_.nextCommands(1).back().pan > 0.0999; }));
+  for (const ScopeVelocity& command : cart_.nextCommands(30)) {
+    EXPECT_LE(std::abs(command.pan), 0.1 * (1.0 + 1e-9));
+    EXPECT_LE(std::abs(command.insertion), 0.02 * (1.0 + 1e-9));
+  }
+}
+
+TEST_F(ControllerEngage, RefusesWhatIsNotValid) {
+  expectRefused([](Feed& feed) { feed.message.valid = false; }, "not valid");
+}
+
+TEST_F(ControllerEngage, RefusesWithoutTaskErrors) {
+  expectRefused([](Feed& feed) { feed.task_error = false; }, "task error");
+}
+
+TEST_F(ControllerEngage, RefusesWithoutTf) {
+  expectRefused([](Feed& feed) { feed.tf = false; }, "depth d2");
+}
+
+TEST_F(ControllerEngage, HoldsWhenTheTrackerLosesAndResumes) {
+  expectHold([](Feed& feed) { feed.message.valid = false; }, "not valid");
+  cart_.set([](Feed& feed) { feed.message.valid = true; });
+  EXPECT_TRUE(cart_.waitForState(ControllerState::SERVO, 1.0));
+  EXPECT_TRUE(waitFor([this] { return cart_.moves(); }));
+}
+
+TEST_F(ControllerEngage, DisengagesWhenTheTaskErrorStaysAway) {
+  expectHold([](Feed& feed) { feed.task_error = false; }, "older than");
+  EXPECT_TRUE(cart_.waitForState(ControllerState::IDLE, 3.0));
+  EXPECT_NE(cart_.state().reason.find("engage again"), std::string::npos) << cart_.state().reason;
+  cart_.set([](Feed& feed) { feed.task_error = true; });
+  EXPECT_TRUE(cart_.stands());
+  engageAndMove();
+}
+
+TEST_F(ControllerEngage, HoldsOnNumbersThatAreNotFinite) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinity = std::numeric_limits<double>::infinity();
+  expectHold([=](Feed& feed) { feed.message.e_v.x = nan; }, "not finite");
+  expectHold([=](Feed& feed) { feed.message.e_w.z = infinity; }, "not finite");
+  expectHold([=](Feed& feed) { feed.message.m_star.y = nan; }, "not finite");
+  expectHold([=](Feed& feed) { feed.message.desired_alpha = nan; }, "not finite");
+}
+
+TEST_F(ControllerEngage, HoldsWhenTfStops) {
+  expectHold([](Feed& feed) { feed.tf = false; }, "depth d2 is older");
+}
+
+TEST_F(ControllerEngage, HoldsOnDepthThatCannotBe) {
+  expectHold([](Feed& feed) { feed.d2 = 0.6; }, "depth d2 is not between");
+}
+
+TEST_F(ControllerEngage, HoldsOnADepthBehindTheInsertionPoint) {
+  expectHold([](Feed& feed) { feed.d2 = -0.1; }, "depth d2 is not between");
+}
+
+TEST_F(ControllerEngage, HoldsWhenTheShaftMissesTheInsertionPoint) {
+  expectHold([](Feed& feed) { feed.lateral = 0.03; }, "insertion point");
+}
+
+TEST_F(ControllerEngage, HoldsWhenTheSameImageIsSentAgainAndAgain) {
+  // Ahead by less than the tolerance, so that it does not look old on ROS time for the while that the test takes.
+  expectHold([](Feed& feed) { feed.fixed_stamp = ros::Time::now() + ros::Duration(0.2); }, "older than");
+}
+
+TEST_F(ControllerEngage, HoldsOnOldImages) {
+  engageAndMove();
+  cart_.set([](Feed& feed) { feed.stamp_offset = -1.0; });
+  // Stamps that go back disengage; the images stay too old to engage again.
+  ASSERT_TRUE(cart_.waitForState(ControllerState::IDLE, 1.0));
+  EXPECT_NE(cart_.state().reason.find("jumped back"), std::string::npos) << cart_.state().reason;
+  expectRefused([](Feed&) {}, "older than");
+}
+
+TEST_F(ControllerEngage, HoldsOnStampsInTheFuture) {
+  expectHold([](Feed& feed) { feed.stamp_offset = 2.0; }, "future");
+}
+
+TEST_F(ControllerEngage, HoldsOnTfInTheFuture) {
+  expectHold([](Feed& feed) { feed.tf_stamp_offset = 2.0; }, "future");
+}
+
+TEST_F(ControllerEngage, ReportsDiagnostics) {
+  ros::NodeHandle node;
+  std::mutex mutex;
+  std::vector<diagnostic_msgs::DiagnosticStatus> found;
+  const ros::Subscriber subscriber = node.subscribe<diagnostic_msgs::DiagnosticArray>(
+      "/diagnostics", 10, [&](const diagnostic_msgs::DiagnosticArray::ConstPtr& message) {
+        const std::lock_guard<std::mutex> lock(mutex);
+        for (const auto& status : message->status) found.push_back(status);
+      });
+  expectHold([](Feed& feed) { feed.message.valid = false; }, "not valid");
+  EXPECT_TRUE(waitFor([&] {
+    const std::lock_guard<std::mutex> lock(mutex);
+    for (const auto& status : found) {
+      if (status.name == "controller: control" && status.message.find("not valid") != std::string::npos) return true;
+    }
+    return false;
+  }));
+}
+
+}  // namespace
+}  // namespace laparoscope_servo
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  ros::init(argc, argv, "controller_engage");
+  return RUN_ALL_TESTS();
+}

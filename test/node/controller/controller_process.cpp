@@ -1,0 +1,160 @@
+// The controller as a process: how it starts, with parameters good and bad, and how it ends.
+#include <signal.h>
+#include <sys/wait.h>
+#include <tf2_ros/static_transform_broadcaster.h>
+#include <unistd.h>
+
+#include <cstdio>
+
+#include "fake_cart.h"
+
+namespace laparoscope_servo {
+namespace {
+
+// `rosrun laparoscope_servo controller ARGUMENTS`, which replaces itself by the node.
+class Process {
+ public:
+  explicit Process(const std::vector<std::string>& arguments) {
+    std::vector<std::string> words{"rosrun", "laparoscope_servo", "controller"};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    std::vector<char*> argv;
+    for (std::string& word : words) argv.push_back(&word[0]);
+    argv.push_back(nullptr);
+    pid_ = fork();
+    if (pid_ == 0) {
+      execvp(argv[0], argv.data());
+      _exit(127);
+    }
+  }
+  ~Process() {
+    if (pid_ <= 0) return;
+    kill(pid_, SIGKILL);
+    waitpid(pid_, nullptr, 0);
+  }
+  void signal(int number) const { kill(pid_, number); }
+
+  // The exit status, or -1 when it did not end by itself in time.
+  int wait(double seconds = 10.0) {
+    int status = 0;
+    const bool ended = waitFor([&] { return waitpid(pid_, &status, WNOHANG) == pid_; }, seconds);
+    if (!ended) return -1;
+    pid_ = -1;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+
+ private:
+  pid_t pid_ = -1;
+};
+
+// Runs the controller with bad parameters; its output and its exit status.
+std::string runToEnd(const std::string& arguments, int& status) {
+  std::FILE* pipe = popen(("timeout 10 rosrun laparoscope_servo controller " + arguments + " 2>&1").c_str(), "r");
+  std::string output;
+  char buffer[256];
+  while (std::fgets(buffer, sizeof(buffer), pipe) != nullptr) output += buffer;
+  status = WEXITSTATUS(pclose(pipe));
+  return output;
+}
+
+TEST(ControllerProcess, ListsAllBadParametersAndRefusesToStart) {
+  ros::NodeHandle node;
+  node.setParam("/bad/rate", "fast");
+  node.setParam("/bad/gains/pan", -0.3);
+  node.setParam("/bad/gain/pan", 0.3);  // a typing error
+  node.setParam("/bad/dead_zone/inverse", 1);
+  node.setParam("/bad/limits/velocity/insertion", 5.0);
+  node.setParam("/bad/safety/min_depth", std::vector<double>{0.1});
+  node.setParam("/bad/frames/camera", "");
+  node.setParam("/bad/frames/insertion_point", "/insertion_point");
+  int status = 0;
+  const std::string output = runToEnd("__name:=bad", status);
+  EXPECT_EQ(status, 1);
+  for (const char* name :
+       {"rate", "gains/pan = -0.3", "gain/pan is no parameter", "dead_zone/inverse", "limits/velocity/insertion",
+        "safety/min_depth", "frames/camera", "frames/insertion_point"}) {
+    EXPECT_NE(output.find(name), std::string::npos) << name << " is not in:\n" << output;
+  }
+}
+
+TEST(ControllerProcess, StartsWithoutParameters) {
+  Process process({"__name:=plain", "servo_command:=plain/servo_command"});
+  FakeCart cart("/plain", "/plain/servo_command");
+  ASSERT_TRUE(cart.waitForController());
+  EXPECT_TRUE(cart.stands());
+  EXPECT_TRUE(cart.engageWhenReady());
+}
+
+class Ending : public ::testing::TestWithParam<int> {};
+
+TEST_P(Ending, LastCommandIsZero) {
+  const std::string name = "ending_" + std::to_string(GetParam());
+  Process process({"__name:=" + name, "servo_command:=" + name + "/servo_command"});
+  FakeCart cart("/" + name, "/" + name + "/servo_command");
+  ASSERT_TRUE(cart.waitForController());
+  ASSERT_TRUE(cart.engageWhenReady());
+  ASSERT_TRUE(waitFor([&] { return cart.moves(); }));
+  if (GetParam() == 0) {
+    ASSERT_EQ(std::system(("rosnode kill /" + name + " > /dev/null").c_str()), 0);
+  } else {
+    process.signal(GetParam());
+  }
+  EXPECT_EQ(process.wait(), 0);
+  // Sent before the process ended, handled here a moment later.
+  bool zero = false;
+  waitFor(
+      [&] {
+        const std::vector<ScopeVelocity> commands = cart.takeCommands();
+        if (!commands.empty()) zero = isZero(commands.back());
+        return zero;
+      },
+      1.0);
+  EXPECT_TRUE(zero);
+}
+
+INSTANTIATE_TEST_SUITE_P(ByEachWay, Ending, ::testing::Values(SIGINT, SIGTERM, 0 /* rosnode kill */));
+
+TEST(ControllerProcess, NamesAFrameThatDoesNotExist) {
+  Process process({"__name:=nowhere", "servo_command:=nowhere/servo_command", "_frames/insertion_point:=atlantis"});
+  FakeCart cart("/nowhere", "/nowhere/servo_command");
+  ASSERT_TRUE(cart.waitForController());
+  bool success = true;
+  std::string message;
+  EXPECT_TRUE(waitFor([&] {
+    message = cart.engage(true, success);
+    return message.find("atlantis") != std::string::npos;
+  })) << message;
+  EXPECT_FALSE(success);
+  EXPECT_TRUE(cart.stands());
+}
+
+TEST(ControllerProcess, RefusesAStaticDepth) {
+  tf2_ros::StaticTransformBroadcaster broadcaster;
+  geometry_msgs::TransformStamped transform;
+  transform.header.frame_id = "fixed_insertion_point";
+  transform.child_frame_id = "fixed_camera";
+  transform.transform.translation.z = 0.1;
+  transform.transform.rotation.w = 1.0;
+  broadcaster.sendTransform(transform);
+  Process process({"__name:=fixed", "servo_command:=fixed/servo_command",
+                   "_frames/insertion_point:=fixed_insertion_point", "_frames/camera:=fixed_camera"});
+  FakeCart cart("/fixed", "/fixed/servo_command");
+  ASSERT_TRUE(cart.waitForController());
+  bool success = true;
+  std::string message;
+  EXPECT_TRUE(waitFor([&] {
+    message = cart.engage(true, success);
+    return message.find("static") != std::string::npos;
+  })) << message;
+  EXPECT_FALSE(success);
+  EXPECT_TRUE(cart.stands());
+}
+
+}  // namespace
+}  // namespace laparoscope_servo
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  ros::init(argc, argv, "controller_process");
+  ros::NodeHandle node;  // keeps ROS up between the tests
+  return RUN_ALL_TESTS();
+}

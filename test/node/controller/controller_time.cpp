@@ -1,0 +1,100 @@
+// ROS time that stops or jumps, as with a bag that is paused or looped: the arm stands still.
+#include <rosgraph_msgs/Clock.h>
+
+#include "fake_cart.h"
+
+namespace laparoscope_servo {
+namespace {
+
+// Publishes /clock at 100 Hz.
+class Clock {
+ public:
+  Clock() : publisher_(node_.advertise<rosgraph_msgs::Clock>("/clock", 1)) {
+    thread_ = std::thread([this] {
+      while (!end_) {
+        if (running_) time_ = time_ + 0.01;
+        rosgraph_msgs::Clock message;
+        message.clock = ros::Time(time_);
+        publisher_.publish(message);
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      }
+    });
+  }
+  ~Clock() { end(); }
+  void end() {
+    end_ = true;
+    if (thread_.joinable()) thread_.join();
+  }
+  void run(bool on) { running_ = on; }
+  void jump(double seconds) { time_ = time_ + seconds; }
+
+ private:
+  ros::NodeHandle node_;
+  ros::Publisher publisher_;
+  std::atomic<double> time_{1000.0};
+  std::atomic<bool> running_{true};
+  std::atomic<bool> end_{false};
+  std::thread thread_;
+};
+
+class ControllerTime : public ::testing::Test {
+ protected:
+  // One for all tests: a new one would start again, and that is a jump.
+  static Clock& clock() {
+    static Clock instance;
+    return instance;
+  }
+  static FakeCart& cart() {
+    static FakeCart instance;
+    return instance;
+  }
+  static void TearDownTestSuite() {
+    clock().end();
+    cart().end();
+  }
+
+  void SetUp() override {
+    clock_.run(true);
+    ASSERT_TRUE(cart_.waitForController());
+    ASSERT_TRUE(cart_.engageWhenReady());
+    ASSERT_TRUE(cart_.waitForState(ControllerState::SERVO));
+    ASSERT_TRUE(waitFor([this] { return cart_.moves(); }));
+  }
+
+  Clock& clock_ = clock();
+  FakeCart& cart_ = cart();
+};
+
+TEST_F(ControllerTime, TimeThatJumpsBackDisengages) {
+  clock_.jump(-50.0);
+  ASSERT_TRUE(cart_.waitForState(ControllerState::IDLE, 2.0));
+  EXPECT_NE(cart_.state().reason.find("jumped back"), std::string::npos) << cart_.state().reason;
+  EXPECT_TRUE(cart_.stands());
+  // What came before the jump is forgotten; with what comes after it, one may engage again.
+  EXPECT_TRUE(cart_.engageWhenReady());
+  EXPECT_TRUE(cart_.waitForState(ControllerState::SERVO));
+}
+
+TEST_F(ControllerTime, TimeThatStopsHolds) {
+  clock_.run(false);
+  ASSERT_TRUE(cart_.waitForState(ControllerState::HOLD, 2.0));
+  EXPECT_NE(cart_.state().reason.find("older than"), std::string::npos) << cart_.state().reason;
+  EXPECT_TRUE(cart_.stands());
+  clock_.run(true);
+  EXPECT_TRUE(cart_.waitForState(ControllerState::SERVO, 2.0));
+}
+
+TEST_F(ControllerTime, TimeThatJumpsAheadDoesNotKillTheNode) {
+  clock_.jump(1000.0);
+  EXPECT_TRUE(cart_.nextCommands(5).size() >= 5);
+  EXPECT_TRUE(waitFor([this] { return cart_.engageWhenReady(0.1) && cart_.moves(); }));
+}
+
+}  // namespace
+}  // namespace laparoscope_servo
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  ros::init(argc, argv, "controller_time");
+  return RUN_ALL_TESTS();
+}

@@ -1,0 +1,215 @@
+// Stands in for tracker and robot: publishes task errors (25 Hz) and tf (50 Hz) from a thread of its own, and listens
+// to what the controller says.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <laparoscope_servo/ControllerState.h>
+#include <laparoscope_servo/ScopeVelocity.h>
+#include <laparoscope_servo/TaskError.h>
+#include <ros/ros.h>
+#include <std_srvs/SetBool.h>
+#include <tf2_ros/transform_broadcaster.h>
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace laparoscope_servo {
+
+inline bool isZero(const ScopeVelocity& c) {
+  return c.pan == 0.0 && c.tilt == 0.0 && c.spin == 0.0 && c.insertion == 0.0;
+}
+
+// Waits until `condition` holds, at most `seconds`; polls, since what is waited for happens in other processes.
+inline bool waitFor(const std::function<bool()>& condition, double seconds = 5.0) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+  while (std::chrono::steady_clock::now() < end) {
+    if (condition()) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  return condition();
+}
+
+// What is published; a test changes it through FakeCart::set.
+struct Feed {
+  bool task_error = true;
+  bool tf = true;
+  double stamp_offset = 0.0;     // s, added to the stamps of task errors
+  ros::Time fixed_stamp;         // not zero: every task error has this stamp
+  double tf_stamp_offset = 0.0;  // s
+  double d2 = 0.1;               // m
+  double lateral = 0.0;          // m
+  TaskError message;
+};
+
+inline TaskError offTarget() {
+  TaskError message;
+  message.valid = true;
+  message.e_v.x = 0.2;
+  message.e_v.y = -0.1;
+  message.e_v.z = 0.1;
+  message.e_w.z = -0.1;
+  message.m_star.z = 1.0;
+  return message;
+}
+
+class FakeCart {
+ public:
+  // `controller`: its node name, `command`: the topic on which it commands.
+  explicit FakeCart(const std::string& controller = "/controller", const std::string& command = "/servo_command")
+      : spinner_(2) {
+    feed_.message = offTarget();
+    task_error_publisher_ = node_.advertise<TaskError>("/task_error", 1);
+    command_subscriber_ = node_.subscribe<ScopeVelocity>(command, 100, [this](const ScopeVelocity::ConstPtr& message) {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      commands_.push_back(*message);
+    });
+    state_subscriber_ =
+        node_.subscribe<ControllerState>(controller + "/state", 100, [this](const ControllerState::ConstPtr& message) {
+          const std::lock_guard<std::mutex> lock(mutex_);
+          state_ = *message;
+          states_.push_back(message->state);
+        });
+    engage_ = node_.serviceClient<std_srvs::SetBool>(controller + "/engage");
+    spinner_.start();
+    publisher_ = std::thread([this] { publishUntilEnd(); });
+  }
+
+  ~FakeCart() { end(); }
+
+  // Publishes and hears nothing any more.
+  void end() {
+    end_ = true;
+    if (publisher_.joinable()) publisher_.join();
+    spinner_.stop();
+  }
+
+  void set(const std::function<void(Feed&)>& change) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    change(feed_);
+  }
+
+  ControllerState state() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return state_;
+  }
+
+  std::vector<std::string> states() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return states_;
+  }
+
+  // All commands since the last call.
+  std::vector<ScopeVelocity> takeCommands() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    std::vector<ScopeVelocity> taken;
+    taken.swap(commands_);
+    return taken;
+  }
+
+  // The next `count` commands.
+  std::vector<ScopeVelocity> nextCommands(std::size_t count) {
+    takeCommands();
+    waitFor([&] {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      return commands_.size() >= count;
+    });
+    return takeCommands();
+  }
+
+  bool stands() {
+    const std::vector<ScopeVelocity> commands = nextCommands(5);
+    for (const ScopeVelocity& command : commands) {
+      if (!isZero(command)) return false;
+    }
+    return commands.size() >= 5;
+  }
+
+  bool moves() {
+    const std::vector<ScopeVelocity> commands = nextCommands(2);
+    return !commands.empty() && !isZero(commands.back());
+  }
+
+  bool waitForState(const std::string& name, double seconds = 5.0) {
+    return waitFor([&] { return state().state == name; }, seconds);
+  }
+
+  bool waitForController(double seconds = 10.0) {
+    return waitFor([this] { return engage_.exists() && !state().state.empty(); }, seconds);
+  }
+
+  // The answer's message; `success` tells the rest.
+  std::string engage(bool on, bool& success) {
+    std_srvs::SetBool call;
+    call.request.data = on;
+    success = engage_.call(call) && call.response.success;
+    return call.response.message;
+  }
+
+  // Engages as soon as the controller has all it needs.
+  bool engageWhenReady(double seconds = 5.0) {
+    return waitFor(
+        [this] {
+          bool success = false;
+          engage(true, success);
+          return success;
+        },
+        seconds);
+  }
+
+ private:
+  void publishUntilEnd() {
+    for (int k = 0; !end_; ++k) {
+      Feed feed;
+      {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        feed = feed_;
+      }
+      const ros::Time now = ros::Time::now();
+      if (feed.tf) publishTransforms(feed, now);
+      if (feed.task_error && k % 2 == 0) {
+        feed.message.header.stamp = now + ros::Duration(feed.stamp_offset);
+        if (!feed.fixed_stamp.isZero()) feed.message.header.stamp = feed.fixed_stamp;
+        task_error_publisher_.publish(feed.message);
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+  }
+
+  // The camera at the base's origin, the insertion point behind it.
+  void publishTransforms(const Feed& feed, const ros::Time& now) {
+    geometry_msgs::TransformStamped camera;
+    camera.header.stamp = now + ros::Duration(feed.tf_stamp_offset);
+    camera.header.frame_id = "aesop_base";
+    camera.child_frame_id = "laparoscope_optical";
+    camera.transform.rotation.w = 1.0;
+    geometry_msgs::TransformStamped insertion_point = camera;
+    insertion_point.child_frame_id = "insertion_point";
+    insertion_point.transform.translation.x = feed.lateral;
+    insertion_point.transform.translation.z = -feed.d2;
+    broadcaster_.sendTransform({camera, insertion_point});
+  }
+
+  ros::NodeHandle node_;
+  ros::AsyncSpinner spinner_;
+  tf2_ros::TransformBroadcaster broadcaster_;
+  ros::Publisher task_error_publisher_;
+  ros::Subscriber command_subscriber_;
+  ros::Subscriber state_subscriber_;
+  ros::ServiceClient engage_;
+
+  std::mutex mutex_;
+  Feed feed_;
+  ControllerState state_;
+  std::vector<std::string> states_;
+  std::vector<ScopeVelocity> commands_;
+  std::atomic<bool> end_{false};
+  std::thread publisher_;
+};
+
+}  // namespace laparoscope_servo

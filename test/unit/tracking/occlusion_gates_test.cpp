@@ -1,0 +1,124 @@
+#include "laparoscope_servo/tracking/occlusion_gates.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "../../support/synthetic_tissue.h"
+
+namespace laparoscope_servo::tracking {
+namespace {
+
+const cv::Size kSize(140, 140);
+
+class OcclusionGatesTest : public ::testing::Test {
+ protected:
+  cv::Mat patch_ = cv::min(test::tissue(kSize, 4), 240);
+  cv::Mat1b valid_{kSize, 255};
+  cv::Mat1f grey_, all_ = cv::Mat1f::ones(kSize);
+  OcclusionConfig config_;
+
+  void SetUp() override {
+    cv::Mat luma;
+    cv::cvtColor(patch_, luma, cv::COLOR_BGR2GRAY);
+    luma.convertTo(grey_, CV_32F);
+  }
+  static int occludedIn(const OcclusionGates& gates) {
+    int n = 0;
+    for (int area = 0; area < gates.grid().count(); ++area) n += gates.occluded(area);
+    return n;
+  }
+};
+
+TEST_F(OcclusionGatesTest, LetEverythingThroughOnTheReference) {
+  OcclusionGates gates(config_, 250);
+  gates.setReference(patch_);
+  gates.observeColour(patch_, valid_);
+  EXPECT_TRUE(gates.colourUsed());
+  EXPECT_EQ(gates.observeStructure(grey_, grey_, all_, LightModel(), 2.0), 0);
+  EXPECT_EQ(occludedIn(gates), 0);
+  EXPECT_EQ(cv::countNonZero(gates.weights() < 1.0f), 0);
+}
+
+TEST_F(OcclusionGatesTest, WeighWhatIsSaturatedOrInvalidWithNothing) {
+  patch_.at<cv::Vec3b>(70, 70) = {255, 255, 255};
+  OcclusionGates gates(config_, 250);
+  gates.setReference(patch_);
+  cv::Mat current = patch_.clone();
+  current.at<cv::Vec3b>(20, 20) = {255, 255, 255};
+  valid_(100, 100) = 0;
+  gates.observeColour(current, valid_);
+  const cv::Mat1f& w = gates.weights();
+  EXPECT_EQ(w(70, 70), 0.0f);
+  EXPECT_EQ(w(72, 68), 0.0f);
+  EXPECT_EQ(w(20, 20), 0.0f);
+  EXPECT_EQ(w(100, 100), 0.0f);
+  EXPECT_EQ(w(50, 50), 1.0f);
+  EXPECT_EQ(cv::countNonZero(w < 1.0f), 25 + 25 + 1);
+}
+
+TEST_F(OcclusionGatesTest, TheColourGateDecidesAfreshInEachImage) {
+  OcclusionGates gates(config_, 256);
+  gates.setReference(patch_);
+  cv::Mat current = patch_.clone();
+  current(cv::Rect(0, 0, 10, 10)).setTo(cv::Scalar(200, 200, 200));
+  gates.observeColour(current, valid_);
+  EXPECT_TRUE(gates.occluded(0));
+  EXPECT_GT(gates.distances()[0], 0.5f);
+  EXPECT_EQ(gates.weights()(5, 5), 0.0f);
+  gates.observeColour(patch_, valid_);
+  EXPECT_FALSE(gates.occluded(0));
+}
+
+TEST_F(OcclusionGatesTest, TheStructureGateHoldsForTheConfiguredImages) {
+  config_.hold = 2;
+  OcclusionGates gates(config_, 256);
+  gates.setReference(patch_);
+  cv::Mat1f other = grey_.clone();
+  cv::Mat1f turned;
+  cv::flip(grey_, turned, -1);
+  turned(cv::Rect(0, 0, 10, 10)).copyTo(other(cv::Rect(0, 0, 10, 10)));
+  EXPECT_EQ(gates.observeStructure(other, grey_, all_, LightModel(), 2.0), 1);
+  EXPECT_EQ(gates.observeStructure(other, grey_, all_, LightModel(), 2.0), 0);  // known already
+  for (int image = 0; image <= config_.hold; ++image) {
+    EXPECT_TRUE(gates.occluded(0)) << image;
+    gates.advance();
+  }
+  EXPECT_FALSE(gates.occluded(0));
+  gates.observeStructure(other, grey_, all_, LightModel(), 2.0);
+  gates.forget();
+  EXPECT_EQ(occludedIn(gates), 0);
+}
+
+TEST_F(OcclusionGatesTest, StandAsideWithoutColour) {
+  OcclusionGates gates(config_, 256);
+  cv::Mat mono;
+  cv::cvtColor(patch_, mono, cv::COLOR_BGR2GRAY);
+  gates.setReference(mono);
+  gates.observeColour(mono, valid_);
+  EXPECT_FALSE(gates.colourUsed());
+  EXPECT_EQ(occludedIn(gates), 0);
+  EXPECT_TRUE(std::isnan(gates.distances()[0]));
+  gates.setReference(patch_);  // a colour reference, then a mono image
+  gates.observeColour(mono, valid_);
+  EXPECT_FALSE(gates.colourUsed());
+}
+
+TEST_F(OcclusionGatesTest, BothCanBeTurnedOff) {
+  config_.colour = ColourGate::kOff;
+  config_.structure = false;
+  OcclusionGates gates(config_, 256);
+  gates.setReference(patch_);
+  gates.observeColour(cv::Mat(kSize, CV_8UC3, cv::Scalar(200, 200, 200)), valid_);
+  EXPECT_EQ(gates.observeStructure(255.0 - grey_, grey_, all_, LightModel(), 2.0), 0);
+  EXPECT_EQ(occludedIn(gates), 0);
+}
+
+TEST_F(OcclusionGatesTest, RefuseARegionWithFewerPixelsThanAreas) {
+  OcclusionGates gates(config_, 256);
+  EXPECT_THROW(gates.setReference(patch_(cv::Rect(0, 0, 10, 50))), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace laparoscope_servo::tracking
