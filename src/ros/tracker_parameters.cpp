@@ -13,12 +13,17 @@ namespace {
 
 constexpr double kMaxPixel = 65535.0;
 
+// One of `names`, which are in the order of the enumeration's values.
+template <typename Enum>
+void readEnum(ParameterReader& reader, const std::string& path, const std::vector<std::string>& names, Enum& value) {
+  std::string name = names[static_cast<std::size_t>(value)];
+  reader.read(path, name, names);
+  value = static_cast<Enum>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
 void readOcclusion(ParameterReader& reader, tracking::OcclusionConfig& config) {
-  // In the order of tracking::ColourGate.
-  const std::vector<std::string> gates{"off", "published", "normalised"};
-  std::string colour = gates[static_cast<std::size_t>(config.colour)];
-  reader.read("tracking/occlusion/colour", colour, gates);
-  config.colour = static_cast<tracking::ColourGate>(std::find(gates.begin(), gates.end(), colour) - gates.begin());
+  // "none" rather than "off", which YAML takes for a boolean.
+  readEnum(reader, "tracking/occlusion/colour", {"none", "published", "normalised"}, config.colour);
   reader.read("tracking/occlusion/rows", config.rows, 2, 64);
   reader.read("tracking/occlusion/columns", config.columns, 2, 64);
   reader.read("tracking/occlusion/bins", config.bins, 4, 256);
@@ -31,7 +36,7 @@ void readEsm(ParameterReader& reader, tracking::EsmConfig& config) {
   reader.read("tracking/esm/levels", config.levels, 1, 6);
   reader.read("tracking/esm/max_iterations", config.max_iterations, 1, 100);
   reader.read("tracking/esm/min_step", config.min_step, 0.0001, 1.0);
-  reader.read("tracking/esm/illumination", config.illumination);
+  readEnum(reader, "tracking/esm/light", {"constant", "global", "local"}, config.light);
   reader.read("tracking/esm/robust", config.robust);
   reader.read("tracking/esm/saturation", config.saturation, 1, 256);
   reader.read("tracking/esm/adapt_channel", config.adapt_channel);
