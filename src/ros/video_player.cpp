@@ -1,6 +1,7 @@
 #include "laparoscope_servo/ros/video_player.h"
 
 #include <camera_calibration_parsers/parse.h>
+#include <ros/callback_queue.h>
 #include <rosgraph_msgs/Clock.h>
 
 #include <algorithm>
@@ -15,6 +16,7 @@ namespace laparoscope_servo::skin {
 namespace {
 
 constexpr std::chrono::milliseconds kClockPeriod(10);
+constexpr std::chrono::seconds kResultTimeout(2);  // a tracker that gives none must not stop the video
 
 sensor_msgs::CameraInfo calibration(const std::string& file) {
   sensor_msgs::CameraInfo info;
@@ -41,6 +43,7 @@ VideoPlayerConfig videoPlayerConfig(ParameterReader& reader) {
   reader.read("loop", config.loop);
   reader.read("restart_time", config.restart_time);
   reader.read("clock", config.clock);
+  reader.read("lockstep", config.lockstep);
   reader.read("subscribers", config.subscribers, 0, 100);
   reader.refuseUnknown("");
   return config;
@@ -53,6 +56,10 @@ VideoPlayer::VideoPlayer(ros::NodeHandle node, const VideoPlayerConfig& config)
   source_ = openImageSource(config.video, options_);
   camera_info_ = calibration(config.camera_info);
   if (config.clock) clock_publisher_ = node.advertise<rosgraph_msgs::Clock>("/clock", 10);
+  if (config.lockstep) {
+    homography_subscriber_ = node.subscribe<Homography>(
+        "homography", 10, [this](const HomographyConstPtr& result) { result_stamp_ = result->header.stamp; });
+  }
   // A queue long enough that a burst after a slow read loses nothing.
   publisher_ = transport_.advertiseCamera("image_raw", 50);
 }
@@ -98,6 +105,7 @@ void VideoPlayer::playOnce() {
     publishClock(stamp);
     if (image->error.empty()) {
       publish(*image, ros::Time(stamp));
+      if (config_.lockstep) waitForResult(ros::Time(stamp));
     } else {
       ROS_ERROR("image %zu is left out: %s", image->frame, image->error.c_str());
     }
@@ -115,6 +123,19 @@ void VideoPlayer::waitUntil(double time) {
     publishClock(std::min(time, begin_stamp_ + elapsed.count() * config_.speed));
   }
   std::this_thread::sleep_until(due);
+}
+
+void VideoPlayer::waitForResult(const ros::Time& stamp) {
+  const auto begin = Clock::now();
+  while (ros::ok() && result_stamp_ != stamp && Clock::now() - begin < kResultTimeout) {
+    ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.001));
+  }
+  // What comes late does not make the next ones hurry.
+  const auto due = begin_time_ + std::chrono::duration_cast<Clock::duration>(
+                                     std::chrono::duration<double>((stamp.toSec() - begin_stamp_) / config_.speed));
+  const std::chrono::duration<double> period(1.0 / (source_->rate() * config_.speed));
+  const auto late = Clock::now() - due - std::chrono::duration_cast<Clock::duration>(period);
+  if (late > Clock::duration::zero()) begin_time_ += late;
 }
 
 void VideoPlayer::publishClock(double time) {

@@ -1,9 +1,10 @@
 // The node `video_player`: plays a video or a folder of images as a camera driver would publish them, and the time that
 // goes with them as `rosbag play --clock` would.
 //
-// Publishes: image_raw (sensor_msgs/Image), camera_info (sensor_msgs/CameraInfo; all zero when no calibration is given,
-// so that nobody takes it for one), and /clock. Stamps are first_stamp + frame / rate of the video, whatever the speed
-// at which it is played; everything is paced by a steady clock. At a loop, time jumps back as with a looped bag.
+// Subscribes: homography (laparoscope_servo/Homography), in lockstep only. Publishes: image_raw (sensor_msgs/Image),
+// camera_info (sensor_msgs/CameraInfo; all zero when no calibration is given, so that nobody takes it for one), and
+// /clock. Stamps are first_stamp + frame / rate of the video, whatever the speed at which it is played; everything is
+// paced by a steady clock. At a loop, time jumps back as with a looped bag.
 #pragma once
 
 #include <image_transport/image_transport.h>
@@ -14,6 +15,7 @@
 #include <memory>
 #include <string>
 
+#include "laparoscope_servo/Homography.h"
 #include "laparoscope_servo/ros/image_source.h"
 #include "laparoscope_servo/ros/parameters.h"
 
@@ -30,6 +32,7 @@ struct VideoPlayerConfig {
   bool loop = false;         // begin again at the end
   bool restart_time = true;  // false: stamps go on at a loop instead of jumping back
   bool clock = true;         // publish /clock
+  bool lockstep = false;     // the next image waits for the tracker's result, so that a slow one misses none
   int subscribers = 1;       // 0 to 100: wait for so many of image_raw before the first image
 };
 
@@ -55,6 +58,7 @@ class VideoPlayer {
   void waitUntil(double time);
   void publish(const SourceImage& image, const ros::Time& stamp);
   void publishClock(double time);
+  void waitForResult(const ros::Time& stamp);
   double stampOf(const SourceImage& image) const { return offset_ + image.header.stamp.toSec(); }
 
   VideoPlayerConfig config_;
@@ -64,6 +68,8 @@ class VideoPlayer {
   image_transport::ImageTransport transport_;
   image_transport::CameraPublisher publisher_;
   ros::Publisher clock_publisher_;
+  ros::Subscriber homography_subscriber_;
+  ros::Time result_stamp_;  // of the newest result
   std::size_t published_ = 0;
   double offset_ = 0.0;           // s, stamp of the video's time 0
   double last_stamp_ = 0.0;       // s
