@@ -134,9 +134,9 @@ Bytes Link::send(const Message& message, double now) {
   ++sequence_;
   sent_at_[sequence_ % sent_at_.size()] = now;
   ++statistics_.sent;
-  // Slots keep their rhythm, but are not made up for after a pause.
+  // Slots keep their rhythm, but are not made up for after a pause, and begin anew after a request between them.
   const double period = 1.0 / config_.rate;
-  next_ = next_ + period > now ? next_ + period : now + period;
+  next_ = next_ <= now && next_ + period > now ? next_ + period : now + period;
   return bytes;
 }
 

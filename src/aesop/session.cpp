@@ -105,11 +105,9 @@ void Session::receive(const std::uint8_t* data, std::size_t size, double now) {
 
 void Session::take(const Status& status) {
   if (isFault(status)) {
-    if (wish_ == Wish::kEnabled || !clearing_) {
-      const bool clearing = clearing_;
-      drop(faultText(status));
-      clearing_ = clearing;
-    }
+    const std::string text = faultText(status);
+    const bool known = reason_.rfind(text, 0) == 0;
+    if (wish_ == Wish::kEnabled || (!clearing_ && !known)) drop(text);
     return;
   }
   if (clearing_) drop("fault cleared");

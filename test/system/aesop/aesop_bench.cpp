@@ -1,0 +1,149 @@
+#include "aesop_bench.h"
+
+#include <stdlib.h>
+
+#include <chrono>
+#include <stdexcept>
+#include <thread>
+
+#include "laparoscope_servo/ros/parameters.h"
+
+namespace laparoscope_servo::test {
+
+namespace {
+
+constexpr double kCommandPeriod = 0.02;  // s
+
+template <typename Message>
+ros::Subscriber keepLast(ros::NodeHandle& node, const std::string& topic, std::optional<Message>& last) {
+  return node.subscribe<Message>(topic, 10, [&last](const typename Message::ConstPtr& message) { last = *message; });
+}
+
+std::string temporaryDirectory() {
+  std::string pattern = "/tmp/aesop_bench_XXXXXX";
+  if (::mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("cannot make a temporary directory");
+  return pattern;
+}
+
+}  // namespace
+
+double steadyNow() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+AesopBench::AesopBench(bool with_node) : directory_(temporaryDirectory()) {
+  const std::string control = directory_ + "/control";
+  emulator_ =
+      std::make_unique<ChildProcess>(AESOP_EMULATOR, std::vector<std::string>{"--link", port(), "--control", control});
+  const double end = steadyNow() + 5.0;
+  while (!truth_) {
+    try {
+      truth_ = std::make_unique<sim::EmulatorControlClient>(control, 2.0);
+    } catch (const std::runtime_error&) {
+      if (steadyNow() > end) throw;
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+  }
+  subscribers_ = {
+      keepLast(node_handle_, "aesop/operating_state", state_), keepLast(node_handle_, "aesop/measured_js", joints_),
+      keepLast(node_handle_, "aesop/measured_cp", pose_), keepLast(node_handle_, "aesop/measured_cv", twist_)};
+  subscribers_.push_back(node_handle_.subscribe<diagnostic_msgs::DiagnosticArray>(
+      "/diagnostics", 10, [this](const diagnostic_msgs::DiagnosticArray::ConstPtr& array) {
+        for (const auto& status : array->status) {
+          if (status.name.find("AESOP") != std::string::npos) diagnostics_ = status;
+        }
+      }));
+  commands_ = node_handle_.advertise<ScopeVelocity>("servo_command", 1);
+  if (with_node) startNode();
+}
+
+AesopBench::~AesopBench() {
+  node_.reset();
+  truth_.reset();
+  if (emulator_->isRunning()) {
+    emulator_->kill(SIGTERM);
+    emulator_->exitStatus(2.0);
+  }
+  emulator_.reset();
+  ::rmdir(directory_.c_str());
+}
+
+void AesopBench::startNode() {
+  XmlRpc::XmlRpcValue parameters = skin::parametersFromYaml(AESOP_CONFIG);
+  parameters["port"] = port();
+  ros::param::set("/aesop", parameters);
+  state_.reset();
+  node_ = std::make_unique<ChildProcess>(AESOP_NODE, std::vector<std::string>{"__name:=aesop"});
+  if (!waitFor([this] { return isUp() && commands_.getNumSubscribers() > 0; }, 10.0)) {
+    throw std::runtime_error("the aesop node has not connected to the emulator");
+  }
+}
+
+bool AesopBench::waitFor(const std::function<bool()>& condition, double seconds) {
+  const double end = steadyNow() + seconds;
+  ros::spinOnce();
+  while (!condition()) {
+    if (steadyNow() > end) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    ros::spinOnce();
+  }
+  return true;
+}
+
+bool AesopBench::commandUntil(const std::function<bool()>& condition, double pan, double seconds) {
+  double next = 0.0;
+  return waitFor(
+      [&] {
+        if (steadyNow() >= next) {
+          next = steadyNow() + kCommandPeriod;
+          send(pan, 0.0, ros::Time::now());
+        }
+        return condition();
+      },
+      seconds);
+}
+
+void AesopBench::send(double pan, double insertion, const ros::Time& stamp) {
+  ScopeVelocity message;
+  message.header.stamp = stamp;
+  message.pan = pan;
+  message.insertion = insertion;
+  commands_.publish(message);
+}
+
+std_srvs::Trigger::Response AesopBench::call(const std::string& service) {
+  std_srvs::Trigger trigger;
+  if (!ros::service::call("aesop/" + service, trigger))
+    throw std::runtime_error("service " + service + " is not there");
+  ros::spinOnce();
+  return trigger.response;
+}
+
+bool AesopBench::enable() {
+  return call("enable").success && waitFor([this] { return stateIs("ENABLED"); });
+}
+
+bool AesopBench::startMoving() {
+  return enable() && commandUntil([this] { return jointsMove(); }, 0.05);
+}
+
+double AesopBench::timeToStandStill(double limit) {
+  const double start = steadyNow();
+  while (jointsMove() && steadyNow() - start < limit) std::this_thread::sleep_for(std::chrono::microseconds(500));
+  return steadyNow() - start;
+}
+
+double AesopBench::motionWithin(double seconds, const std::function<void()>& meanwhile) {
+  const aesop::JointVector before = truth_->state().q;
+  double largest = 0.0;
+  waitFor(
+      [&] {
+        meanwhile();
+        largest = std::max(largest, (truth_->state().q - before).lpNorm<Eigen::Infinity>());
+        return false;
+      },
+      seconds);
+  return largest;
+}
+
+}  // namespace laparoscope_servo::test

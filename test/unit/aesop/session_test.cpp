@@ -1,0 +1,281 @@
+#include "laparoscope_servo/aesop/session.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "fake_controller.h"
+
+namespace laparoscope_servo::aesop {
+namespace {
+
+using Speed = std::array<double, kDrivenJoints>;
+constexpr Speed kStand{};
+constexpr Speed kMove{0.01, 0.0, 0.0, 0.0};
+
+class SessionTest : public ::testing::Test {
+ protected:
+  // One slot of the line: what the session sends, and the controller's answer when it gives one. Returns the last
+  // request.
+  std::optional<Message> exchange(const Speed& speed, bool answer = true) {
+    now_ += 0.026;
+    const std::vector<Message> requests = controller_.hear(session_.transmit(speed, now_));
+    if (requests.empty()) return std::nullopt;
+    if (std::holds_alternative<Identify>(requests.back())) controller_.status.state = RobotState::kDisabled;
+    if (answer) {
+      const Bytes reply =
+          std::holds_alternative<Identify>(requests.back()) ? controller_.identity() : controller_.say();
+      session_.receive(reply.data(), reply.size(), now_ + 0.01);
+    }
+    return requests.back();
+  }
+  template <typename T>
+  bool sends(const Speed& speed = kStand, bool answer = true) {
+    const std::optional<Message> request = exchange(speed, answer);
+    return request && std::holds_alternative<T>(*request);
+  }
+  void connect() {
+    session_.opened(now_);
+    ASSERT_TRUE(sends<Identify>());
+    ASSERT_TRUE(sends<Poll>());
+    ASSERT_TRUE(session_.link().isUp());
+  }
+  void enable() {
+    ASSERT_EQ(session_.enable(now_), "");
+    ASSERT_TRUE(sends<Enable>(kStand, false));
+    controller_.status.state = RobotState::kEnabled;
+    ASSERT_TRUE(sends<Enable>());
+    ASSERT_TRUE(session_.isEnabled());
+  }
+  OperatingMode mode() const { return session_.state().mode; }
+
+  double now_ = 0.0;
+  Session session_{SessionConfig(), kDrivenMask};
+  FakeController controller_;
+};
+
+TEST_F(SessionTest, startsDisabledAndSaysWhy) {
+  EXPECT_EQ(mode(), OperatingMode::kDisabled);
+  EXPECT_NE(session_.state().reason.find("not connected"), std::string::npos);
+  EXPECT_NE(session_.enable(0.0), "");
+  connect();
+  EXPECT_EQ(mode(), OperatingMode::kDisabled);
+  EXPECT_TRUE(session_.state().is_homed);
+}
+
+TEST_F(SessionTest, noVelocityUnlessEnabled) {
+  connect();
+  for (int k = 0; k < 20; ++k) EXPECT_TRUE(sends<Poll>(kMove));
+}
+
+TEST_F(SessionTest, enableIsRepeatedUntilConfirmed) {
+  connect();
+  ASSERT_EQ(session_.enable(now_), "");
+  for (int k = 0; k < 5; ++k) {
+    EXPECT_TRUE(sends<Enable>(kMove));
+    EXPECT_EQ(mode(), OperatingMode::kDisabled);
+    EXPECT_TRUE(session_.state().is_busy);
+  }
+  controller_.status.state = RobotState::kEnabled;
+  EXPECT_TRUE(sends<Enable>());
+  EXPECT_EQ(mode(), OperatingMode::kEnabled);
+  EXPECT_EQ(session_.state().reason, "");
+  const std::optional<Message> request = exchange(kMove);
+  ASSERT_TRUE(request && std::holds_alternative<Velocity>(*request));
+  EXPECT_DOUBLE_EQ(std::get<Velocity>(*request).speed[0], 0.01);
+  EXPECT_DOUBLE_EQ(std::get<Velocity>(*request).time_to_live, SessionConfig().time_to_live);
+}
+
+TEST_F(SessionTest, enableThatIsNotConfirmedEndsInDisabled) {
+  connect();
+  ASSERT_EQ(session_.enable(now_), "");
+  for (int k = 0; k < 45; ++k) exchange(kMove);
+  EXPECT_EQ(mode(), OperatingMode::kDisabled);
+  EXPECT_NE(session_.state().reason.find("not confirmed"), std::string::npos);
+  controller_.status.state = RobotState::kEnabled;  // too late
+  exchange(kMove);
+  EXPECT_TRUE(sends<Disable>(kMove));
+  EXPECT_EQ(mode(), OperatingMode::kDisabled);
+}
+
+TEST_F(SessionTest, anEnabledControllerNobodyAskedForIsDisabled) {
+  connect();
+  controller_.status.state = RobotState::kEnabled;
+  exchange(kMove);
+  EXPECT_TRUE(sends<Disable>(kMove));
+  EXPECT_EQ(mode(), OperatingMode::kDisabled);
+  EXPECT_NE(session_.enable(now_), "") << "it has to come from DISABLED";
+}
+
+TEST_F(SessionTest, stopGoesOutAtOnceAndUntilConfirmed) {
+  connect();
+  enable();
+  controller_.status.moving = true;
+  ASSERT_TRUE(sends<Velocity>(kMove));
+  now_ += 0.001;  // long before the next slot
+  const std::vector<Message> requests = controller_.hear(session_.transmit(kStand, now_));
+  ASSERT_EQ(requests.size(), 1u);
+  EXPECT_TRUE(std::holds_alternative<Stop>(requests[0]));
+  for (int k = 0; k < 8; ++k) EXPECT_TRUE(sends<Stop>()) << "it still moves";
+  controller_.status.moving = false;
+  EXPECT_TRUE(sends<Stop>());
+  EXPECT_TRUE(sends<Poll>());
+}
+
+TEST_F(SessionTest, aStatusOfBeforeTheStopConfirmsNothing) {
+  connect();
+  enable();
+  ASSERT_TRUE(sends<Velocity>(kMove));
+  const Bytes earlier = controller_.say();  // standing, but an echo of the velocity
+  ASSERT_TRUE(sends<Stop>(kStand, false));
+  session_.receive(earlier.data(), earlier.size(), now_);
+  EXPECT_TRUE(sends<Stop>());
+  EXPECT_TRUE(sends<Poll>());
+}
+
+TEST_F(SessionTest, whatCannotBeSentIsAStop) {
+  connect();
+  enable();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const double bad : {nan, std::numeric_limits<double>::infinity(), 1e9}) {
+    ASSERT_TRUE(sends<Velocity>(kMove));
+    EXPECT_TRUE(sends<Stop>({bad, 0.01, 0.0, 0.0}));
+    exchange(kStand);
+  }
+}
+
+TEST_F(SessionTest, disableGoesOutAtOnceAndUntilConfirmed) {
+  connect();
+  enable();
+  ASSERT_TRUE(sends<Velocity>(kMove));
+  EXPECT_EQ(session_.disable(now_), "");
+  now_ += 0.001;
+  EXPECT_TRUE(std::holds_alternative<Disable>(controller_.hear(session_.transmit(kMove, now_)).at(0)));
+  EXPECT_EQ(mode(), OperatingMode::kDisabled);
+  EXPECT_TRUE(session_.state().is_busy);
+  EXPECT_TRUE(sends<Disable>(kMove));
+  controller_.status.state = RobotState::kDisabled;
+  EXPECT_TRUE(sends<Disable>(kMove));
+  EXPECT_TRUE(sends<Poll>(kMove));
+  EXPECT_FALSE(session_.state().is_busy);
+}
+
+TEST_F(SessionTest, pauseStopsAndStaysEnabled) {
+  EXPECT_NE(session_.pause(), "");
+  EXPECT_NE(session_.resume(), "");
+  connect();
+  enable();
+  ASSERT_TRUE(sends<Velocity>(kMove));
+  EXPECT_EQ(session_.pause(), "");
+  EXPECT_EQ(mode(), OperatingMode::kPaused);
+  EXPECT_TRUE(sends<Stop>(kMove));
+  EXPECT_TRUE(sends<Poll>(kMove));
+  EXPECT_EQ(session_.resume(), "");
+  EXPECT_TRUE(sends<Velocity>(kMove));
+}
+
+TEST_F(SessionTest, aFaultEndsTheEnableAndClearsToDisabled) {
+  connect();
+  enable();
+  ASSERT_TRUE(sends<Velocity>(kMove));
+  controller_.status.state = RobotState::kFault;
+  controller_.status.faults = kFaultMotor;
+  exchange(kMove);
+  EXPECT_EQ(mode(), OperatingMode::kFault);
+  EXPECT_EQ(session_.state().reason, "fault: motor");
+  EXPECT_NE(session_.enable(now_), "");
+  EXPECT_FALSE(sends<Velocity>(kMove));
+  EXPECT_EQ(session_.clearFault(now_), "");
+  EXPECT_TRUE(sends<ClearFault>(kMove));
+  controller_.status.state = RobotState::kDisabled;
+  controller_.status.faults = 0;
+  EXPECT_TRUE(sends<ClearFault>(kMove));
+  EXPECT_TRUE(sends<Poll>(kMove));
+  EXPECT_EQ(mode(), OperatingMode::kDisabled);
+  EXPECT_NE(session_.clearFault(now_), "") << "there is none any more";
+  enable();
+  EXPECT_TRUE(sends<Velocity>(kMove));
+}
+
+TEST_F(SessionTest, aFaultThatCannotBeClearedSaysSo) {
+  connect();
+  controller_.status.state = RobotState::kFault;
+  controller_.status.faults = kFaultEmergencyStop;
+  exchange(kStand);
+  ASSERT_EQ(session_.clearFault(now_), "");
+  for (int k = 0; k < 45; ++k) exchange(kStand);
+  EXPECT_EQ(mode(), OperatingMode::kFault);
+  EXPECT_FALSE(session_.state().is_busy);
+  EXPECT_NE(session_.state().reason.find("could not be cleared"), std::string::npos);
+  exchange(kStand);
+  EXPECT_NE(session_.state().reason.find("emergency stop"), std::string::npos);
+}
+
+TEST_F(SessionTest, unknownFaultBitsAreAFaultWhateverTheState) {
+  connect();
+  enable();
+  controller_.status.faults = 0x8000;  // still saying ENABLED
+  exchange(kMove);
+  EXPECT_EQ(mode(), OperatingMode::kFault);
+  EXPECT_TRUE(sends<Disable>(kMove));
+}
+
+TEST_F(SessionTest, aControllerThatDisablesItselfIsNotEnabledAgain) {
+  connect();
+  enable();
+  controller_.status.state = RobotState::kDisabled;
+  exchange(kMove);
+  EXPECT_EQ(mode(), OperatingMode::kDisabled);
+  EXPECT_NE(session_.state().reason.find("disabled itself"), std::string::npos);
+  for (int k = 0; k < 10; ++k) EXPECT_TRUE(sends<Poll>(kMove));
+}
+
+TEST_F(SessionTest, silenceLeadsToDisabledAndBackOnlyByEnable) {
+  connect();
+  enable();
+  ASSERT_TRUE(sends<Velocity>(kMove));
+  bool identifies = false;
+  for (int k = 0; k < 30 && !identifies; ++k) identifies = sends<Identify>(kMove, false);
+  EXPECT_TRUE(identifies);
+  EXPECT_EQ(mode(), OperatingMode::kDisabled);
+  EXPECT_NE(session_.state().reason.find("no status"), std::string::npos);
+  now_ += 0.2;
+  ASSERT_TRUE(sends<Identify>(kMove));
+  for (int k = 0; k < 20; ++k) EXPECT_TRUE(sends<Poll>(kMove));
+  EXPECT_EQ(mode(), OperatingMode::kDisabled);
+  EXPECT_NE(session_.state().reason.find("no status"), std::string::npos) << "the reason outlives the repair";
+  enable();
+  EXPECT_TRUE(sends<Velocity>(kMove));
+}
+
+TEST_F(SessionTest, aPortThatGoesAwayLeadsToDisabled) {
+  connect();
+  enable();
+  session_.closed("cable pulled");
+  EXPECT_EQ(mode(), OperatingMode::kDisabled);
+  EXPECT_NE(session_.state().reason.find("cable pulled"), std::string::npos);
+  EXPECT_TRUE(session_.transmit(kMove, now_ + 1.0).empty());
+  now_ += 1.0;
+  connect();
+  for (int k = 0; k < 20; ++k) EXPECT_TRUE(sends<Poll>(kMove));
+}
+
+TEST_F(SessionTest, aRestartedControllerIsNotEnabledAgain) {
+  controller_.status.time = 50.0;
+  connect();
+  enable();
+  controller_.status.time = 0.0;
+  exchange(kMove);
+  EXPECT_EQ(mode(), OperatingMode::kDisabled);
+  EXPECT_NE(session_.state().reason.find("restarted"), std::string::npos);
+  EXPECT_TRUE(sends<Identify>(kMove));
+}
+
+TEST_F(SessionTest, anArmThatIsNotHomedIsNotEnabled) {
+  controller_.status.homed = false;
+  connect();
+  EXPECT_NE(session_.enable(now_).find("homed"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace laparoscope_servo::aesop

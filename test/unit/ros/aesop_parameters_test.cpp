@@ -1,0 +1,117 @@
+#include "laparoscope_servo/ros/aesop_parameters.h"
+
+#include <gtest/gtest.h>
+
+namespace laparoscope_servo::skin {
+namespace {
+
+XmlRpc::XmlRpcValue shipped(const std::string& name) {
+  return parametersFromYaml(std::string(LAPAROSCOPE_SERVO_CONFIG) + "/" + name);
+}
+
+void expectSame(const aesop::KinematicsConfig& a, const aesop::KinematicsConfig& b) {
+  for (std::size_t k = 0; k < aesop::kJoints; ++k) {
+    SCOPED_TRACE("joint " + std::to_string(k + 1));
+    EXPECT_EQ(a.joints[k].prismatic, b.joints[k].prismatic);
+    EXPECT_EQ(a.joints[k].role, b.joints[k].role);
+    for (double aesop::DhJoint::*field :
+         {&aesop::DhJoint::alpha, &aesop::DhJoint::a, &aesop::DhJoint::d, &aesop::DhJoint::theta,
+          &aesop::DhJoint::minimum, &aesop::DhJoint::maximum, &aesop::DhJoint::max_speed}) {
+      EXPECT_NEAR(a.joints[k].*field, b.joints[k].*field, 1e-15);
+    }
+  }
+  EXPECT_EQ(a.scope_length, b.scope_length);
+  EXPECT_EQ(a.depth_minimum, b.depth_minimum);
+  EXPECT_EQ(a.depth_maximum, b.depth_maximum);
+}
+
+TEST(AesopParameters, shippedFileIsTheDefaults) {
+  XmlRpc::XmlRpcValue tree = shipped("aesop.yaml");
+  tree["port"] = std::string("/dev/ttyUSB0");
+  ParameterReader reader(tree, "/aesop");
+  const AesopParameters read = readAesopParameters(reader);
+  ASSERT_TRUE(reader.errors().empty()) << reader.report();
+  const AesopParameters defaults;
+  EXPECT_EQ(read.port, "/dev/ttyUSB0");
+  EXPECT_EQ(read.baud_rate, defaults.baud_rate);
+  EXPECT_EQ(read.frame_prefix, defaults.frame_prefix);
+  expectSame(read.driver.kinematics, defaults.driver.kinematics);
+  EXPECT_EQ(read.driver.insertion_point, defaults.driver.insertion_point);
+  EXPECT_EQ(read.driver.motion.limit_margin_angle, defaults.driver.motion.limit_margin_angle);
+  EXPECT_EQ(read.driver.motion.limit_margin_distance, defaults.driver.motion.limit_margin_distance);
+  EXPECT_EQ(read.driver.motion.singular_slow, defaults.driver.motion.singular_slow);
+  EXPECT_EQ(read.driver.motion.singular_stop, defaults.driver.motion.singular_stop);
+  EXPECT_EQ(read.driver.command.timeout, defaults.driver.command.timeout);
+  EXPECT_EQ(read.driver.command.max_stamp_age, defaults.driver.command.max_stamp_age);
+  EXPECT_EQ(read.driver.command.max_pan, defaults.driver.command.max_pan);
+  EXPECT_EQ(read.driver.command.max_tilt, defaults.driver.command.max_tilt);
+  EXPECT_EQ(read.driver.command.max_spin, defaults.driver.command.max_spin);
+  EXPECT_EQ(read.driver.command.max_insertion, defaults.driver.command.max_insertion);
+  EXPECT_EQ(read.driver.session.rate, defaults.driver.session.rate);
+  EXPECT_EQ(read.driver.session.time_to_live, defaults.driver.session.time_to_live);
+  EXPECT_EQ(read.driver.session.status_timeout, defaults.driver.session.status_timeout);
+  EXPECT_EQ(read.driver.session.request_timeout, defaults.driver.session.request_timeout);
+}
+
+TEST(AesopParameters, everyParameterOfTheShippedFileIsRead) {
+  XmlRpc::XmlRpcValue tree = shipped("aesop.yaml");
+  tree["port"] = std::string("/dev/ttyUSB0");
+  for (const char* group : {"motion", "command", "link"}) {
+    for (auto& member : tree[group]) {
+      XmlRpc::XmlRpcValue changed = tree;
+      changed[group][member.first] = std::string("wrong");
+      ParameterReader reader(changed, "/aesop");
+      readAesopParameters(reader);
+      EXPECT_EQ(reader.errors().size(), 1u) << group << "/" << member.first;
+    }
+  }
+}
+
+TEST(EmulatorParameters, shippedFilesAreTheDefaults) {
+  ParameterReader reader(mergeParameters(shipped("aesop.yaml"), shipped("emulator.yaml")), "params");
+  const sim::EmulatorConfig read = readEmulatorConfig(reader);
+  ASSERT_TRUE(reader.errors().empty()) << reader.report();
+  const sim::EmulatorConfig defaults;
+  expectSame(read.kinematics, defaults.kinematics);
+  EXPECT_EQ(read.arm.start, defaults.arm.start);
+  EXPECT_EQ(read.arm.insertion_point, defaults.arm.insertion_point);
+  EXPECT_EQ(read.arm.delay, defaults.arm.delay);
+  EXPECT_EQ(read.arm.dead_zone, defaults.arm.dead_zone);
+  EXPECT_EQ(read.arm.breakaway, defaults.arm.breakaway);
+  EXPECT_EQ(read.arm.time_constant, defaults.arm.time_constant);
+}
+
+TEST(EmulatorParameters, trocarOfTheNodeAndOfTheEmulatorAgree) {
+  EXPECT_EQ(aesop::DriverConfig().insertion_point, sim::ArmConfig().insertion_point);
+}
+
+TEST(AesopParameters, portIsRequired) {
+  ParameterReader reader(XmlRpc::XmlRpcValue(), "/aesop");
+  readAesopParameters(reader);
+  ASSERT_EQ(reader.errors().size(), 1u);
+  EXPECT_NE(reader.errors()[0].find("/aesop/port is not set"), std::string::npos);
+}
+
+std::string errorsWith(const std::string& name, const std::vector<double>& numbers) {
+  XmlRpc::XmlRpcValue tree;
+  tree["port"] = std::string("p");
+  XmlRpc::XmlRpcValue list;
+  for (std::size_t k = 0; k < numbers.size(); ++k) list[static_cast<int>(k)] = numbers[k];
+  tree["kinematics"][name] = list;
+  ParameterReader reader(tree, "/aesop");
+  readAesopParameters(reader);
+  return reader.report();
+}
+
+TEST(AesopParameters, jointNumbers) {
+  EXPECT_EQ(errorsWith("driven", {1, 2, 3, 7}), "");
+  EXPECT_NE(errorsWith("driven", {1, 2, 3, 8}), "");
+  EXPECT_NE(errorsWith("driven", {1, 2, 3, 2.5}), "");
+  EXPECT_NE(errorsWith("driven", {1, 2, 3, 4}).find("joint 4 is listed as driven and as by_hand"), std::string::npos);
+  EXPECT_NE(errorsWith("by_hand", {4, 5}).find("number of passive joints = 1"), std::string::npos);
+  EXPECT_NE(errorsWith("prismatic", {1, 5}).find("passive and prismatic"), std::string::npos);
+  EXPECT_NE(errorsWith("alpha", {0, 0, 0}), "");
+}
+
+}  // namespace
+}  // namespace laparoscope_servo::skin

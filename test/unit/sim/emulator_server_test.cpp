@@ -1,0 +1,120 @@
+// The emulator as it runs: a port, a control socket, their clients.
+#include "laparoscope_servo/sim/emulator_server.h"
+
+#include <gtest/gtest.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <fstream>
+#include <memory>
+#include <stdexcept>
+#include <thread>
+
+#include "laparoscope_servo/aesop/transport.h"
+#include "laparoscope_servo/sim/emulator_control_client.h"
+
+namespace laparoscope_servo::sim {
+namespace {
+
+class EmulatorServerTest : public ::testing::Test {
+ protected:
+  EmulatorServerTest() {
+    std::string pattern = ::testing::TempDir() + "/server_XXXXXX";
+    directory_ = ::mkdtemp(pattern.data());
+  }
+  ~EmulatorServerTest() override {
+    end();
+    ::unlink(path("file").c_str());
+    ::rmdir(directory_.c_str());
+  }
+  void start() {
+    server_ = std::make_unique<EmulatorServer>(EmulatorConfig(), path("port"), path("control"), 1);
+    thread_ = std::thread([this] { server_->run(stop_); });
+  }
+  void end() {
+    stop_ = true;
+    if (thread_.joinable()) thread_.join();
+    server_.reset();
+  }
+  std::string path(const std::string& name) const { return directory_ + "/" + name; }
+
+  template <typename Condition>
+  static bool waitFor(Condition condition) {
+    const auto limit = std::chrono::steady_clock::now() + std::chrono::seconds(3);
+    while (!condition()) {
+      if (std::chrono::steady_clock::now() > limit) return false;
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    return true;
+  }
+
+  std::string directory_;
+  std::atomic<bool> stop_{false};
+  std::unique_ptr<EmulatorServer> server_;
+  std::thread thread_;
+};
+
+TEST_F(EmulatorServerTest, answersOnThePort) {
+  start();
+  aesop::SerialTransport transport;
+  transport.open(path("port"), 38400);
+  transport.write(aesop::encode({1, aesop::Identify()}));
+  aesop::Decoder decoder;
+  std::vector<aesop::Frame> frames;
+  EXPECT_TRUE(waitFor([&] {
+    frames = decoder.push(transport.read());
+    return !frames.empty();
+  }));
+  EXPECT_TRUE(std::holds_alternative<aesop::Identity>(frames.at(0).message));
+}
+
+TEST_F(EmulatorServerTest, clientOfTheControlSocket) {
+  start();
+  EmulatorControlClient client(path("control"));
+  EmulatorControlClient other(path("control"));
+  const EmulatorState before = client.state();
+  EXPECT_NEAR(before.q[0], 0.25, 1e-9);
+  client.hand({0.0, 0.0, 0.0, 0.01}, 0.1);
+  EXPECT_TRUE(waitFor([&] { return !other.motion().moving; }));
+  EXPECT_NEAR(other.state().q[0], 0.24, 1e-4);
+  EXPECT_GT(other.state().time, before.time);
+  EXPECT_THROW(client.request("dance"), std::runtime_error);
+  EXPECT_THROW(client.request("state\nstate"), std::runtime_error);
+  EXPECT_NO_THROW(client.state()) << "a refusal does not end the connection";
+}
+
+TEST_F(EmulatorServerTest, hangupTakesThePortAwayAndBringsItBack) {
+  start();
+  EmulatorControlClient client(path("control"));
+  aesop::SerialTransport transport;
+  transport.open(path("port"), 38400);
+  client.fault("hangup");
+  EXPECT_TRUE(waitFor([&] { return ::access(path("port").c_str(), F_OK) != 0; }));
+  EXPECT_THROW(waitFor([&] { return !transport.read().empty(); }), aesop::TransportError);
+  client.fault("return");
+  EXPECT_TRUE(waitFor([&] { return ::access(path("port").c_str(), F_OK) == 0; }));
+  EXPECT_NO_THROW(transport.open(path("port"), 38400));
+}
+
+TEST_F(EmulatorServerTest, endsCleanlyAndTheClientSaysSo) {
+  start();
+  EmulatorControlClient client(path("control"), 0.5);
+  client.state();
+  end();
+  EXPECT_THROW(client.state(), std::runtime_error);
+  EXPECT_THROW(client.state(), std::runtime_error);
+  EXPECT_THROW(EmulatorControlClient{path("control")}, std::runtime_error) << "the socket is gone";
+  EXPECT_NE(::access(path("port").c_str(), F_OK), 0);
+}
+
+TEST_F(EmulatorServerTest, namesThatAreTaken) {
+  std::ofstream(path("file")) << "precious";
+  EXPECT_THROW(EmulatorServer(EmulatorConfig(), path("file"), "", 1), std::runtime_error);
+  EXPECT_THROW(EmulatorServer(EmulatorConfig(), path("port"), path("file"), 1), std::runtime_error);
+  EXPECT_THROW(EmulatorServer(EmulatorConfig(), path("port"), directory_ + "/no/such/folder", 1), std::runtime_error);
+  EXPECT_NE(::access(path("port").c_str(), F_OK), 0) << "no port stays behind";
+}
+
+}  // namespace
+}  // namespace laparoscope_servo::sim
