@@ -39,6 +39,13 @@ cv::Rect boundingBox(const geometry::Quadrilateral& q, double margin) {
   return {first, last + cv::Point(1, 1)};
 }
 
+// Pixels of the ROI to those of the image.
+Eigen::Matrix3d fromPatch(const geometry::Rectangle& roi) {
+  Eigen::Matrix3d m = Eigen::Matrix3d::Identity();
+  m.topRightCorner<2, 1>() << roi.x, roi.y;
+  return m;
+}
+
 double farthestCorner(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b, const geometry::Rectangle& roi) {
   const geometry::Quadrilateral p = geometry::apply(a, roi.corners());
   const geometry::Quadrilateral q = geometry::apply(b, roi.corners());
@@ -129,8 +136,7 @@ class RegionTracker::Implementation {
   OcclusionGates gates_;
   image::RegionPyramid pyramid_;
   image::ChannelWeights channel_ = image::kLuma;
-  cv::Mat patch_;
-  cv::Mat1b valid_;
+  image::ColourPatch patch_;
 
   State state_ = State::kIdle;
   cv::Size image_size_;
@@ -170,7 +176,8 @@ TrackResult RegionTracker::Implementation::select(const cv::Mat& image, double s
   if (image.channels() == 3 && config_.esm.adapt_channel) fresh.channel_ = strongestChannel(image(box));
   fresh.pyramid_.build(image, boundingBox(roi.corners(), 4.0 * (1 << config_.esm.levels)), config_.esm.levels, fresh.channel_);
   fresh.esm_.setReference(fresh.pyramid_, roi);
-  fresh.gates_.setReference(image(box).clone());
+  image::warpNearest(image, fromPatch(roi), box.size(), fresh.patch_);
+  fresh.gates_.setReference(fresh.patch_);
   fresh.esm_.setWeights(fresh.gates_.weights());
   const double error = fresh.esm_.referenceCornerError(kTypicalNoise);
   if (!(error <= config_.min_texture)) {
@@ -237,10 +244,8 @@ Eigen::Matrix3d RegionTracker::Implementation::predict(double stamp) const {
 // The gates' view of the image where the ROI is taken to be.
 void RegionTracker::Implementation::look(const cv::Mat& image, const Eigen::Matrix3d& g) {
   const geometry::Rectangle& roi = esm_.roi();
-  Eigen::Matrix3d from_patch = Eigen::Matrix3d::Identity();
-  from_patch.topRightCorner<2, 1>() << roi.x, roi.y;
-  image::warpNearest(image, g * from_patch, cv::Size(gates_.grid().width(), gates_.grid().height()), patch_, valid_);
-  gates_.observeColour(patch_, valid_);
+  image::warpNearest(image, g * fromPatch(roi), cv::Size(gates_.grid().width(), gates_.grid().height()), patch_);
+  gates_.observeColour(patch_);
   esm_.setWeights(gates_.weights());
   shown_ = g;
 }
@@ -383,9 +388,8 @@ cv::Mat RegionTracker::Implementation::occlusionMask() const {
   for (int j = 0; j < grid.height(); ++j) {
     for (int i = 0; i < grid.width(); ++i) areas(j, i) = gates_.occluded(grid.areaOf(i, j)) ? 255 : 0;
   }
-  Eigen::Matrix3d from_patch = Eigen::Matrix3d::Identity();
-  from_patch.topRightCorner<2, 1>() << esm_.roi().x, esm_.roi().y;
-  const Eigen::Matrix3d g = (state_ == State::kTracking || confirmations_ == 0 ? last_.g : candidate_.g) * from_patch;
+  const Eigen::Matrix3d g =
+      (state_ == State::kTracking || confirmations_ == 0 ? last_.g : candidate_.g) * fromPatch(esm_.roi());
   cv::Matx33d warp;
   for (int r = 0; r < 3; ++r) {
     for (int c = 0; c < 3; ++c) warp(r, c) = g(r, c);

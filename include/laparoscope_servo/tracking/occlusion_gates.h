@@ -19,10 +19,10 @@ class OcclusionGates {
   OcclusionGates(const OcclusionConfig& config, int saturation);
 
   // The reference's ROI. Throws std::invalid_argument when it has fewer pixels than areas in a direction.
-  void setReference(const cv::Mat& patch);
+  void setReference(const image::ColourPatch& patch);
 
-  // Before ESM: `patch` is the ROI warped from the current image, with what is valid of it (see image::warpNearest).
-  void observeColour(const cv::Mat& patch, const cv::Mat1b& valid);
+  // Before ESM: `patch` is the ROI as the current image shows it where it is expected, see image::warpNearest.
+  void observeColour(const image::ColourPatch& patch);
 
   // After ESM: see structureDissimilarity. Returns how many areas that drove ESM turned out to be occluded.
   int observeStructure(const cv::Mat1f& image, const cv::Mat1f& reference, const cv::Mat1f& valid, const LightModel& light,
@@ -51,11 +51,12 @@ class OcclusionGates {
   ColourHistograms current_;
   bool reference_has_colour_ = false;
   bool colour_used_ = false;
-  cv::Mat1b reference_saturated_, saturated_, valid_;
+  cv::Mat1b reference_saturated_, saturated_, unusable_;  // 255 or 0 per pixel; unusable: saturated in either, or not valid
   std::vector<float> distances_;       // (2) per area
   std::vector<char> colour_rejects_;   // per area, in this image
   std::vector<int> held_;              // per area: images for which the structure gate keeps it out
   std::vector<float> dissimilarity_;
+  std::vector<float> row_weights_;
   cv::Mat1f weights_;
 };
 

@@ -24,6 +24,12 @@ class OcclusionGatesTest : public ::testing::Test {
     cv::cvtColor(patch_, luma, cv::COLOR_BGR2GRAY);
     luma.convertTo(grey_, CV_32F);
   }
+  image::ColourPatch seen(const cv::Mat& image) const {
+    image::ColourPatch patch;
+    image::warpNearest(image, Eigen::Matrix3d::Identity(), image.size(), patch);
+    patch.valid &= valid_(cv::Rect(0, 0, image.cols, image.rows));
+    return patch;
+  }
   static int occludedIn(const OcclusionGates& gates) {
     int n = 0;
     for (int area = 0; area < gates.grid().count(); ++area) n += gates.occluded(area);
@@ -33,8 +39,8 @@ class OcclusionGatesTest : public ::testing::Test {
 
 TEST_F(OcclusionGatesTest, LetEverythingThroughOnTheReference) {
   OcclusionGates gates(config_, 250);
-  gates.setReference(patch_);
-  gates.observeColour(patch_, valid_);
+  gates.setReference(seen(patch_));
+  gates.observeColour(seen(patch_));
   EXPECT_TRUE(gates.colourUsed());
   EXPECT_EQ(gates.observeStructure(grey_, grey_, all_, LightModel(), 2.0), 0);
   EXPECT_EQ(occludedIn(gates), 0);
@@ -44,11 +50,11 @@ TEST_F(OcclusionGatesTest, LetEverythingThroughOnTheReference) {
 TEST_F(OcclusionGatesTest, WeighWhatIsSaturatedOrInvalidWithNothing) {
   patch_.at<cv::Vec3b>(70, 70) = {255, 255, 255};
   OcclusionGates gates(config_, 250);
-  gates.setReference(patch_);
+  gates.setReference(seen(patch_));
   cv::Mat current = patch_.clone();
   current.at<cv::Vec3b>(20, 20) = {255, 255, 255};
   valid_(100, 100) = 0;
-  gates.observeColour(current, valid_);
+  gates.observeColour(seen(current));
   const cv::Mat1f& w = gates.weights();
   EXPECT_EQ(w(70, 70), 0.0f);
   EXPECT_EQ(w(72, 68), 0.0f);
@@ -60,21 +66,21 @@ TEST_F(OcclusionGatesTest, WeighWhatIsSaturatedOrInvalidWithNothing) {
 
 TEST_F(OcclusionGatesTest, TheColourGateDecidesAfreshInEachImage) {
   OcclusionGates gates(config_, 256);
-  gates.setReference(patch_);
+  gates.setReference(seen(patch_));
   cv::Mat current = patch_.clone();
   current(cv::Rect(0, 0, 10, 10)).setTo(cv::Scalar(200, 200, 200));
-  gates.observeColour(current, valid_);
+  gates.observeColour(seen(current));
   EXPECT_TRUE(gates.occluded(0));
   EXPECT_GT(gates.distances()[0], 0.5f);
   EXPECT_EQ(gates.weights()(5, 5), 0.0f);
-  gates.observeColour(patch_, valid_);
+  gates.observeColour(seen(patch_));
   EXPECT_FALSE(gates.occluded(0));
 }
 
 TEST_F(OcclusionGatesTest, TheStructureGateHoldsForTheConfiguredImages) {
   config_.hold = 2;
   OcclusionGates gates(config_, 256);
-  gates.setReference(patch_);
+  gates.setReference(seen(patch_));
   cv::Mat1f other = grey_.clone();
   cv::Mat1f turned;
   cv::flip(grey_, turned, -1);
@@ -95,13 +101,13 @@ TEST_F(OcclusionGatesTest, StandAsideWithoutColour) {
   OcclusionGates gates(config_, 256);
   cv::Mat mono;
   cv::cvtColor(patch_, mono, cv::COLOR_BGR2GRAY);
-  gates.setReference(mono);
-  gates.observeColour(mono, valid_);
+  gates.setReference(seen(mono));
+  gates.observeColour(seen(mono));
   EXPECT_FALSE(gates.colourUsed());
   EXPECT_EQ(occludedIn(gates), 0);
   EXPECT_TRUE(std::isnan(gates.distances()[0]));
-  gates.setReference(patch_);  // a colour reference, then a mono image
-  gates.observeColour(mono, valid_);
+  gates.setReference(seen(patch_));  // a colour reference, then a mono image
+  gates.observeColour(seen(mono));
   EXPECT_FALSE(gates.colourUsed());
 }
 
@@ -109,15 +115,15 @@ TEST_F(OcclusionGatesTest, BothCanBeTurnedOff) {
   config_.colour = ColourGate::kOff;
   config_.structure = false;
   OcclusionGates gates(config_, 256);
-  gates.setReference(patch_);
-  gates.observeColour(cv::Mat(kSize, CV_8UC3, cv::Scalar(200, 200, 200)), valid_);
+  gates.setReference(seen(patch_));
+  gates.observeColour(seen(cv::Mat(kSize, CV_8UC3, cv::Scalar(200, 200, 200))));
   EXPECT_EQ(gates.observeStructure(255.0 - grey_, grey_, all_, LightModel(), 2.0), 0);
   EXPECT_EQ(occludedIn(gates), 0);
 }
 
 TEST_F(OcclusionGatesTest, RefuseARegionWithFewerPixelsThanAreas) {
   OcclusionGates gates(config_, 256);
-  EXPECT_THROW(gates.setReference(patch_(cv::Rect(0, 0, 10, 50))), std::invalid_argument);
+  EXPECT_THROW(gates.setReference(seen(patch_(cv::Rect(0, 0, 10, 50)))), std::invalid_argument);
 }
 
 }  // namespace
