@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-#include "aesop_bench.h"
+#include "system/aesop/aesop_bench.h"
 
 namespace laparoscope_servo::test {
 namespace {

@@ -1,7 +1,7 @@
 // Lines that are bad or go away while the arm moves: the node says so, the arm stands, and only enable moves it again.
 #include <gtest/gtest.h>
 
-#include "aesop_bench.h"
+#include "system/aesop/aesop_bench.h"
 
 namespace laparoscope_servo::test {
 namespace {

@@ -5,8 +5,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "aesop_bench.h"
 #include "laparoscope_servo/ros/parameters.h"
+#include "system/aesop/aesop_bench.h"
 
 namespace laparoscope_servo::test {
 namespace {

@@ -7,7 +7,7 @@
 #include <iostream>
 #include <limits>
 
-#include "aesop_bench.h"
+#include "system/aesop/aesop_bench.h"
 
 namespace laparoscope_servo::test {
 namespace {
