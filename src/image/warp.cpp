@@ -1,6 +1,9 @@
 #include "laparoscope_servo/image/warp.h"
 
 #include <algorithm>
+#include <cstring>
+
+#include "laparoscope_servo/image/multiversion.h"
 
 namespace laparoscope_servo::image {
 
@@ -13,72 +16,120 @@ struct Row {
   float w0, w1;
 };
 
-// Returns how many pixels are valid.
-int warpRow(const float* image, int stride, int width, int height, const Row& row, int count, float* patch, float* valid) {
+constexpr int kChunk = 256;  // pixels that a row is worked in, so that what lies between the loops stays in the cache
+
+// Where each pixel comes from: the offset of the upper left one of its four neighbours, and its place between them. Returns how
+// many pixels lie inside.
+LAPAROSCOPE_SERVO_CLONES
+int locate(const Row& row, int stride, int width, int height, int first, int count, int* __restrict offset,
+           float* __restrict right_of, float* __restrict below, float* __restrict valid) {
   const float right = static_cast<float>(width - 1);
   const float bottom = static_cast<float>(height - 1);
-  const int last_column = std::max(width - 2, 0);
-  const int last_row = std::max(height - 2, 0);
-  const int step_right = width > 1 ? 1 : 0;
-  const int step_down = height > 1 ? stride : 0;
+  // The last column and row are reached from their neighbours; an image of one pixel has none.
+  const float last_column = static_cast<float>(std::max(width - 2, 0));
+  const float last_row = static_cast<float>(std::max(height - 2, 0));
+  const Row r = row;
   int inside_count = 0;
 #pragma omp simd reduction(+ : inside_count)
   for (int i = 0; i < count; ++i) {
-    const float x = static_cast<float>(i);
-    const float w = row.w0 + row.w1 * x;
-    const float u = (row.u0 + row.u1 * x) / w;
-    const float v = (row.v0 + row.v1 * x) / w;
-    // Comparisons that are false for NaN; bitwise, so that the loop has no branches.
-    const bool inside = (u >= 0.0f) & (u <= right) & (v >= 0.0f) & (v <= bottom) & (w > 0.0f);
-    const float uc = inside ? u : 0.0f;
-    const float vc = inside ? v : 0.0f;
-    const int iu = std::min(static_cast<int>(uc), last_column);
-    const int iv = std::min(static_cast<int>(vc), last_row);
-    const float fu = uc - static_cast<float>(iu);
-    const float fv = vc - static_cast<float>(iv);
-    const int k = iv * stride + iu;
-    const float top = image[k] + fu * (image[k + step_right] - image[k]);
-    const float low = image[k + step_down] + fu * (image[k + step_down + step_right] - image[k + step_down]);
-    patch[i] = top + fv * (low - top);
-    valid[i] = inside ? 1.0f : 0.0f;
-    inside_count += inside ? 1 : 0;
+    const float x = static_cast<float>(first + i);
+    const float w = r.w0 + r.w1 * x;
+    const float u = (r.u0 + r.u1 * x) / w;
+    const float v = (r.v0 + r.v1 * x) / w;
+    // A NaN or an infinity ends at 0, and is not equal to what it came from.
+    float uc = u > 0.0f ? u : 0.0f;
+    float vc = v > 0.0f ? v : 0.0f;
+    uc = uc < right ? uc : right;
+    vc = vc < bottom ? vc : bottom;
+    const int inside = static_cast<int>(uc == u) & static_cast<int>(vc == v) & static_cast<int>(w > 0.0f);
+    const float column = uc < last_column ? uc : last_column;
+    const float line = vc < last_row ? vc : last_row;
+    const int iu = static_cast<int>(column);
+    const int iv = static_cast<int>(line);
+    right_of[i] = uc - static_cast<float>(iu);
+    below[i] = vc - static_cast<float>(iv);
+    offset[i] = iv * stride + iu;
+    valid[i] = static_cast<float>(inside);
+    inside_count += inside;
   }
   return inside_count;
 }
 
-}  // namespace
+LAPAROSCOPE_SERVO_CLONES
+void blend(const float* __restrict upper, const float* __restrict lower, const float* __restrict right_of,
+           const float* __restrict below, int count, float* __restrict patch) {
+#pragma omp simd
+  for (int i = 0; i < count; ++i) {
+    const float top = upper[2 * i] + right_of[i] * (upper[2 * i + 1] - upper[2 * i]);
+    const float low = lower[2 * i] + right_of[i] * (lower[2 * i + 1] - lower[2 * i]);
+    patch[i] = top + below[i] * (low - top);
+  }
+}
 
-bool warpBilinear(const cv::Mat1f& image, const Eigen::Matrix3d& g, cv::Mat1f& patch, cv::Mat1f& valid) {
+// Returns how many pixels are valid.
+int warpRow(const cv::Mat1f& image, int width, const Row& row, int count, float* patch, float* valid) {
+  const float* pixels = image.ptr<float>();
   const int stride = static_cast<int>(image.step1());
+  const int step_down = image.rows > 1 ? stride : 0;
+  int offset[kChunk];
+  float right_of[kChunk], below[kChunk], upper[2 * kChunk], lower[2 * kChunk];
   int inside = 0;
-  for (int j = 0; j < patch.rows; ++j) {
+  for (int first = 0; first < count; first += kChunk) {
+    const int n = std::min(kChunk, count - first);
+    inside += locate(row, stride, width, image.rows, first, n, offset, right_of, below, valid + first);
+    for (int i = 0; i < n; ++i) {
+      std::memcpy(upper + 2 * i, pixels + offset[i], 2 * sizeof(float));
+      std::memcpy(lower + 2 * i, pixels + offset[i] + step_down, 2 * sizeof(float));
+    }
+    blend(upper, lower, right_of, below, n, patch + first);
+  }
+  return inside;
+}
+
+template <typename PatchRow, typename ValidRow>
+bool warpRows(const cv::Mat1f& image, const Eigen::Matrix3d& g, int width, int height, PatchRow patch, ValidRow valid) {
+  // Pairs of neighbours are read; an image of one column is given a second one.
+  cv::Mat1f widened;
+  if (image.cols == 1) cv::hconcat(image, image, widened);
+  const cv::Mat1f& source = image.cols == 1 ? widened : image;
+  int inside = 0;
+  for (int j = 0; j < height; ++j) {
     const Eigen::Vector3d start = g.col(1) * j + g.col(2);
     const Row row = {static_cast<float>(start[0]), static_cast<float>(g(0, 0)), static_cast<float>(start[1]),
                      static_cast<float>(g(1, 0)), static_cast<float>(start[2]), static_cast<float>(g(2, 0))};
-    inside += warpRow(image.ptr<float>(), stride, image.cols, image.rows, row, patch.cols, patch.ptr<float>(j),
-                      valid.ptr<float>(j));
+    inside += warpRow(source, image.cols, row, width, patch(j), valid(j));
   }
-  return inside == patch.rows * patch.cols;
+  return inside == width * height;
 }
 
-void gradients(const cv::Mat1f& patch, cv::Mat1f& gx, cv::Mat1f& gy) {
-  gx.create(patch.size());
-  gy.create(patch.size());
-  const int width = patch.cols;
-  const int height = patch.rows;
-  for (int j = 0; j < height; ++j) {
-    const int above = std::max(j - 1, 0);
-    const int below = std::min(j + 1, height - 1);
-    const float* row = patch.ptr<float>(j);
-    const float* up = patch.ptr<float>(above);
-    const float* down = patch.ptr<float>(below);
-    float* x = gx.ptr<float>(j);
-    float* y = gy.ptr<float>(j);
-    const float scale = below > above ? 1.0f / static_cast<float>(below - above) : 0.0f;
-    for (int i = 0; i < width; ++i) y[i] = scale * (down[i] - up[i]);
-    for (int i = 1; i + 1 < width; ++i) x[i] = 0.5f * (row[i + 1] - row[i - 1]);
-    x[0] = width > 1 ? row[1] - row[0] : 0.0f;
-    x[width - 1] = width > 1 ? row[width - 1] - row[width - 2] : 0.0f;
+LAPAROSCOPE_SERVO_CLONES
+void differences(const float* __restrict row, const float* __restrict above, const float* __restrict below, int count,
+                 float* __restrict gx, float* __restrict gy) {
+#pragma omp simd
+  for (int i = 0; i < count; ++i) {
+    gx[i] = 0.5f * (row[i + 1] - row[i - 1]);
+    gy[i] = 0.5f * (below[i] - above[i]);
+  }
+}
+
+}  // namespace
+
+bool warpBilinear(const cv::Mat1f& image, const Eigen::Matrix3d& g, Patch& patch, Patch& valid) {
+  return warpRows(image, g, patch.width(), patch.height(), [&](int j) { return patch.row(j); },
+                  [&](int j) { return valid.row(j); });
+}
+
+bool warpBilinear(const cv::Mat1f& image, const Eigen::Matrix3d& g, cv::Mat1f& patch, cv::Mat1f& valid) {
+  return warpRows(image, g, patch.cols, patch.rows, [&](int j) { return patch.ptr<float>(j); },
+                  [&](int j) { return valid.ptr<float>(j); });
+}
+
+void gradients(Patch& patch, Patch& gx, Patch& gy) {
+  patch.extrapolate();
+  gx.resize(patch.width(), patch.height());
+  gy.resize(patch.width(), patch.height());
+  for (int j = 0; j < patch.height(); ++j) {
+    differences(patch.row(j), patch.row(j - 1), patch.row(j + 1), patch.width(), gx.row(j), gy.row(j));
   }
 }
 

@@ -40,6 +40,7 @@ void TrackerDiagnostics::processed(double now, const Processed& processed, bool 
   window_.longest_time = std::max(window_.longest_time, processed.processing_time);
   last_image_ = now;
   refusal_.clear();
+  selection_failed_ = !processed.selection_error.empty();
   has_camera_ = processed.camera.has_value();
   camera_error_ = processed.camera_error;
   has_colour_ = processed.image.channels() == 3;
@@ -61,6 +62,7 @@ void TrackerDiagnostics::summarise(double now, diagnostic_updater::DiagnosticSta
     status.summary(DiagnosticStatus::ERROR, "image refused: " + refusal_);
   } else {
     status.summary(static_cast<unsigned char>(levelOf(result_.state)), withReason(result_));
+    if (selection_failed_) status.mergeSummary(DiagnosticStatus::ERROR, "no region selected");
     if (!has_camera_)
       status.mergeSummary(DiagnosticStatus::WARN, "no homography in normalised coordinates: " + camera_error_);
   }

@@ -87,8 +87,8 @@ cv::Mat tissueTexture(int side, std::uint64_t seed) {
   blend(image, smoothStep(fractalNoise(side, 8, 256, 0.6F, random), 0.60, 0.72) * 0.75, {120.0F, 188.0F, 226.0F});
   blend(image, vessels(side, random) * 0.7, {40.0F, 28.0F, 110.0F});
 
-  const cv::Mat1f fine = fractalNoise(side, 32, side, 0.85F, random);
-  image.forEach([&](cv::Vec3f& pixel, const int* at) { pixel *= 0.45F + 1.1F * fine(at[0], at[1]); });
+  const cv::Mat1f fine = fractalNoise(side, 32, side / 2, 0.65F, random);
+  image.forEach([&](cv::Vec3f& pixel, const int* at) { pixel *= 0.2F + 1.6F * fine(at[0], at[1]); });
   cv::Mat result;
   image.convertTo(result, CV_8UC3);
   return result;

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <opencv2/imgproc.hpp>
 
+#include "esm_kernels.h"
 #include "laparoscope_servo/geometry/sl3.h"
 #include "laparoscope_servo/image/warp.h"
 
@@ -17,7 +19,7 @@ constexpr int kMinLevelSide = 8;        // px
 constexpr double kTukey = 4.6851;       // 95 % efficiency for normal noise (Marchand and Chaumette 2004, appendix)
 constexpr double kMadToSigma = 1.4826;  // normal noise
 constexpr double kMinSigma = 1.0;       // grey levels; below it quantisation is mistaken for outliers
-constexpr std::size_t kMaxSamples = 4096;
+constexpr int kMaxSamples = 1024;        // of the residual, for its scale
 
 Eigen::Matrix3d scaling(double s, double x, double y) {
   Eigen::Matrix3d m;
@@ -35,12 +37,47 @@ Eigen::Matrix<double, 2, 8> cornerJacobian(double u, double v) {
   return j;
 }
 
-// Blocks of light are as wide as a twelfth of the ROI, to follow its shading, and at least this wide, to leave the texture's own
-// contrast to the motion.
-constexpr int kLightBlock = 16;  // px of the level
+// Blocks of light are about a twelfth of the ROI, to follow its shading, and at least a strip, to leave the texture's own contrast
+// to the motion.
 constexpr int kLightBlocksAlong = 12;
 
-int blocksAlong(int pixels) { return std::clamp((pixels + kLightBlock / 2) / kLightBlock, 1, kLightBlocksAlong); }
+// Begins of about equal parts of `size`, each a multiple of `unit` but for the last, as many as fit with at least `least` each.
+std::vector<int> split(int size, int unit, int least) {
+  const int parts = std::clamp((size + least / 2) / least, 1, kLightBlocksAlong);
+  std::vector<int> begins;
+  for (int k = 0; k < parts; ++k) {
+    const int begin = (k * size / parts + unit / 2) / unit * unit;
+    if (begins.empty() || begin > begins.back()) begins.push_back(begin);
+  }
+  begins.push_back(size);
+  return begins;
+}
+
+// Of three rows, the least in each column, then of three columns around each second one.
+void leastOfNeighbours(const image::Patch& fine, const cv::Point& offset, std::vector<float>& row, image::Patch& coarse) {
+  const int width = fine.width();
+  row.resize(width + 2);
+  for (int j = 0; j < coarse.height(); ++j) {
+    const int centre = std::min(2 * j + offset.y, fine.height() - 1);
+    const float* a = fine.row(std::max(centre - 1, 0));
+    const float* b = fine.row(centre);
+    const float* c = fine.row(std::min(centre + 1, fine.height() - 1));
+    float* least = row.data() + 1;
+    for (int i = 0; i < width; ++i) least[i] = std::min(std::min(a[i], b[i]), c[i]);
+    least[-1] = least[0];
+    least[width] = least[width - 1];
+    float* to = coarse.row(j);
+    for (int i = 0; i < coarse.width(); ++i) {
+      const int k = std::min(2 * i + offset.x, width - 1);
+      to[i] = std::min(std::min(least[k - 1], least[k]), least[k + 1]);
+    }
+  }
+}
+
+void copy(const cv::Mat1f& from, image::Patch& to) {
+  to.resize(from.cols, from.rows);
+  for (int j = 0; j < from.rows; ++j) std::copy_n(from.ptr<float>(j), from.cols, to.row(j));
+}
 
 }  // namespace
 
@@ -62,104 +99,92 @@ void Esm::setReference(const image::RegionPyramid& reference, const geometry::Re
     const cv::Rect patch(begin, cv::Size(end.x - begin.x + 1, end.y - begin.y + 1));
     if (l > 0 && std::min(patch.width, patch.height) < kMinLevelSide) break;
     EsmLevel level;
-    level.value = reference.level(l)(patch).clone();
+    copy(reference.level(l)(patch), level.value);
     image::gradients(level.value, level.gx, level.gy);
-    level.weight = cv::Mat1f::ones(patch.size());
-    level.blocks = image::AreaGrid(patch.width, patch.height, blocksAlong(patch.height), blocksAlong(patch.width));
-    level.bias.assign(level.blocks.count(), 0.0);
+    level.weight.resize(patch.width, patch.height);
+    level.weight.view().setTo(1.0f);
+    level.used.resize(patch.width, patch.height);
+    level.warped.resize(patch.width, patch.height);
+    level.valid.resize(patch.width, patch.height);
     level.scale = size;
     level.first = begin * size - cv::Point(x, y);
     level.image_T_patch = scaling(size, roi.x + level.first.x, roi.y + level.first.y);
-    levels_.push_back(level);
+    // Cells of an eighth of the patch or less: the Jacobian's polynomials hardly change within.
+    level.cells_per_strip = patch.width >= 128 ? 1 : patch.width >= 64 ? 2 : 4;
+    level.cell_rows = patch.height >= 128 ? kMaxCellRows : patch.height >= 64 ? kMaxCellRows / 2 : kMaxCellRows / 4;
+    planLight(level);
+    levels_.push_back(std::move(level));
   }
+}
+
+void Esm::planLight(EsmLevel& level) const {
+  const std::vector<int> columns = split(level.value.width(), image::Patch::kStrip, image::Patch::kStrip);
+  level.block_row_begin = split(level.value.height(), kMaxCellRows, image::Patch::kStrip);
+  level.block_columns = static_cast<int>(columns.size()) - 1;
+  level.block_of_strip.resize(level.value.strips());
+  for (int strip = 0; strip < level.value.strips(); ++strip) {
+    const auto next = std::upper_bound(columns.begin(), columns.end() - 1, strip * image::Patch::kStrip);
+    level.block_of_strip[strip] = static_cast<int>(next - columns.begin()) - 1;
+  }
+  level.bias.assign(level.block_columns * (level.block_row_begin.size() - 1), 0.0);
 }
 
 void Esm::setWeights(const cv::Mat1f& weights) {
-  weights.copyTo(levels_[0].weight);
+  copy(weights, levels_[0].weight);
   for (std::size_t l = 1; l < levels_.size(); ++l) {
     const EsmLevel& fine = levels_[l - 1];
-    EsmLevel& coarse = levels_[l];
-    const int fine_scale = static_cast<int>(fine.scale);
-    const cv::Point offset = (coarse.first - fine.first) / fine_scale;
-    for (int j = 0; j < coarse.weight.rows; ++j) {
-      const int below = std::min(2 * j + offset.y + 1, fine.weight.rows - 1);
-      for (int i = 0; i < coarse.weight.cols; ++i) {
-        const int next = std::min(2 * i + offset.x + 1, fine.weight.cols - 1);
-        float least = 1.0f;
-        for (int b = std::max(2 * j + offset.y - 1, 0); b <= below; ++b) {
-          for (int a = std::max(2 * i + offset.x - 1, 0); a <= next; ++a) least = std::min(least, fine.weight(b, a));
-        }
-        coarse.weight(j, i) = least;
-      }
-    }
+    leastOfNeighbours(fine.weight, (levels_[l].first - fine.first) / static_cast<int>(fine.scale), samples_, levels_[l].weight);
   }
 }
 
-void Esm::warp(const image::RegionPyramid& current, const EsmLevel& level, int l, const Eigen::Matrix3d& g) {
+void Esm::warp(const image::RegionPyramid& current, EsmLevel& level, int l, const Eigen::Matrix3d& g) {
   const double size = level.scale;
   const Eigen::Matrix3d level_T_image = scaling(1.0 / size, -current.origin().x / size, -current.origin().y / size);
-  warped_.create(level.value.size());
-  valid_.create(level.value.size());
+  level.all_valid =
+      image::warpBilinear(current.level(l), level_T_image * g * level.image_T_patch, level.warped, level.valid);
+  level.warped.extrapolate();
+  if (level.all_valid) return;
   // A pixel beside one that is not valid has no gradient.
-  if (!image::warpBilinear(current.level(l), level_T_image * g * level.image_T_patch, warped_, valid_)) {
-    cv::Mat1f eroded = valid_.clone();
-    for (int j = 0; j < valid_.rows; ++j) {
-      for (int i = 0; i < valid_.cols; ++i) {
-        float least = valid_(j, i);
-        if (i > 0) least = std::min(least, valid_(j, i - 1));
-        if (j > 0) least = std::min(least, valid_(j - 1, i));
-        if (i + 1 < valid_.cols) least = std::min(least, valid_(j, i + 1));
-        if (j + 1 < valid_.rows) least = std::min(least, valid_(j + 1, i));
-        eroded(j, i) = least;
-      }
-    }
-    valid_ = eroded;
-  }
-  image::gradients(warped_, gx_, gy_);
+  cv::Mat1f valid = level.valid.view();
+  cv::erode(valid.clone(), valid, cv::getStructuringElement(cv::MORPH_CROSS, cv::Size(3, 3)));
+  cv::Mat1f used = level.used.view();
+  cv::multiply(level.weight.view(), valid, used);
 }
 
 void Esm::forgetLight() { light_known_ = false; }
 
 void Esm::startLight(EsmLevel& level, const EsmState& state) {
-  for (int row = 0; row < level.blocks.rows(); ++row) {
-    for (int column = 0; column < level.blocks.columns(); ++column) {
-      double sum = 0.0;
-      double weight = 0.0;
-      for (int j = level.blocks.rowBegin(row); j < level.blocks.rowBegin(row + 1); ++j) {
-        for (int i = level.blocks.columnBegin(column); i < level.blocks.columnBegin(column + 1); ++i) {
-          const double w = level.weight(j, i) * valid_(j, i);
-          sum += w * (level.value(j, i) - state.gain * warped_(j, i));
-          weight += w;
-        }
+  const image::Patch& weight = level.all_valid ? level.weight : level.used;
+  std::vector<double> sums(level.bias.size(), 0.0), weights(level.bias.size(), 0.0);
+  for (std::size_t block_row = 0; block_row + 1 < level.block_row_begin.size(); ++block_row) {
+    for (int j = level.block_row_begin[block_row]; j < level.block_row_begin[block_row + 1]; ++j) {
+      for (int i = 0; i < level.value.width(); ++i) {
+        const std::size_t block = block_row * level.block_columns + level.block_of_strip[i / image::Patch::kStrip];
+        sums[block] += weight(j, i) * (level.value(j, i) - state.gain * level.warped(j, i));
+        weights[block] += weight(j, i);
       }
-      level.bias[row * level.blocks.columns() + column] = weight > 0.0 ? sum / weight : state.bias;
     }
+  }
+  for (std::size_t block = 0; block < sums.size(); ++block) {
+    level.bias[block] = weights[block] > 0.0 && config_.light == Light::kLocal ? sums[block] / weights[block] : state.bias;
   }
 }
 
-void Esm::computeResidual(const EsmLevel& level, const EsmState& state) {
-  residual_.create(level.value.size());
-  const float gain = static_cast<float>(state.gain);
-  for (int j = 0; j < level.value.rows; ++j) {
-    const float* t = level.value.ptr<float>(j);
-    const float* image = warped_.ptr<float>(j);
-    float* r = residual_.ptr<float>(j);
-    const double* bias = level.bias.data() + level.blocks.rowOf(j) * level.blocks.columns();
-    for (int column = 0; column < level.blocks.columns(); ++column) {
-      const float b = static_cast<float>(bias[column]);
-      const int end = level.blocks.columnBegin(column + 1);
-      for (int k = level.blocks.columnBegin(column); k < end; ++k) r[k] = gain * image[k] + b - t[k];
-    }
-  }
-}
-
-double Esm::residualScale(const EsmLevel& level) {
+double Esm::residualScale(const EsmLevel& level, const EsmState& state) {
   samples_.clear();
-  const int stride = static_cast<int>(std::max<std::size_t>(1, level.value.total() / kMaxSamples));
-  // A stride along the rows that starts elsewhere in each row, so that no pattern of the image is preferred.
-  for (int j = 0; j < level.value.rows; ++j) {
-    for (int i = (j * 7) % stride; i < level.value.cols; i += stride) {
-      if (level.weight(j, i) * valid_(j, i) > 0.0f) samples_.push_back(std::abs(residual_(j, i)));
+  const image::Patch& weight = level.all_valid ? level.weight : level.used;
+  const int pixels = level.value.width() * level.value.height();
+  const int stride = std::max(1, pixels / kMaxSamples);
+  const float gain = static_cast<float>(state.gain);
+  std::size_t block_row = 0;
+  for (int j = 0; j < level.value.height(); ++j) {
+    if (j >= level.block_row_begin[block_row + 1]) ++block_row;
+    const double* bias = level.bias.data() + block_row * level.block_columns;
+    // A stride along the rows that starts elsewhere in each row, so that no pattern of the image is preferred.
+    for (int i = (j * 7) % stride; i < level.value.width(); i += stride) {
+      if (!(weight(j, i) > 0.0f)) continue;
+      const float b = static_cast<float>(bias[level.block_of_strip[i / image::Patch::kStrip]]);
+      samples_.push_back(std::abs(gain * level.warped(j, i) + b - level.value(j, i)));
     }
   }
   if (samples_.empty()) return kMinSigma;
@@ -169,47 +194,48 @@ double Esm::residualScale(const EsmLevel& level) {
 }
 
 void Esm::accumulate(const EsmLevel& level, const EsmState& state, double sigma) {
-  const float gain = static_cast<float>(state.gain);
-  const float half_per_unit = static_cast<float>(0.5 * half_size_ / level.scale);
-  const float rejection = config_.robust ? static_cast<float>(1.0 / (kTukey * sigma)) : 0.0f;
+  CellInput input;
+  input.image = &level.warped;
+  input.reference = &level.value;
+  input.reference_gx = &level.gx;
+  input.reference_gy = &level.gy;
+  input.weight = level.all_valid ? &level.weight : &level.used;
+  input.gain = static_cast<float>(state.gain);
+  input.inverse_rejection = config_.robust ? static_cast<float>(1.0 / (kTukey * sigma)) : 0.0f;
+  // The kernel adds both gradients; J takes their mean, per normalised unit.
+  equations_.reset(config_.light, 0.5 * half_size_ / level.scale);
   const Eigen::Matrix3d unit_T_patch = n_ * level.image_T_patch;
-  for (std::vector<float>* row : {&row_gx_, &row_gy_, &row_intensity_, &row_weight_}) row->resize(level.value.cols);
-  PixelRow row;
-  row.du = static_cast<float>(unit_T_patch(0, 0));
-  row.gx = row_gx_.data();
-  row.gy = row_gy_.data();
-  row.intensity = row_intensity_.data();
-  row.weight = row_weight_.data();
-  equations_.reset(config_.light);
+  const int strips = level.value.strips();
+  strip_bias_.resize(strips);
   block_sums_.clear();
-  for (int block_row = 0; block_row < level.blocks.rows(); ++block_row) {
-    for (int column = 0; column < level.blocks.columns(); ++column) {
-      const int begin = level.blocks.columnBegin(column);
-      row.count = level.blocks.columnBegin(column + 1) - begin;
-      row.u0 = static_cast<float>(unit_T_patch(0, 2) + unit_T_patch(0, 0) * begin);
-      for (int j = level.blocks.rowBegin(block_row); j < level.blocks.rowBegin(block_row + 1); ++j) {
-        const float* t = level.value.ptr<float>(j) + begin;
-        const float* image = warped_.ptr<float>(j) + begin;
-        const float* tx = level.gx.ptr<float>(j) + begin;
-        const float* ty = level.gy.ptr<float>(j) + begin;
-        const float* ix = gx_.ptr<float>(j) + begin;
-        const float* iy = gy_.ptr<float>(j) + begin;
-        const float* w = level.weight.ptr<float>(j) + begin;
-        const float* valid = valid_.ptr<float>(j) + begin;
-        const float* r = residual_.ptr<float>(j) + begin;
-#pragma omp simd
-        for (int k = 0; k < row.count; ++k) {
-          const float e = r[k] * rejection;
-          const float tukey = std::max(0.0f, 1.0f - e * e);
-          row_intensity_[k] = 0.5f * (image[k] + t[k]);
-          row_gx_[k] = half_per_unit * (gain * ix[k] + tx[k]);  // the mean of both gradients makes the step second-order
-          row_gy_[k] = half_per_unit * (gain * iy[k] + ty[k]);
-          row_weight_[k] = w[k] * valid[k] * tukey * tukey;
+  for (std::size_t block_row = 0; block_row + 1 < level.block_row_begin.size(); ++block_row) {
+    const int begin = level.block_row_begin[block_row];
+    const int end = level.block_row_begin[block_row + 1];
+    const int cell_rows = (end - begin + level.cell_rows - 1) / level.cell_rows;
+    for (int strip = 0; strip < strips; ++strip) {
+      strip_bias_[strip] = static_cast<float>(level.bias[block_row * level.block_columns + level.block_of_strip[strip]]);
+    }
+    const int per_strip = level.cells_per_strip;
+    cells_.resize(static_cast<std::size_t>(cell_rows) * strips * per_strip);
+    for (int k = 0; k < cell_rows; ++k) {
+      const int row = begin + k * level.cell_rows;
+      sumCells(input, row, std::min(level.cell_rows, end - row), per_strip, strip_bias_.data(),
+               cells_.data() + k * strips * per_strip);
+    }
+    const int cell_columns = image::Patch::kStrip / per_strip;
+    for (int strip = 0; strip < strips; ++strip) {
+      for (int cell = strip * per_strip; cell < (strip + 1) * per_strip; ++cell) {
+        const int columns = std::min(cell_columns, level.value.width() - cell * cell_columns);
+        if (columns <= 0) break;
+        const double u = unit_T_patch(0, 2) + unit_T_patch(0, 0) * (cell * cell_columns + 0.5 * (columns - 1));
+        for (int k = 0; k < cell_rows; ++k) {
+          const int row = begin + k * level.cell_rows;
+          const int rows = std::min(level.cell_rows, end - row);
+          const double v = unit_T_patch(1, 2) + unit_T_patch(1, 1) * (row + 0.5 * (rows - 1));
+          equations_.addCell(cells_[k * strips * per_strip + cell], u, v);
         }
-        row.residual = r;
-        row.v = unit_T_patch(1, 1) * j + unit_T_patch(1, 2);
-        equations_.add(row);
       }
+      if (strip + 1 < strips && level.block_of_strip[strip + 1] == level.block_of_strip[strip]) continue;
       equations_.endBlock();
       block_sums_.push_back({equations_.blockWeight(), equations_.blockResidual(), equations_.blockJacobian()});
     }
@@ -217,7 +243,7 @@ void Esm::accumulate(const EsmLevel& level, const EsmState& state, double sigma)
 }
 
 bool Esm::solve(EsmLevel& level, EsmState& state, double& step) {
-  const Matrix10d& a = equations_.matrix();
+  const Matrix10d a = equations_.matrix();
   // Unit diagonal first: grey levels and normalised coordinates have nothing to do with each other.
   const Vector10d d = a.diagonal().cwiseMax(1e-12).cwiseSqrt().cwiseInverse();
   const Eigen::LDLT<Matrix10d> factors(d.asDiagonal() * a * d.asDiagonal());
@@ -238,7 +264,7 @@ bool Esm::solve(EsmLevel& level, EsmState& state, double& step) {
       level.bias[k] -= (sums.residual + sums.jacobian.dot(x)) / sums.weight;
       bias += sums.weight * level.bias[k];
       weight += sums.weight;
-    } else {
+    } else if (config_.light != Light::kLocal) {
       level.bias[k] = state.bias;
     }
   }
@@ -267,12 +293,10 @@ double Esm::predictedCornerError(double sigma) const {
 }
 
 double Esm::referenceCornerError(double sigma) {
-  const EsmLevel& level = levels_[0];
-  level.value.copyTo(warped_);
-  level.gx.copyTo(gx_);
-  level.gy.copyTo(gy_);
-  valid_ = cv::Mat1f::ones(level.value.size());
-  computeResidual(level, EsmState());
+  EsmLevel& level = levels_[0];
+  copy(level.value.view(), level.warped);
+  level.warped.extrapolate();
+  level.all_valid = true;
   accumulate(level, EsmState(), sigma);
   return predictedCornerError(std::sqrt(2.0) * sigma);
 }
@@ -292,8 +316,7 @@ EsmResult Esm::align(const image::RegionPyramid& current, const EsmState& start,
       }
       warp(current, level, l, result.state.g);
       if (k == 0 && !(light_known_ && config_.light == Light::kLocal)) startLight(level, result.state);
-      computeResidual(level, result.state);
-      result.sigma = residualScale(level);
+      result.sigma = residualScale(level, result.state);
       accumulate(level, result.state, result.sigma);
       ++result.iterations;
       if (!solve(level, result.state, result.last_step)) {

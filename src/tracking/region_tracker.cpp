@@ -275,7 +275,7 @@ RegionTracker::Implementation::Attempt RegionTracker::Implementation::attempt(co
   }
   for (int round = 0; round < kMaxStructureRounds && usable(); ++round) {
     const LightModel light = {e.esm.state.gain, e.esm.state.bias};
-    if (gates_.observeStructure(esm_.warped(), esm_.level(0).value, esm_.valid(), light, e.esm.sigma) == 0) break;
+    if (gates_.observeStructure(esm_.warped(), esm_.level(0).value.view(), esm_.valid(), light, e.esm.sigma) == 0) break;
     esm_.setWeights(gates_.weights());
     refine();
   }
@@ -283,7 +283,7 @@ RegionTracker::Implementation::Attempt RegionTracker::Implementation::attempt(co
   if (usable()) {
     const cv::Mat1f used = gates_.weights().mul(esm_.valid());
     e.visible_fraction = cv::sum(used)[0] / static_cast<double>(used.total());
-    e.zncc = zncc(esm_.warped(), esm_.level(0).value, used);
+    e.zncc = zncc(esm_.warped(), esm_.level(0).value.view(), used);
   }
   result.doubt = doubt(e, config_.quality);
   return result;
@@ -305,7 +305,7 @@ RegionTracker::Implementation::Attempt RegionTracker::Implementation::search(con
   image::RegionPyramid whole;
   whole.build(image, cv::Rect(0, 0, image.cols, image.rows), l + 1, channel_);
   const EsmLevel& level = esm_.level(l);
-  for (const Candidate& candidate : searchByCorrelation(level.value, level.image_T_patch, whole.level(l), level.scale, esm_.roi(),
+  for (const Candidate& candidate : searchByCorrelation(level.value.view(), level.image_T_patch, whole.level(l), level.scale, esm_.roi(),
                                                         last_.g, kSearchCandidates)) {
     EsmState start = last_;
     start.g = candidate.g;

@@ -4,14 +4,19 @@
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
 
+#include "laparoscope_servo/image/patch.h"
+
 namespace laparoscope_servo::image {
 
 // patch(j, i) = image at the point that `g` takes (i, j, 1) to, bilinear; valid(j, i) = 1 there, or 0 where that point lies
-// outside the centres of the image's pixels (the patch then holds the nearest pixel). Both outputs keep their size, which
-// must agree. True when every pixel is valid. The denominator of g must not change its sign within the patch: where it is not positive, nothing is valid.
+// outside the centres of the image's pixels (the patch then holds the image's first pixel). Both outputs keep their size, which
+// must agree. True when every pixel is valid. Where the denominator of g is not positive, nothing is valid.
+bool warpBilinear(const cv::Mat1f& image, const Eigen::Matrix3d& g, Patch& patch, Patch& valid);
+
+// The same for patches without a margin.
 bool warpBilinear(const cv::Mat1f& image, const Eigen::Matrix3d& g, cv::Mat1f& patch, cv::Mat1f& valid);
 
-// Central differences, per pixel of the patch; one-sided at its border. Outputs are created.
-void gradients(const cv::Mat1f& patch, cv::Mat1f& gx, cv::Mat1f& gy);
+// Central differences, per pixel of the patch; one-sided at its border. Writes the patch's margin.
+void gradients(Patch& patch, Patch& gx, Patch& gy);
 
 }  // namespace laparoscope_servo::image

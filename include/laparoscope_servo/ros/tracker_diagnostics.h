@@ -45,6 +45,7 @@ class TrackerDiagnostics {
   std::string last_reset_;
   tracking::TrackResult result_;
   std::string camera_error_;
+  bool selection_failed_ = false;
   bool has_camera_ = false;
   bool has_colour_ = true;
   bool ignores_distortion_ = false;

@@ -24,7 +24,7 @@ struct TissueConfig {
 
 struct LightConfig {
   double reference_distance = 0.08;  // m, > 0: from here, squarely, tissue has the brightness of its texture
-  double beam_exponent = 1.0;        // 0 to 8: lamp and lens lose cos^this of the angle to the optical axis
+  double beam_exponent = 0.0;        // 0 to 8: lamp and lens lose cos^this of the angle to the optical axis
 };
 
 struct ExposureConfig {

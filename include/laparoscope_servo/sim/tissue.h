@@ -34,6 +34,7 @@ class Tissue {
   Tissue(const cv::Mat& texture, double width, const Eigen::Isometry3d& base_T_tissue);
 
   const Eigen::Isometry3d& pose() const { return base_T_tissue_; }
+  const cv::Mat& texture() const { return pyramid_.front(); }
 
   // The texture as the camera sees it, without light, CV_8UC3: each pixel the mean of supersampling² samples of a
   // version of the texture that is as coarse as they are, so that nothing aliases. What lies behind the camera is

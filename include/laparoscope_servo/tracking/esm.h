@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "laparoscope_servo/geometry/homography.h"
-#include "laparoscope_servo/image/area_grid.h"
+#include "laparoscope_servo/image/patch.h"
 #include "laparoscope_servo/image/pyramid.h"
 #include "laparoscope_servo/tracking/normal_equations.h"
 #include "laparoscope_servo/tracking/tracker_config.h"
@@ -42,17 +42,28 @@ struct EsmResult {
   double corner_error = 0.0;  // px, standard deviation of the worst corner as the residuals predict it; infinite if unknown
 };
 
-// One level of the reference.
+// One level of the reference, and what an alignment works with there.
 struct EsmLevel {
-  cv::Mat1f value;
-  cv::Mat1f gx;  // per pixel of the level
-  cv::Mat1f gy;
-  cv::Mat1f weight;                 // of this image's pixels, set by Esm::setWeights
-  image::AreaGrid blocks;           // of light
-  std::vector<double> bias;         // grey levels, per block; from the last alignment
-  Eigen::Matrix3d image_T_patch;    // pixel (i, j) of the level to pixels of the reference image
-  cv::Point first;                  // pixel of the ROI that the level's pixel (0, 0) lies on
-  double scale = 1.0;               // pixels of the reference image per pixel of the level
+  image::Patch value;
+  image::Patch gx;  // per pixel of the level
+  image::Patch gy;
+  Eigen::Matrix3d image_T_patch;  // pixel (i, j) of the level to pixels of the reference image
+  cv::Point first;                // pixel of the ROI that the level's pixel (0, 0) lies on
+  double scale = 1.0;             // pixels of the reference image per pixel of the level
+
+  image::Patch weight;    // set by Esm::setWeights
+  image::Patch used;      // weight where the image is valid, at the last iteration
+  image::Patch warped;    // the image at the last iteration
+  image::Patch valid;     // 1 where that lies in the image, with its neighbours; 0 elsewhere
+  bool all_valid = true;  // valid is 1 everywhere, and `used` is not written
+
+  int cells_per_strip = 1;  // see sumCells
+  int cell_rows = 8;
+  // Blocks of light: whole strips of columns, whole cells of rows.
+  std::vector<int> block_of_strip;
+  std::vector<int> block_row_begin;  // rows; the last is the height
+  int block_columns = 0;
+  std::vector<double> bias;  // grey levels, per block, row by row; from the last alignment
 };
 
 class Esm {
@@ -83,17 +94,15 @@ class Esm {
   // N, see above.
   const Eigen::Matrix3d& normalisation() const { return n_; }
 
-  // The image, warped to the ROI by the last alignment's last iteration, where it is valid (1, else 0), at the finest level.
-  const cv::Mat1f& warped() const { return warped_; }
-  const cv::Mat1f& valid() const { return valid_; }
-  // gain * image + bias - reference of that iteration, grey levels.
-  const cv::Mat1f& residual() const { return residual_; }
+  // The image, warped to the ROI by the last alignment's last iteration, and where it is valid (1, else 0), at the finest level.
+  const cv::Mat1f warped() const { return levels_[0].warped.view(); }
+  const cv::Mat1f valid() const { return levels_[0].valid.view(); }
 
  private:
-  void warp(const image::RegionPyramid& current, const EsmLevel& level, int l, const Eigen::Matrix3d& g);
+  void planLight(EsmLevel& level) const;
+  void warp(const image::RegionPyramid& current, EsmLevel& level, int l, const Eigen::Matrix3d& g);
   void startLight(EsmLevel& level, const EsmState& state);
-  void computeResidual(const EsmLevel& level, const EsmState& state);
-  double residualScale(const EsmLevel& level);
+  double residualScale(const EsmLevel& level, const EsmState& state);
   void accumulate(const EsmLevel& level, const EsmState& state, double sigma);
   bool solve(EsmLevel& level, EsmState& state, double& step);
   double predictedCornerError(double sigma) const;
@@ -105,8 +114,8 @@ class Esm {
   double half_size_ = 1.0;                               // px, what N divides by
   std::vector<EsmLevel> levels_;
   NormalEquations equations_;
-  cv::Mat1f warped_, valid_, gx_, gy_, residual_;
-  std::vector<float> row_gx_, row_gy_, row_intensity_, row_weight_, samples_;
+  std::vector<float> samples_, strip_bias_;
+  std::vector<CellSums> cells_;  // of a block row: cell rows times strips
   struct BlockSums {
     double weight;
     double residual;

@@ -6,7 +6,7 @@ namespace laparoscope_servo::skin {
 namespace {
 
 XmlRpc::XmlRpcValue shipped(const std::string& name) {
-  return parametersFromYaml(std::string(CONFIG_FOLDER) + "/" + name);
+  return parametersFromYaml(std::string(LAPAROSCOPE_SERVO_CONFIG) + "/" + name);
 }
 
 void expectSame(const aesop::KinematicsConfig& a, const aesop::KinematicsConfig& b) {

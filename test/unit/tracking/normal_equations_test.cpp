@@ -29,6 +29,8 @@ TEST(EsmJacobian, IsTheDerivativeOfTheWarpedPoint) {
   }
 }
 
+constexpr float kScale = 2.5f;  // of the gradients in cells: normalised units per cell unit
+
 struct Pixels {
   int width = 19;
   int height = 11;
@@ -52,20 +54,16 @@ Pixels randomPixels(unsigned seed) {
   return p;
 }
 
+// Cells of one pixel: the monomials are exact.
 void addAll(const Pixels& p, int row_begin, int row_end, NormalEquations& equations) {
   for (int j = row_begin; j < row_end; ++j) {
-    const std::size_t k = static_cast<std::size_t>(j) * p.width;
-    PixelRow row;
-    row.count = p.width;
-    row.v = p.v(j);
-    row.u0 = static_cast<float>(p.u(0));
-    row.du = 0.1f;
-    row.gx = &p.gx[k];
-    row.gy = &p.gy[k];
-    row.residual = &p.residual[k];
-    row.intensity = &p.intensity[k];
-    row.weight = &p.weight[k];
-    equations.add(row);
+    for (int i = 0; i < p.width; ++i) {
+      const std::size_t k = static_cast<std::size_t>(j) * p.width + i;
+      const float x = p.gx[k] / kScale, y = p.gy[k] / kScale, r = p.residual[k], m = p.intensity[k], w = p.weight[k];
+      equations.addCell({w * x * x, w * x * y, w * y * y, w * x * r, w * y * r, w * x, w * y, w * x * m, w * y * m, w, w * r,
+                         w * m, w * m * m, w * m * r},
+                        p.u(i), p.v(j));
+    }
   }
   equations.endBlock();
 }
@@ -97,7 +95,7 @@ TEST(NormalEquations, MomentsGiveTheSumOverPixels) {
     const Pixels p = randomPixels(seed);
     const Dense d = dense(p, p.height);  // one block: column 10 is empty
     NormalEquations equations;
-    equations.reset(Light::kGlobal);
+    equations.reset(Light::kGlobal, kScale);
     addAll(p, 0, p.height, equations);
     const Eigen::MatrixXd j = d.j.leftCols<10>();
     EXPECT_LT(relative(equations.matrix(), j.transpose() * d.w.asDiagonal() * j), 1e-6);
@@ -109,7 +107,7 @@ TEST(NormalEquations, WithoutLightOnlyTheMotionIsLeft) {
   const Pixels p = randomPixels(7);
   const Dense d = dense(p, p.height);
   NormalEquations equations;
-  equations.reset(Light::kConstant);
+  equations.reset(Light::kConstant, kScale);
   addAll(p, 0, p.height, equations);
   Matrix10d expected = Matrix10d::Identity();
   expected.topLeftCorner<8, 8>() = d.j.leftCols<8>().transpose() * d.w.asDiagonal() * d.j.leftCols<8>();
@@ -126,7 +124,7 @@ TEST(NormalEquations, EliminatingTheBlocksBiasesGivesTheFullSystemsSolution) {
         -(d.j.transpose() * d.w.asDiagonal() * d.j).ldlt().solve(d.j.transpose() * d.w.asDiagonal() * d.r);
 
     NormalEquations equations;
-    equations.reset(Light::kLocal);
+    equations.reset(Light::kLocal, kScale);
     std::vector<double> bias;
     std::vector<Vector10d> jacobian;
     std::vector<double> weight, residual;
@@ -149,8 +147,8 @@ TEST(NormalEquations, ABlockWithoutWeightAddsNothing) {
   Pixels p = randomPixels(3);
   for (Light light : {Light::kConstant, Light::kGlobal, Light::kLocal}) {
     NormalEquations once, twice;
-    once.reset(light);
-    twice.reset(light);
+    once.reset(light, kScale);
+    twice.reset(light, kScale);
     addAll(p, 0, 5, once);
     addAll(p, 0, 5, twice);
     Pixels nothing = p;
@@ -165,10 +163,10 @@ TEST(NormalEquations, ABlockWithoutWeightAddsNothing) {
 TEST(NormalEquations, ResetStartsAfresh) {
   const Pixels p = randomPixels(9);
   NormalEquations used, fresh;
-  used.reset(Light::kGlobal);
+  used.reset(Light::kGlobal, kScale);
   addAll(p, 0, 11, used);
-  used.reset(Light::kLocal);
-  fresh.reset(Light::kLocal);
+  used.reset(Light::kLocal, kScale);
+  fresh.reset(Light::kLocal, kScale);
   addAll(p, 0, 6, used);
   addAll(p, 0, 6, fresh);
   EXPECT_EQ((used.matrix() - fresh.matrix()).norm(), 0.0);

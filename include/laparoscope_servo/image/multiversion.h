@@ -1,0 +1,17 @@
+// Function multiversioning: a kernel marked LAPAROSCOPE_SERVO_CLONES is compiled for several instruction sets, and the loader
+// picks the best one that the processor has. Nobody needs -march=native, and a binary runs on any x86-64.
+//
+// Versions differ in the order of additions and in fused multiply-adds only: sums of a kernel agree to a relative 1e-5.
+#pragma once
+
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__) && !defined(LAPAROSCOPE_SERVO_BASELINE)
+// By instruction set, not by processor model: the models' names match one vendor's only.
+#if __GNUC__ >= 12
+#define LAPAROSCOPE_SERVO_CLONES __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+#else
+#define LAPAROSCOPE_SERVO_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
+#endif
+#else
+#define LAPAROSCOPE_SERVO_CLONES
+#endif

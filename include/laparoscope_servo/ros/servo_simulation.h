@@ -1,0 +1,77 @@
+// The closed loop without ROS and without images: the controller, an ideal scope under an insertion point, a plane of
+// tissue.
+//
+// The camera sees the exact homography of the plane, its ROI's corners with noise; the robot executes what the
+// controller commands after a delay and with a dead zone, as the end-effector's velocity of eq. (12). Deterministic:
+// the same configuration and seed give the same numbers. World frame: the camera's at the reference pose.
+#pragma once
+
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+#include "laparoscope_servo/geometry/homography.h"
+#include "laparoscope_servo/ros/controller_parameters.h"
+#include "laparoscope_servo/sim/scope_actuator.h"
+
+namespace laparoscope_servo::skin {
+
+struct SimulationConfig {
+  double frame_rate = 25.0;                                    // Hz, of the camera
+  double image_delay = 0.0;                                    // s, from the exposure to the task error
+  double corner_noise = 0.3;                                   // px, standard deviation of each corner coordinate
+  double width = 640.0;                                        // px, of the image
+  double height = 480.0;                                       // px
+  geometry::PinholeCamera camera{400.0, 400.0, 319.5, 239.5};  // px
+  geometry::Rectangle roi{270.0, 190.0, 100.0, 100.0};         // px, in the reference image
+  double tissue_distance = 0.08;                               // m, Z*, from the reference camera to the plane
+  double tissue_slant_x = 0.0;                                 // rad, of the plane, about the camera's x axis
+  double tissue_slant_y = 0.0;                                 // rad, about its y axis
+  double depth = 0.1;                                          // m, d2 at the reference pose
+  double scope_length = 0.35;                                  // m, l = d1 + d2
+  double believed_depth_factor = 1.0;                          // the d2 that the controller is told, over the true one
+  // Where the loop starts, from the reference pose: turned about the insertion point [rad], then pushed in [m].
+  servo::ScopeVelocity start{0.1511, 0.0873, 0.1745, 0.02};
+  sim::ScopeActuatorConfig robot;
+};
+
+// Reads the group `simulation`; errors go to the reader.
+SimulationConfig simulationConfig(ParameterReader& reader);
+
+// One step of the controller. Errors are the true ones, without noise.
+struct SimulationSample {
+  double t = 0.0;                // s
+  servo::ScopeVelocity command;  // what the controller asks for now
+  double u = 0.0;                // px, the ROI's centre in the image
+  double v = 0.0;                // px
+  double log_depth = 0.0;        // log(Z/Z*) from the ROI's area
+  double alpha = 0.0;            // rad, orientation of the ROI
+  double d1 = 0.0;               // m
+  double d2 = 0.0;               // m
+  double lateral_speed = 0.0;  // m/s, of the scope at the insertion point across the shaft: eq. (9) of what is executed
+  double lateral_offset = 0.0;  // m, from the insertion point to the shaft
+  std::string state;            // of the controller
+};
+
+// Runs for `duration` [s] of simulated time. Throws std::invalid_argument when the start pose does not see the tissue.
+std::vector<SimulationSample> simulate(const ControllerNodeConfig& controller, const SimulationConfig& config,
+                                       unsigned seed, double duration);
+
+struct SimulationSummary {
+  double settling_time = -1.0;      // s, from when on centre and scale stay within the bounds; -1: they do not
+  double final_offset = 0.0;        // px, rms of the centre's distance over the last quarter
+  double final_scale_error = 0.0;   // rms over the last quarter, 0.01 is 1 %
+  double final_alpha = 0.0;         // rad, rms over the last quarter
+  double moving_share = 0.0;        // share of the last quarter with a command that is not zero
+  double max_lateral_speed = 0.0;   // m/s
+  double max_lateral_offset = 0.0;  // m
+};
+
+// Settled: the centre within `offset_bound` [px], the scale within `scale_bound` [1] of the reference.
+SimulationSummary summarise(const std::vector<SimulationSample>& samples, const SimulationConfig& config,
+                            double offset_bound = 2.0, double scale_bound = 0.02);
+
+// The file of interface.md: a header line and a line per sample.
+void writeCsv(const std::vector<SimulationSample>& samples, std::ostream& stream);
+
+}  // namespace laparoscope_servo::skin

@@ -1,0 +1,34 @@
+// Node `demo_director`: see laparoscope_servo/ros/demo_director.h. Exit status 0 only when the loop converged.
+#include <ros/ros.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <iostream>
+
+#include "laparoscope_servo/ros/demo_director.h"
+
+namespace skin = laparoscope_servo::skin;
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "demo_director");
+  ros::NodeHandle node;
+  const ros::NodeHandle private_node("~");
+  skin::ParameterReader reader(skin::parametersOf(private_node), private_node.getNamespace());
+  const skin::DemoConfig config = skin::demoConfig(reader);
+  if (!reader.errors().empty()) {
+    ROS_FATAL("%s", reader.report().c_str());
+    return EXIT_FAILURE;
+  }
+  const skin::DemoSummary summary = skin::DemoDirector(node, config).run();
+  const std::string text = toJson(summary);
+  std::cout << text << std::flush;
+  if (!config.summary.empty() && !(std::ofstream(config.summary) << text)) {
+    ROS_FATAL("cannot write the summary '%s'", config.summary.c_str());
+    return EXIT_FAILURE;
+  }
+  if (!summary.converged) {
+    ROS_FATAL("the loop did not converge: %s", summary.reason.c_str());
+    return EXIT_FAILURE;
+  }
+  return EXIT_SUCCESS;
+}

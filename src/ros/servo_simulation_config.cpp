@@ -1,0 +1,63 @@
+#include <limits>
+
+#include "laparoscope_servo/ros/servo_simulation.h"
+
+namespace laparoscope_servo::skin {
+
+namespace {
+
+void readScene(ParameterReader& reader, SimulationConfig& config) {
+  const std::string group = "simulation/";
+  reader.read(group + "frame_rate", config.frame_rate, 1.0, 200.0);
+  reader.read(group + "image_delay", config.image_delay, 0.0, 1.0);
+  reader.read(group + "corner_noise", config.corner_noise, 0.0, 20.0);
+  reader.read(group + "image/width", config.width, 16.0, 10000.0);
+  reader.read(group + "image/height", config.height, 16.0, 10000.0);
+  reader.read(group + "camera/fx", config.camera.fx, 1.0, 1e5);
+  reader.read(group + "camera/fy", config.camera.fy, 1.0, 1e5);
+  reader.read(group + "camera/cx", config.camera.cx, -1e5, 1e5);
+  reader.read(group + "camera/cy", config.camera.cy, -1e5, 1e5);
+  reader.read(group + "roi/x", config.roi.x, 0.0, 10000.0);
+  reader.read(group + "roi/y", config.roi.y, 0.0, 10000.0);
+  reader.read(group + "roi/width", config.roi.width, 2.0, 10000.0);
+  reader.read(group + "roi/height", config.roi.height, 2.0, 10000.0);
+  reader.read(group + "tissue/distance", config.tissue_distance, 0.005, 1.0);
+  reader.read(group + "tissue/slant_x", config.tissue_slant_x, -1.2, 1.2);
+  reader.read(group + "tissue/slant_y", config.tissue_slant_y, -1.2, 1.2);
+}
+
+void readScope(ParameterReader& reader, SimulationConfig& config) {
+  const std::string group = "simulation/";
+  reader.read(group + "scope/depth", config.depth, 0.005, 0.5);
+  reader.read(group + "scope/length", config.scope_length, 0.01, 1.0);
+  reader.read(group + "scope/believed_depth_factor", config.believed_depth_factor, 0.1, 10.0);
+  reader.read(group + "start/pan", config.start.pan, -1.2, 1.2);
+  reader.read(group + "start/tilt", config.start.tilt, -1.2, 1.2);
+  reader.read(group + "start/spin", config.start.spin, -3.2, 3.2);
+  reader.read(group + "start/insertion", config.start.insertion, -0.5, 0.5);
+  reader.read(group + "robot/delay", config.robot.delay, 0.0, 2.0);
+  reader.read(group + "robot/dead_zone", config.robot.dead_zone, 4, 0.0, 1.0);
+  reader.read(group + "robot/dead_zone_kind", config.robot.dead_zone_kind, {"subtract", "threshold"});
+  for (const std::string& error : sim::validate(config.robot)) reader.addError("simulation/robot/" + error);
+}
+
+}  // namespace
+
+SimulationConfig simulationConfig(ParameterReader& reader) {
+  SimulationConfig config;
+  readScene(reader, config);
+  readScope(reader, config);
+  if (config.roi.x + config.roi.width > config.width || config.roi.y + config.roi.height > config.height) {
+    reader.addError(
+        "simulation/roi does not lie in the image, expected x + width and y + height within image/width, image/height");
+  }
+  if (!(config.depth + config.start.insertion > 0.0)) {
+    reader.addError("simulation/start/insertion pulls the camera out, expected more than minus scope/depth");
+  }
+  if (!(config.scope_length > config.depth + config.start.insertion)) {
+    reader.addError("simulation/scope/length is too short, expected more than scope/depth + start/insertion");
+  }
+  return config;
+}
+
+}  // namespace laparoscope_servo::skin

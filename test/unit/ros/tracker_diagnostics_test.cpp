@@ -1,0 +1,127 @@
+#include "laparoscope_servo/ros/tracker_diagnostics.h"
+
+#include <diagnostic_msgs/DiagnosticStatus.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace laparoscope_servo::skin {
+namespace {
+
+using diagnostic_msgs::DiagnosticStatus;
+using diagnostic_updater::DiagnosticStatusWrapper;
+using tracking::State;
+
+Processed processed(State state, const std::string& reason = "") {
+  Processed result;
+  result.result.state = state;
+  result.result.reason = reason;
+  result.image = cv::Mat::zeros(4, 4, CV_8UC3);
+  result.camera = geometry::PinholeCamera{1.0, 1.0, 0.0, 0.0};
+  result.processing_time = 0.002;
+  return result;
+}
+
+std::string value(const DiagnosticStatusWrapper& status, const std::string& key) {
+  for (const auto& entry : status.values) {
+    if (entry.key == key) return entry.value;
+  }
+  return "no such key";
+}
+
+TEST(TrackerDiagnosticsTest, LevelFollowsTheState) {
+  const struct {
+    State state;
+    int level;
+  } cases[] = {{State::kIdle, DiagnosticStatus::OK},
+               {State::kTracking, DiagnosticStatus::OK},
+               {State::kSearching, DiagnosticStatus::WARN},
+               {State::kLost, DiagnosticStatus::ERROR}};
+  for (const auto& test : cases) {
+    TrackerDiagnostics diagnostics{tracking::TrackerConfig()};
+    diagnostics.processed(1.0, processed(test.state, "because"), false);
+    DiagnosticStatusWrapper status;
+    diagnostics.fill(1.5, status);
+    EXPECT_EQ(status.level, test.level);
+    EXPECT_NE(status.message.find(tracking::stateName(test.state)), std::string::npos) << status.message;
+    EXPECT_NE(status.message.find("because"), std::string::npos) << status.message;
+    EXPECT_EQ(value(status, "reason"), "because");
+  }
+}
+
+TEST(TrackerDiagnosticsTest, WarnsWithoutImages) {
+  TrackerDiagnostics diagnostics{tracking::TrackerConfig()};
+  DiagnosticStatusWrapper status;
+  diagnostics.fill(1.0, status);
+  EXPECT_EQ(status.level, DiagnosticStatus::WARN);
+  diagnostics.processed(2.0, processed(State::kTracking), false);
+  DiagnosticStatusWrapper silent;
+  diagnostics.fill(5.0, silent);
+  EXPECT_EQ(silent.level, DiagnosticStatus::WARN);
+  EXPECT_NE(silent.message.find("no image"), std::string::npos);
+}
+
+TEST(TrackerDiagnosticsTest, WarnsWithoutIntrinsicsAndSaysWhy) {
+  TrackerDiagnostics diagnostics{tracking::TrackerConfig()};
+  Processed blind = processed(State::kTracking);
+  blind.camera.reset();
+  blind.camera_error = "focal lengths are zero";
+  diagnostics.processed(1.0, blind, false);
+  DiagnosticStatusWrapper status;
+  diagnostics.fill(1.5, status);
+  EXPECT_EQ(status.level, DiagnosticStatus::WARN);
+  EXPECT_NE(status.message.find("focal lengths are zero"), std::string::npos) << status.message;
+}
+
+TEST(TrackerDiagnosticsTest, ReportsARefusedImageUntilAGoodOneComes) {
+  TrackerDiagnostics diagnostics{tracking::TrackerConfig()};
+  diagnostics.refused(1.0, "image is truncated");
+  DiagnosticStatusWrapper bad;
+  diagnostics.fill(1.5, bad);
+  EXPECT_EQ(bad.level, DiagnosticStatus::ERROR);
+  EXPECT_NE(bad.message.find("image is truncated"), std::string::npos);
+  diagnostics.processed(2.0, processed(State::kTracking), false);
+  DiagnosticStatusWrapper good;
+  diagnostics.fill(2.5, good);
+  EXPECT_EQ(good.level, DiagnosticStatus::OK);
+  EXPECT_EQ(value(good, "images refused"), "1");
+  EXPECT_EQ(value(good, "last refusal"), "image is truncated");
+}
+
+TEST(TrackerDiagnosticsTest, CountsSinceTheLastCall) {
+  TrackerDiagnostics diagnostics{tracking::TrackerConfig()};
+  DiagnosticStatusWrapper first;
+  diagnostics.fill(10.0, first);
+  for (int k = 0; k < 25; ++k) diagnostics.processed(10.0 + 0.04 * k, processed(State::kTracking), false);
+  DiagnosticStatusWrapper second;
+  diagnostics.fill(11.0, second);
+  EXPECT_EQ(value(second, "rate [Hz]"), "25.00");
+  EXPECT_EQ(value(second, "time per image, mean [ms]"), "2.000");
+  DiagnosticStatusWrapper third;
+  diagnostics.fill(12.0, third);
+  EXPECT_EQ(value(third, "rate [Hz]"), "0.00");
+}
+
+TEST(TrackerDiagnosticsTest, KeepsTheReasonOfTheLastReset) {
+  TrackerDiagnostics diagnostics{tracking::TrackerConfig()};
+  diagnostics.processed(1.0, processed(State::kTracking), false);
+  diagnostics.processed(1.1, processed(State::kIdle, "time jumped back"), false);
+  diagnostics.processed(1.2, processed(State::kIdle, "no region selected"), false);
+  DiagnosticStatusWrapper status;
+  diagnostics.fill(1.5, status);
+  EXPECT_EQ(value(status, "last reset"), "time jumped back");
+}
+
+TEST(TrackerDiagnosticsTest, TellsWhenTheColourGateStandsAsideAndWhenDistortionIsIgnored) {
+  TrackerDiagnostics diagnostics{tracking::TrackerConfig()};
+  Processed grey = processed(State::kTracking);
+  grey.image = cv::Mat::zeros(4, 4, CV_8UC1);
+  diagnostics.processed(1.0, grey, true);
+  DiagnosticStatusWrapper status;
+  diagnostics.fill(1.5, status);
+  EXPECT_NE(value(status, "colour gate").find("no colour"), std::string::npos);
+  EXPECT_NE(value(status, "lens distortion").find("not corrected"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace laparoscope_servo::skin
