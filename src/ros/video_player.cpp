@@ -1,6 +1,7 @@
 #include "laparoscope_servo/ros/video_player.h"
 
 #include <camera_calibration_parsers/parse.h>
+#include <image_transport/camera_common.h>
 #include <ros/callback_queue.h>
 #include <rosgraph_msgs/Clock.h>
 
@@ -17,6 +18,7 @@ namespace laparoscope_servo::skin {
 namespace {
 
 constexpr std::chrono::milliseconds kClockPeriod(10);
+constexpr std::chrono::milliseconds kCameraInfoTimeout(500);
 constexpr std::chrono::seconds kResultTimeout(2);  // a tracker that gives none must not stop the video
 
 sensor_msgs::CameraInfo calibration(const std::string& file) {
@@ -64,7 +66,9 @@ VideoPlayer::VideoPlayer(ros::NodeHandle node, const VideoPlayerConfig& config) 
         "homography", 10, [this](const HomographyConstPtr& result) { result_stamp_ = result->header.stamp; });
   }
   // A queue long enough that a burst after a slow read loses nothing.
-  publisher_ = transport_.advertiseCamera("image_raw", 50);
+  image_publisher_ = transport_.advertise("image_raw", 50);
+  const std::string info_topic = image_transport::getCameraInfoTopic(node.resolveName("image_raw"));
+  camera_info_publisher_ = node.advertise<sensor_msgs::CameraInfo>(info_topic, 50);
 }
 
 void VideoPlayer::run() {
@@ -82,14 +86,20 @@ void VideoPlayer::run() {
 }
 
 void VideoPlayer::waitForSubscribers() const {
-  for (int waited = 0; ros::ok(); ++waited) {
-    const auto subscribers = static_cast<int>(publisher_.getNumSubscribers());
+  int waited = 0;
+  for (; ros::ok(); ++waited) {
+    const auto subscribers = static_cast<int>(image_publisher_.getNumSubscribers());
     const bool tracker = !config_.lockstep || homography_subscriber_.getNumPublishers() > 0;
-    if (subscribers >= config_.subscribers && tracker) return;
+    if (subscribers >= config_.subscribers && tracker) break;
     if (waited % 500 == 100) {
-      ROS_INFO("waiting for subscribers of %s: %d of %d%s", publisher_.getTopic().c_str(), subscribers,
+      ROS_INFO("waiting for subscribers of %s: %d of %d%s", image_publisher_.getTopic().c_str(), subscribers,
                config_.subscribers, tracker ? "" : ", and for a tracker");
     }
+    std::this_thread::sleep_for(kClockPeriod);
+  }
+  // Who listens to the images mostly listens to the intrinsics, too, and needs them with the first image.
+  const auto end = Clock::now() + kCameraInfoTimeout;
+  while (ros::ok() && waited > 0 && camera_info_publisher_.getNumSubscribers() == 0 && Clock::now() < end) {
     std::this_thread::sleep_for(kClockPeriod);
   }
 }
@@ -177,7 +187,8 @@ void VideoPlayer::publish(const SourceImage& image) {
                              std::to_string(message->height) + " px");
   }
   camera_info_.header = header;
-  publisher_.publish(*message, camera_info_);
+  camera_info_publisher_.publish(camera_info_);
+  image_publisher_.publish(message);
   ++published_;
 }
 

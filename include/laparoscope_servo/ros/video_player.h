@@ -70,7 +70,9 @@ class VideoPlayer {
   std::unique_ptr<ImageSource> source_;
   sensor_msgs::CameraInfo camera_info_;
   image_transport::ImageTransport transport_;
-  image_transport::CameraPublisher publisher_;
+  // Not a CameraPublisher, which cannot tell whether it is the images that somebody listens to.
+  image_transport::Publisher image_publisher_;
+  ros::Publisher camera_info_publisher_;
   ros::Publisher clock_publisher_;
   ros::Subscriber homography_subscriber_;
   ros::Time result_stamp_;  // of the newest result
