@@ -15,7 +15,7 @@
 #include <thread>
 #include <vector>
 
-#include "child_process.h"
+#include "system/aesop/child_process.h"
 
 namespace laparoscope_servo::test {
 
