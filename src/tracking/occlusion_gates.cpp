@@ -1,6 +1,7 @@
 #include "laparoscope_servo/tracking/occlusion_gates.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "laparoscope_servo/image/multiversion.h"
@@ -32,7 +33,7 @@ OcclusionGates::OcclusionGates(const OcclusionConfig& config, int saturation)
 
 void OcclusionGates::setReference(const image::ColourPatch& patch) {
   grid_ = image::AreaGrid(patch.size().width, patch.size().height, config_.rows, config_.columns);
-  reference_has_colour_ = patch.has_colour && config_.colour != ColourGate::kOff;
+  reference_has_colour_ = patch.has_colour && config_.colour != ColourGate::kNone;
   if (reference_has_colour_) reference_.compute(patch, grid_);
   image::saturatedPixels(patch, saturation_, kGrowSaturated, reference_saturated_);
   reference_saturated_.copyTo(unusable_);
@@ -61,17 +62,43 @@ void OcclusionGates::observeColour(const image::ColourPatch& patch) {
   }
 }
 
-int OcclusionGates::observeStructure(const cv::Mat1f& image, const cv::Mat1f& reference, const cv::Mat1f& valid,
-                                     const LightModel& light, double sigma) {
+int OcclusionGates::observeStructure(const image::Patch& image, const image::Patch& reference, const image::Patch& valid,
+                                     double gain, double sigma) {
+  unsaturated_.resize(grid_.width(), grid_.height());
+  for (int j = 0; j < grid_.height(); ++j) {
+    select(valid.row(j), unusable_.ptr<unsigned char>(j), grid_.width(), unsaturated_.row(j));
+  }
+  statistics_.compute(image, reference, unsaturated_, grid_);
   if (!config_.structure) return 0;
-  structureDissimilarity(image, reference, valid, light, sigma, grid_, dissimilarity_);
   int found = 0;
   for (int area = 0; area < grid_.count(); ++area) {
-    if (!(dissimilarity_[area] > kMaxDissimilarity)) continue;
+    if (!(statistics_.dissimilarity(area, gain, sigma) > kMaxDissimilarity)) continue;
     if (!occluded(area)) ++found;
     held_[area] = config_.hold + 1;
   }
   return found;
+}
+
+double OcclusionGates::correlation() const {
+  double image = 0.0, reference = 0.0, both = 0.0;
+  for (int area = 0; area < statistics_.count(); ++area) {
+    if (occluded(area)) continue;
+    const AreaMoments& m = statistics_.area(area);
+    const double pixels = m.share * grid_.pixelsIn(area);
+    image += pixels * m.image;
+    reference += pixels * m.reference;
+    both += pixels * m.both;
+  }
+  const double product = image * reference;
+  return product > 0.0 ? std::clamp(both / std::sqrt(product), -1.0, 1.0) : 0.0;
+}
+
+double OcclusionGates::visibleFraction() const {
+  double pixels = 0.0;
+  for (int area = 0; area < statistics_.count(); ++area) {
+    if (!occluded(area)) pixels += statistics_.area(area).share * grid_.pixelsIn(area);
+  }
+  return pixels / (static_cast<double>(grid_.width()) * grid_.height());
 }
 
 void OcclusionGates::forget() { std::fill(held_.begin(), held_.end(), 0); }

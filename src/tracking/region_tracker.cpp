@@ -146,6 +146,7 @@ class RegionTracker::Implementation {
   double last_good_stamp_ = 0.0;
   geometry::Vector8d velocity_ = geometry::Vector8d::Zero();  // 1/s, of the last motion, in normalised template coordinates
   bool has_velocity_ = false;
+  TrackRecord record_;
   int confirmations_ = 0;
   EsmState candidate_;                 // while searching: what is being confirmed
   Eigen::Matrix3d n_ = Eigen::Matrix3d::Identity();  // N, see Esm
@@ -257,7 +258,9 @@ RegionTracker::Implementation::Attempt RegionTracker::Implementation::attempt(co
   Evidence& e = result.evidence;
   e.roi = roi;
   e.predicted = start.g;
-  e.predicted_from_track = from_track;
+  e.from_track = from_track;
+  e.last_gain = last_.gain;
+  e.record = record_;
   e.esm.state = start;
   e.esm.status = EsmStatus::kOutOfView;
   const cv::Rect box = boundingBox(geometry::apply(start.g, roi.corners()), std::max(32.0, 0.25 * std::max(roi.width, roi.height)));
@@ -279,16 +282,15 @@ RegionTracker::Implementation::Attempt RegionTracker::Implementation::attempt(co
     refine();
   }
   for (int round = 0; round < kMaxStructureRounds && usable(); ++round) {
-    const LightModel light = {e.esm.state.gain, e.esm.state.bias};
-    if (gates_.observeStructure(esm_.warped(), esm_.level(0).value.view(), esm_.valid(), light, e.esm.sigma) == 0) break;
+    const EsmLevel& level = esm_.level(0);
+    if (gates_.observeStructure(level.warped, level.value, level.valid, e.esm.state.gain, e.esm.sigma) == 0) break;
     esm_.setWeights(gates_.weights());
     refine();
   }
   e.esm.iterations = iterations;
   if (usable()) {
-    const cv::Mat1f used = gates_.weights().mul(esm_.valid());
-    e.visible_fraction = cv::sum(used)[0] / static_cast<double>(used.total());
-    e.zncc = zncc(esm_.warped(), esm_.level(0).value.view(), used);
+    e.visible_fraction = gates_.visibleFraction();
+    e.zncc = gates_.correlation();
   }
   result.doubt = doubt(e, config_.quality);
   return result;
@@ -332,14 +334,17 @@ void RegionTracker::Implementation::decide(const Attempt& best, double stamp) {
   }
   const EsmState& now = best.evidence.esm.state;
   if (state_ != State::kTracking) {
-    const bool agrees = confirmations_ == 0 || farthestCorner(candidate_.g, now.g, esm_.roi()) <
-                                                   quality.max_jump * std::hypot(esm_.roi().width, esm_.roi().height);
+    // False fits do not come back to the same place.
+    const double apart = confirmations_ == 0 ? 0.0 : farthestCorner(candidate_.g, now.g, esm_.roi());
+    const bool agrees = apart <= allowedJump(record_, quality, esm_.roi(), 0.0, best.evidence.esm.corner_error);
     confirmations_ = agrees ? confirmations_ + 1 : 1;
     candidate_ = now;
     if (confirmations_ < quality.confirmations) return;
     state_ = State::kTracking;
     has_velocity_ = false;
   } else {
+    record_.add(best.evidence.zncc, best.evidence.esm.sigma, farthestCorner(best.evidence.predicted, now.g, esm_.roi()),
+                best.evidence.visible_fraction);
     const double dt = stamp - last_good_stamp_;
     has_velocity_ = dt > 0.0;
     if (has_velocity_) {
@@ -363,6 +368,7 @@ TrackResult RegionTracker::Implementation::report(const Attempt& attempt, double
   result.zncc = attempt.evidence.zncc;
   result.iterations = attempt.evidence.esm.iterations;
   result.corner_error = attempt.evidence.esm.corner_error;
+  result.sigma = attempt.evidence.esm.sigma;
   result.gain = attempt.evidence.esm.state.gain;
   result.bias = attempt.evidence.esm.state.bias;
   result.colour_used = gates_.colourUsed();

@@ -16,13 +16,21 @@ class OcclusionGatesTest : public ::testing::Test {
  protected:
   cv::Mat patch_ = cv::min(test::tissue(kSize, 4), 240);
   cv::Mat1b valid_{kSize, 255};
-  cv::Mat1f grey_, all_ = cv::Mat1f::ones(kSize);
+  image::Patch grey_, all_;
   OcclusionConfig config_;
 
+  static image::Patch patchOf(const cv::Mat1f& image) {
+    image::Patch patch;
+    patch.resize(image.cols, image.rows);
+    image.copyTo(patch.view());
+    return patch;
+  }
   void SetUp() override {
     cv::Mat luma;
     cv::cvtColor(patch_, luma, cv::COLOR_BGR2GRAY);
-    luma.convertTo(grey_, CV_32F);
+    luma.convertTo(luma, CV_32F);
+    grey_ = patchOf(luma);
+    all_ = patchOf(cv::Mat1f::ones(kSize));
   }
   image::ColourPatch seen(const cv::Mat& image) const {
     image::ColourPatch patch;
@@ -42,7 +50,7 @@ TEST_F(OcclusionGatesTest, LetEverythingThroughOnTheReference) {
   gates.setReference(seen(patch_));
   gates.observeColour(seen(patch_));
   EXPECT_TRUE(gates.colourUsed());
-  EXPECT_EQ(gates.observeStructure(grey_, grey_, all_, LightModel(), 2.0), 0);
+  EXPECT_EQ(gates.observeStructure(grey_, grey_, all_, 1.0, 2.0), 0);
   EXPECT_EQ(occludedIn(gates), 0);
   EXPECT_EQ(cv::countNonZero(gates.weights() < 1.0f), 0);
 }
@@ -81,18 +89,18 @@ TEST_F(OcclusionGatesTest, TheStructureGateHoldsForTheConfiguredImages) {
   config_.hold = 2;
   OcclusionGates gates(config_, 256);
   gates.setReference(seen(patch_));
-  cv::Mat1f other = grey_.clone();
+  image::Patch other = grey_;
   cv::Mat1f turned;
-  cv::flip(grey_, turned, -1);
-  turned(cv::Rect(0, 0, 10, 10)).copyTo(other(cv::Rect(0, 0, 10, 10)));
-  EXPECT_EQ(gates.observeStructure(other, grey_, all_, LightModel(), 2.0), 1);
-  EXPECT_EQ(gates.observeStructure(other, grey_, all_, LightModel(), 2.0), 0);  // known already
+  cv::flip(grey_.view(), turned, -1);
+  turned(cv::Rect(0, 0, 10, 10)).copyTo(other.view()(cv::Rect(0, 0, 10, 10)));
+  EXPECT_EQ(gates.observeStructure(other, grey_, all_, 1.0, 2.0), 1);
+  EXPECT_EQ(gates.observeStructure(other, grey_, all_, 1.0, 2.0), 0);  // known already
   for (int image = 0; image <= config_.hold; ++image) {
     EXPECT_TRUE(gates.occluded(0)) << image;
     gates.advance();
   }
   EXPECT_FALSE(gates.occluded(0));
-  gates.observeStructure(other, grey_, all_, LightModel(), 2.0);
+  gates.observeStructure(other, grey_, all_, 1.0, 2.0);
   gates.forget();
   EXPECT_EQ(occludedIn(gates), 0);
 }
@@ -112,13 +120,38 @@ TEST_F(OcclusionGatesTest, StandAsideWithoutColour) {
 }
 
 TEST_F(OcclusionGatesTest, BothCanBeTurnedOff) {
-  config_.colour = ColourGate::kOff;
+  config_.colour = ColourGate::kNone;
   config_.structure = false;
   OcclusionGates gates(config_, 256);
   gates.setReference(seen(patch_));
   gates.observeColour(seen(cv::Mat(kSize, CV_8UC3, cv::Scalar(200, 200, 200))));
-  EXPECT_EQ(gates.observeStructure(255.0 - grey_, grey_, all_, LightModel(), 2.0), 0);
+  EXPECT_EQ(gates.observeStructure(patchOf(255.0 - grey_.view()), grey_, all_, 1.0, 2.0), 0);
   EXPECT_EQ(occludedIn(gates), 0);
+}
+
+TEST_F(OcclusionGatesTest, CorrelateWhatIsVisibleWithoutItsShading) {
+  OcclusionGates gates(config_, 256);
+  gates.setReference(seen(patch_));
+  EXPECT_EQ(gates.correlation(), 0.0);  // nothing observed yet
+  EXPECT_EQ(gates.visibleFraction(), 0.0);
+  cv::Mat1f shaded = grey_.view().clone();
+  shaded(cv::Rect(0, 0, 70, 140)) -= 40.0f;
+  gates.observeStructure(patchOf(shaded), grey_, all_, 1.0, 2.0);
+  EXPECT_NEAR(gates.correlation(), 1.0, 1e-3);
+  EXPECT_NEAR(gates.visibleFraction(), 1.0, 1e-6);
+  cv::Mat current = patch_.clone();
+  current(cv::Rect(0, 0, 70, 140)).setTo(cv::Scalar(200, 200, 200));
+  gates.observeColour(seen(current));
+  gates.observeStructure(grey_, grey_, all_, 1.0, 2.0);
+  EXPECT_NEAR(gates.visibleFraction(), 0.5, 1e-6);
+  gates.observeColour(seen(patch_));
+  config_.structure = false;
+  OcclusionGates blind(config_, 256);  // without the gate, unrelated texture shows in the correlation
+  blind.setReference(seen(patch_));
+  cv::Mat1f turned;
+  cv::flip(grey_.view(), turned, -1);
+  blind.observeStructure(patchOf(turned), grey_, all_, 1.0, 2.0);
+  EXPECT_LT(std::abs(blind.correlation()), 0.3);
 }
 
 TEST_F(OcclusionGatesTest, RefuseARegionWithFewerPixelsThanAreas) {
