@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "aesop_bench.h"
+#include "system/aesop/aesop_bench.h"
 #include "laparoscope_servo/ControllerState.h"
 #include "laparoscope_servo/Homography.h"
 #include "laparoscope_servo/SelectRoi.h"
