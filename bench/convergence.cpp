@@ -53,10 +53,12 @@ std::vector<std::unique_ptr<Contestant>> aligners(int max_iterations, bool peers
   all.push_back(std::make_unique<Aligner>("esm_1_level", config));
   config.levels = 3;
   all.push_back(std::make_unique<Aligner>("esm_3_levels", config));
-  config.levels = 1;
+  // As the papers have it: neither light nor weights.
   config.robust = false;
-  config.light = tracking::Light::kGlobal;
-  all.push_back(std::make_unique<Aligner>("esm_1_level_plain", config));
+  config.light = tracking::Light::kConstant;
+  all.push_back(std::make_unique<Aligner>("plain_esm_3_levels", config));
+  config.levels = 1;
+  all.push_back(std::make_unique<Aligner>("plain_esm_1_level", config));
   all.push_back(makeOurs());
   if (!peers) return all;
   all.push_back(makeEcc());

@@ -23,23 +23,23 @@ class Ecc : public Contestant {
 
   void select(const cv::Mat& image, const geometry::Rectangle& roi) override {
     roi_ = roi;
-    cv::cvtColor(image(cv::Rect(static_cast<int>(roi.x), static_cast<int>(roi.y), static_cast<int>(roi.width),
-                                static_cast<int>(roi.height))),
-                 reference_, cv::COLOR_BGR2GRAY);
+    const cv::Rect box(static_cast<int>(roi.x), static_cast<int>(roi.y), static_cast<int>(roi.width),
+                       static_cast<int>(roi.height));
+    smooth(image, reference_);
+    reference_ = reference_(box).clone();
     g_.setIdentity();
   }
 
   Verdict track(const cv::Mat& image) override {
     const cv::Rect box = boxAround(g_, roi_, kMargin, image.size());
     if (box.width < 16 || box.height < 16) return {g_, false};
-    cv::cvtColor(image(box), grey_, cv::COLOR_BGR2GRAY);
+    smooth(image(box), grey_);
     const Eigen::Matrix3d start = translation(-box.x, -box.y) * g_ * translation(roi_.x, roi_.y);
     cv::Mat1f warp(3, 3);
     for (int k = 0; k < 9; ++k) warp(k / 3, k % 3) = static_cast<float>(start(k / 3, k % 3) / start(2, 2));
     try {
       cv::findTransformECC(reference_, grey_, warp, cv::MOTION_HOMOGRAPHY,
-                           cv::TermCriteria(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 50, 1e-4), cv::noArray(),
-                           5);
+                           cv::TermCriteria(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 50, 1e-6), cv::noArray(), 1);
     } catch (const cv::Exception&) {  // its way to say that it did not converge
       return {g_, false};
     }
@@ -51,6 +51,13 @@ class Ecc : public Contestant {
   }
 
  private:
+  // What findTransformECC does by default (5 x 5), done here before the reference is cut out: at its border it would be smoothed
+  // otherwise than the image is.
+  static void smooth(const cv::Mat& image, cv::Mat& grey) {
+    cv::cvtColor(image, grey, cv::COLOR_BGR2GRAY);
+    cv::GaussianBlur(grey, grey, cv::Size(5, 5), 0.0);
+  }
+
   geometry::Rectangle roi_;
   cv::Mat reference_, grey_;
   Eigen::Matrix3d g_ = Eigen::Matrix3d::Identity();
