@@ -10,6 +10,7 @@
 
 #include "bench/support/arguments.h"
 #include "bench/support/contestant.h"
+#include "bench/support/cpu_clock.h"
 #include "bench/support/json.h"
 #include "bench/support/sequence.h"
 #include "bench/support/statistics.h"
@@ -22,7 +23,8 @@ struct Record {
   std::string name;
   std::vector<double> error;   // px, per frame of the first pass
   std::vector<double> claims;  // 1 or 0, likewise
-  std::vector<double> ms;      // of every frame of every pass, but for the reference's
+  std::vector<double> ms;      // wall time of every frame of every pass, but for the references
+  std::vector<double> cpu_ms;  // processor time likewise
 };
 
 struct Summary {
@@ -33,6 +35,7 @@ struct Summary {
   double silent = 0.0;
   double ms_median = error_mean;
   double ms_p99 = error_mean;
+  double cpu_ms_median = error_mean;
 };
 
 Summary summarise(const Record& record) {
@@ -50,13 +53,14 @@ Summary summarise(const Record& record) {
   s.error_p95 = quantile(good, 0.95);
   s.ms_median = quantile(record.ms, 0.5);
   s.ms_p99 = quantile(record.ms, 0.99);
+  s.cpu_ms_median = quantile(record.cpu_ms, 0.5);
   return s;
 }
 
 std::vector<Record> compare(Sequence& sequence, const std::vector<std::string>& names, int passes) {
   std::vector<std::unique_ptr<Contestant>> contestants = makeContestants(names);
   std::vector<Record> records;
-  for (const auto& contestant : contestants) records.push_back({contestant->name(), {}, {}, {}});
+  for (const auto& contestant : contestants) records.push_back({contestant->name(), {}, {}, {}, {}});
   for (int pass = 0; pass < passes; ++pass) {
     sequence.rewind();
     cv::Mat image;
@@ -70,7 +74,9 @@ std::vector<Record> compare(Sequence& sequence, const std::vector<std::string>& 
           contestants[turn]->select(image, sequence.roi());
         } else {
           const auto start = std::chrono::steady_clock::now();
+          const double cpu_start = cpuTime();
           verdict = contestants[turn]->track(image);
+          record.cpu_ms.push_back(1e3 * (cpuTime() - cpu_start));
           record.ms.push_back(
               std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
         }
@@ -86,16 +92,16 @@ std::vector<Record> compare(Sequence& sequence, const std::vector<std::string>& 
 
 void print(const std::string& name, std::size_t frames, const std::vector<Record>& records) {
   std::cout << name << ", " << frames << " frames\n"
-            << "  tracker        error mean  p95 [px]  kept  lies  silent  median  p99 [ms]  time / " << records[0].name
-            << '\n';
-  const double ours = summarise(records[0]).ms_median;
+            << "  tracker        error mean  p95 [px]  kept  lies  silent  median       p99  cpu [ms]  time / "
+            << records[0].name << '\n';
+  const double ours = summarise(records[0]).cpu_ms_median;
   for (const Record& record : records) {
     const Summary s = summarise(record);
     std::cout << "  " << std::left << std::setw(14) << record.name << std::right << std::fixed << std::setprecision(3)
               << std::setw(11) << s.error_mean << std::setw(10) << s.error_p95 << std::setprecision(0) << std::setw(6)
               << s.kept << std::setw(6) << s.lies << std::setw(8) << s.silent << std::setprecision(3) << std::setw(8)
-              << s.ms_median << std::setw(10) << s.ms_p99 << std::setprecision(2) << std::setw(10) << s.ms_median / ours
-              << '\n';
+              << s.ms_median << std::setw(10) << s.ms_p99 << std::setw(10) << s.cpu_ms_median << std::setprecision(2)
+              << std::setw(10) << s.cpu_ms_median / ours << '\n';
   }
   std::cout << std::flush;
 }
@@ -106,7 +112,7 @@ void write(JsonWriter& json, const Sequence& sequence, const std::vector<Record>
   json.value("frames", static_cast<double>(sequence.truth().size()));
   json.values("covered", sequence.covered());
   json.beginArray("trackers");
-  const double ours = summarise(records[0]).ms_median;
+  const double ours = summarise(records[0]).cpu_ms_median;
   for (const Record& record : records) {
     const Summary s = summarise(record);
     json.beginObject();
@@ -118,10 +124,12 @@ void write(JsonWriter& json, const Sequence& sequence, const std::vector<Record>
     json.value("silent", s.silent);
     json.value("ms_median", s.ms_median);
     json.value("ms_p99", s.ms_p99);
-    json.value("time_ratio", s.ms_median / ours);
+    json.value("cpu_ms_median", s.cpu_ms_median);
+    json.value("time_ratio", s.cpu_ms_median / ours);
     json.values("error", record.error);
     json.values("claims", record.claims);
     json.values("ms", record.ms);
+    json.values("cpu_ms", record.cpu_ms);
     json.end();
   }
   json.end();

@@ -2,9 +2,9 @@
 // apply;
 // --benchmark_format=json is what report.py reads.
 //
-// Counters: ns_per_px (of processor time) of the ROI (per iteration of ESM where there are any); bytes_per_px and flops_per_px are counted
-// from the source (streams of a patch that are read or written once, and arithmetic in one multiply-add = 2), for a
-// roofline; the machine's limits report bytes_per_second and flops_per_second.
+// Counters: ns_per_px (of processor time) of the ROI (per iteration of ESM where there are any); bytes_per_px and
+// flops_per_px are counted from the source (streams of a patch that are read or written once, and arithmetic in one
+// multiply-add = 2), for a roofline; the machine's limits report bytes_per_second and flops_per_second.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>

@@ -39,7 +39,8 @@ class Ecc : public Contestant {
     for (int k = 0; k < 9; ++k) warp(k / 3, k % 3) = static_cast<float>(start(k / 3, k % 3) / start(2, 2));
     try {
       cv::findTransformECC(reference_, grey_, warp, cv::MOTION_HOMOGRAPHY,
-                           cv::TermCriteria(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 50, 1e-6), cv::noArray(), 1);
+                           cv::TermCriteria(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 50, 1e-6), cv::noArray(),
+                           1);
     } catch (const cv::Exception&) {  // its way to say that it did not converge
       return {g_, false};
     }
@@ -51,8 +52,8 @@ class Ecc : public Contestant {
   }
 
  private:
-  // What findTransformECC does by default (5 x 5), done here before the reference is cut out: at its border it would be smoothed
-  // otherwise than the image is.
+  // What findTransformECC does by default (5 x 5), done here before the reference is cut out: at its border it would be
+  // smoothed otherwise than the image is.
   static void smooth(const cv::Mat& image, cv::Mat& grey) {
     cv::cvtColor(image, grey, cv::COLOR_BGR2GRAY);
     cv::GaussianBlur(grey, grey, cv::Size(5, 5), 0.0);
