@@ -1,6 +1,6 @@
 // This package's tracker beside its peers, over the same images in one run, on one thread. All contestants get each
 // image before any gets the next, in an order that turns by one each time, so that what disturbs the machine disturbs
-// all alike.
+// all alike. Ratios are of processor time, which equals wall time on a machine that does nothing else.
 #include <boost/program_options.hpp>
 #include <chrono>
 #include <fstream>
@@ -23,7 +23,7 @@ struct Record {
   std::string name;
   std::vector<double> error;   // px, per frame of the first pass
   std::vector<double> claims;  // 1 or 0, likewise
-  std::vector<double> ms;      // wall time of every frame of every pass, but for the references
+  std::vector<double> ms;      // wall time of every frame of every pass, but for the reference and when it had stopped
   std::vector<double> cpu_ms;  // processor time likewise
 };
 
@@ -76,9 +76,12 @@ std::vector<Record> compare(Sequence& sequence, const std::vector<std::string>& 
           const auto start = std::chrono::steady_clock::now();
           const double cpu_start = cpuTime();
           verdict = contestants[turn]->track(image);
-          record.cpu_ms.push_back(1e3 * (cpuTime() - cpu_start));
-          record.ms.push_back(
-              std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+          const double cpu_ms = 1e3 * (cpuTime() - cpu_start);
+          const std::chrono::duration<double, std::milli> wall = std::chrono::steady_clock::now() - start;
+          if (!verdict.idle) {
+            record.cpu_ms.push_back(cpu_ms);
+            record.ms.push_back(wall.count());
+          }
         }
         if (pass > 0) continue;
         record.claims.push_back(verdict.claims ? 1.0 : 0.0);

@@ -14,6 +14,7 @@ namespace laparoscope_servo::bench {
 struct Verdict {
   Eigen::Matrix3d g = Eigen::Matrix3d::Identity();  // reference to current pixels, any scale
   bool claims = false;                              // the tracker says that it tracks
+  bool idle = false;                                // it has stopped for good: it takes no time any more
 };
 
 class Contestant {

@@ -49,7 +49,9 @@ class Klt : public Contestant {
 
   Verdict track(const cv::Mat& image) override {
     const cv::Rect box = boxAround(g_, roi_, kMargin, image.size());
-    if (static_cast<int>(points_.size()) < kFewest || box.width < 32 || box.height < 32) return {g_, false};
+    if (static_cast<int>(points_.size()) < kFewest || box.width < 32 || box.height < 32) {
+      return {g_, false, true};
+    }
     cv::cvtColor(last_(box), grey_before_, cv::COLOR_BGR2GRAY);
     cv::cvtColor(image(box), grey_, cv::COLOR_BGR2GRAY);
     last_ = image;

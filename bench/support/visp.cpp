@@ -34,7 +34,7 @@ class Visp : public Contestant {
   }
 
   Verdict track(const cv::Mat& image) override {
-    if (lost_) return {g_, false};
+    if (lost_) return {g_, false, true};
     convert(image);
     try {
       tracker_->track(grey_);
