@@ -57,10 +57,22 @@ Summary summarise(const Record& record) {
   return s;
 }
 
+// False when it does not want this ROI; why is printed, and the others go on.
+bool selects(Contestant& contestant, const cv::Mat& image, const geometry::Rectangle& roi) {
+  try {
+    contestant.select(image, roi);
+    return true;
+  } catch (const std::exception& error) {
+    std::cerr << contestant.name() << " refuses the ROI: " << error.what() << '\n';
+    return false;
+  }
+}
+
 std::vector<Record> compare(Sequence& sequence, const std::vector<std::string>& names, int passes) {
   std::vector<std::unique_ptr<Contestant>> contestants = makeContestants(names);
   std::vector<Record> records;
   for (const auto& contestant : contestants) records.push_back({contestant->name(), {}, {}, {}, {}});
+  std::vector<char> refused(contestants.size(), 0);
   for (int pass = 0; pass < passes; ++pass) {
     sequence.rewind();
     cv::Mat image;
@@ -71,7 +83,10 @@ std::vector<Record> compare(Sequence& sequence, const std::vector<std::string>& 
         Verdict verdict;
         verdict.claims = true;
         if (frame == 0) {
-          contestants[turn]->select(image, sequence.roi());
+          refused[turn] = !selects(*contestants[turn], image, sequence.roi());
+          verdict.claims = !refused[turn];
+        } else if (refused[turn]) {
+          verdict = {Eigen::Matrix3d::Identity(), false, true};
         } else {
           const auto start = std::chrono::steady_clock::now();
           const double cpu_start = cpuTime();

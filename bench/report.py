@@ -9,6 +9,7 @@ truth are made (make_sequences.py). Times are worth something only on a machine 
 import argparse
 import csv
 import datetime
+import itertools
 import json
 import pathlib
 import subprocess
@@ -51,6 +52,10 @@ class Report:
 
 def number(x, digits=3):
     return "-" if x is None or not np.isfinite(x) else f"{x:.{digits}f}"
+
+
+def short(x):
+    return "-" if not np.isfinite(x) else f"{x:.3g}"
 
 
 def run(again, result, command):
@@ -169,6 +174,11 @@ SCORES = {  # what the tracker knows of an estimate; the sign makes greater bett
     "last_step": (-1, "last_step"), "iterations": (-1, "iterations")}
 
 
+def limit(name, threshold):
+    sign = SCORES[name][0]
+    return f"{name} {'≥' if sign > 0 else '≤'} {sign * threshold:.4g}"
+
+
 def roc(score, right):
     """Share of wrong estimates accepted, share of right ones accepted, for every threshold from strict to lax."""
     order = np.argsort(-score, kind="stable")
@@ -176,16 +186,14 @@ def roc(score, right):
     return np.cumsum(~right) / max(1, (~right).sum()), np.cumsum(right) / max(1, right.sum())
 
 
-def two_thresholds(rows, right):
-    """zncc >= a and corner_error <= b that let no wrong estimate pass and reject fewest right ones."""
-    zncc, corner = column(rows, "zncc"), np.nan_to_num(column(rows, "corner_error"), nan=np.inf, posinf=1e9)
-    best = (0.0, 1.0, 0.0)
-    for b in np.unique(np.quantile(corner[right], np.linspace(0.02, 1, 200))) if right.any() else []:
-        inside = corner <= b
-        wrong = zncc[inside & ~right]
-        a = np.nextafter(wrong.max(), 2) if wrong.size else 0.0
-        kept = (inside & right & (zncc >= a)).sum() / right.sum()
-        best = max(best, (kept, a, b))
+def two_thresholds(one, other, right):
+    """a and b so that `one` >= a and `other` >= b let no wrong estimate pass and reject fewest right ones: (share kept, a, b)."""
+    best = (0.0, np.inf, np.inf)
+    for b in np.unique(np.quantile(other[right], np.linspace(0, 0.98, 200))):
+        inside = other >= b
+        wrong = one[inside & ~right]
+        a = max(one[inside & right].min(), np.nextafter(wrong.max(), np.inf) if wrong.size else -np.inf)
+        best = max(best, ((inside & right & (one >= a)).sum() / right.sum(), a, b))
     return best
 
 
@@ -205,6 +213,9 @@ def honesty(report, file):
                        (~tracking)[of == n].sum()] for n in names])
     for source in ("jump", "esm"):
         trials = [r for r in rows if r["source"] == source]
+        everything = len(trials)
+        # What the tracker refuses without asking for a score is not the scores' matter.
+        trials = [r for r in trials if (int(r["state"]) == 1 if source == "jump" else int(r["status"]) in (0, 1))]
         if not trials:
             continue
         right = column(trials, "error") < LOST
@@ -219,12 +230,14 @@ def honesty(report, file):
         axes[2].loglog(corner[right], 1 - zncc[right] + 1e-4, ".", ms=2, color="tab:blue")
         axes[2].loglog(corner[~right], 1 - zncc[~right] + 1e-4, ".", ms=3, color="tab:red")
         axes[2].set(xlabel="predicted corner error [px]", ylabel="1 - zncc")
-        lines = []
+        lines, scores = [], {}
         for name, (sign, key) in SCORES.items():
             values = np.nan_to_num(column(trials, key), nan=np.nan, posinf=1e9)
             if np.isnan(values).all():
                 continue
-            score = sign * np.nan_to_num(values, nan=sign * -1e9)
+            score = scores[name] = sign * np.nan_to_num(values, nan=sign * -1e9)
+            if not right.any() or right.all():
+                continue  # no curve without both
             wrong_in, right_in = roc(score, right)
             axes[3].plot(wrong_in, right_in, label=name)
             at_none = right_in[wrong_in == 0].max() if (wrong_in == 0).any() else 0.0
@@ -233,11 +246,14 @@ def honesty(report, file):
         axes[3].set(xlabel="wrong ones accepted", ylabel="right ones accepted", xscale="symlog")
         axes[3].set_xscale("symlog", linthresh=0.01)
         axes[3].legend(fontsize=7)
-        kept, a, b = two_thresholds(trials, right)
-        report.text(f"### {source}: {len(trials)} estimates, {(~right).sum()} of them wrong")
+        report.text(f"### {source}: {len(trials)} estimates of {everything} trials, {(~right).sum()} of them wrong")
         report.table(["score alone", "area under the curve", "right accepted with no wrong", "with 1 % of the wrong"], lines)
-        report.text(f"Together: zncc ≥ {a:.4f} and corner_error ≤ {b:.3f} px let none of the wrong pass and keep {100 * kept:.1f} % of the right "
-                    "(chosen on these very data).")
+        pairs = []
+        for one, other in itertools.combinations([n for n in ("zncc", "corner_error", "sigma", "visible_fraction") if n in scores], 2):
+            if right.any() and not right.all():
+                kept, a, b = two_thresholds(scores[one], scores[other], right)
+                pairs.append([limit(one, a), limit(other, b), number(kept)])
+        report.table(["two together", "", "right accepted with no wrong (chosen on these very data)"], pairs)
         report.figure(figure, f"honesty_{source}", f"Evidence of right and wrong estimates: {source}")
 
 
@@ -318,8 +334,7 @@ def occlusion(report, name, path, tables, roi, truth, K, covered, chosen):
         row = [c, f"{count[c][peak]} of {AREAS * AREAS}", number(float(data[c][peak]["visible_fraction"]), 2), tracking[c].sum()]
         if error:
             sure = corner[c][tracking[c]]
-            row += [(sure >= LOST).sum() if c == "default" else "", number(sure.max(), 2), f"{error[c][peak]:.3g}",
-                    f"{np.nanmax(error[c]):.3g}"]
+            row += [(sure >= LOST).sum() if c == "default" else "", number(sure.max(), 2), short(error[c][peak]), short(np.nanmax(error[c]))]
         rows.append(row + [""] * (8 - len(row)))
     if covered is not None and covered.max() > 0:
         rows.insert(0, ["truth", f"{round(covered[peak] * AREAS * AREAS)} of {AREAS * AREAS}", number(1 - covered[peak], 2), "", "", "", "0", "0"])
@@ -399,6 +414,7 @@ def main():
                    help="likewise, of a still camera and target: the truth is the identity")
     p.add_argument("--only", action="append", choices=PARTS, help="this part only; may be repeated")
     p.add_argument("--again", action="store_true", help="run all programs again, whatever results there are")
+    p.add_argument("--all-scenes", action="store_true", help="convergence on every sequence's first image, not only the first one's")
     p.add_argument("--quick", action="store_true", help="few trials: to see that it works")
     a = p.parse_args()
     programs = a.build / "bench"
@@ -421,7 +437,7 @@ def main():
         compare(report, run(a.again, a.out / "compare.json", [programs / "bench_compare", *folders, "--json", "RESULT"]))
     if "convergence" in only:
         options = ["--trials", 10, "--corners", "2:20:6", "--shifts", "10:40:10"] if a.quick else []
-        scenes = dict(list(sequences.items())[:1]) if a.quick else sequences
+        scenes = sequences if a.all_scenes else dict(list(sequences.items())[:1])
         convergence(report, [run(a.again, a.out / f"convergence_{n}.json", [programs / "bench_convergence", s, "--json", "RESULT", *options])
                              for n, s in scenes.items()])
     if "honesty" in only:
