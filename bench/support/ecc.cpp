@@ -32,7 +32,7 @@ class Ecc : public Contestant {
 
   Verdict track(const cv::Mat& image) override {
     const cv::Rect box = boxAround(g_, roi_, kMargin, image.size());
-    if (box.width < 16 || box.height < 16) return {g_, false};
+    if (box.width < 16 || box.height < 16) return {g_, false, true};  // its last estimate left the image
     smooth(image(box), grey_);
     const Eigen::Matrix3d start = translation(-box.x, -box.y) * g_ * translation(roi_.x, roi_.y);
     cv::Mat1f warp(3, 3);

@@ -27,6 +27,7 @@ bool isImage(const fs::path& file) {
 
 Sequence::Sequence(const std::string& path) : path_(path) {
   fs::path where = fs::path(path);
+  if (!fs::exists(where)) throw std::runtime_error(path + ": no such file or folder");
   if (!where.has_filename()) where = where.parent_path();  // a slash at the end
   name_ = where.stem().string();
   if (fs::is_directory(where)) {
