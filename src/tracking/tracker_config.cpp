@@ -33,6 +33,7 @@ std::vector<std::string> validate(const TrackerConfig& c) {
   check.range("esm/saturation", c.esm.saturation, 1, 256);
   check.range("quality/min_zncc", c.quality.min_zncc, 0.0, 1.0);
   check.range("quality/min_visible_fraction", c.quality.min_visible_fraction, 0.0, 1.0);
+  check.range("quality/min_return_fraction", c.quality.min_return_fraction, 0.0, 1.0);
   check.range("quality/max_corner_error", c.quality.max_corner_error, 0.01, 100.0);
   check.range("quality/max_area_ratio", c.quality.max_area_ratio, 1.01, 1000.0);
   check.range("quality/max_jump", c.quality.max_jump, 0.01, 10.0);
