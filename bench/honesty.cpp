@@ -3,8 +3,8 @@
 //
 // Rows of three sources:
 //   sequence  the tracker as configured by default, image by image
-//   jump      the tracker, believing everything, selected on the first image and shown a later one that is displaced
-//   besides: as if
+//   jump      the tracker, with limits as lax as can be set, selected on the first image and shown a later one that is
+//   displaced besides: as if
 //             the images between were lost. Badly started alignments converge falsely; these are the negatives
 //   esm       ESM with both gates once, from a displaced start, with what only ESM tells (sigma, last step, status)
 #include <boost/program_options.hpp>
@@ -14,11 +14,9 @@
 
 #include "bench/support/arguments.h"
 #include "bench/support/configurations.h"
+#include "bench/support/gated_esm.h"
 #include "bench/support/sequence.h"
 #include "bench/support/synthetic.h"
-#include "laparoscope_servo/image/colour_patch.h"
-#include "laparoscope_servo/tracking/esm.h"
-#include "laparoscope_servo/tracking/occlusion_gates.h"
 #include "laparoscope_servo/tracking/region_tracker.h"
 
 namespace laparoscope_servo::bench {
@@ -65,6 +63,7 @@ void fill(Row& row, const tracking::TrackResult& result) {
   row.visible_fraction = result.visible_fraction;
   row.iterations = result.iterations;
   row.gain = result.gain;
+  row.sigma = result.sigma;
 }
 
 void trackThrough(Sequence& sequence, std::ostream& out) {
@@ -84,70 +83,17 @@ void trackThrough(Sequence& sequence, std::ostream& out) {
   }
 }
 
-// ESM with both gates, from `start`.
-class GatedEsm {
- public:
-  GatedEsm(const cv::Mat& image, const geometry::Rectangle& roi)
-      : esm_(config_.esm),
-        gates_(config_.occlusion, config_.esm.saturation),
-        size_(static_cast<int>(roi.width), static_cast<int>(roi.height)) {
-    build(image);
-    esm_.setReference(pyramid_, roi);
-    gates_.setReference(image(cv::Rect(cv::Point(static_cast<int>(roi.x), static_cast<int>(roi.y)), size_)).clone());
-    patch_T_reference_.topRightCorner<2, 1>() << roi.x, roi.y;
-  }
-
-  void align(const cv::Mat& image, const Eigen::Matrix3d& start, Row& row, Eigen::Matrix3d& found) {
-    build(image);
-    esm_.forgetLight();
-    gates_.forget();
-    look(image, start);
-    tracking::EsmState state;
-    state.g = start;
-    tracking::EsmResult result = esm_.align(pyramid_, state);
-    row.iterations = result.iterations;
-    if (usable(result)) {
-      look(image, result.state.g);
-      const tracking::LightModel light = {result.state.gain, result.state.bias};
-      gates_.observeStructure(esm_.warped(), esm_.level(0).value.view(), esm_.valid(), light, result.sigma);
-      esm_.setWeights(gates_.weights());
-      result = esm_.align(pyramid_, result.state, 0, 0);
-      row.iterations += result.iterations;
-    }
-    found = result.state.g;
-    row.corner_error = result.corner_error;
-    row.gain = result.state.gain;
-    row.sigma = result.sigma;
-    row.last_step = result.last_step;
-    row.status = static_cast<int>(result.status);
-    if (!usable(result)) return;
-    const cv::Mat1f used = gates_.weights().mul(esm_.valid());
-    row.visible_fraction = cv::sum(used)[0] / static_cast<double>(used.total());
-    row.zncc = tracking::zncc(esm_.warped(), esm_.level(0).value.view(), used);
-  }
-
- private:
-  static bool usable(const tracking::EsmResult& result) {
-    return result.status == tracking::EsmStatus::kConverged || result.status == tracking::EsmStatus::kMaxIterations;
-  }
-  void build(const cv::Mat& image) {
-    pyramid_.build(image, cv::Rect(0, 0, image.cols, image.rows), config_.esm.levels, image::kLuma);
-  }
-  void look(const cv::Mat& image, const Eigen::Matrix3d& g) {
-    image::warpNearest(image, g * patch_T_reference_, size_, patch_, valid_);
-    gates_.observeColour(patch_, valid_);
-    esm_.setWeights(gates_.weights());
-  }
-
-  tracking::TrackerConfig config_;
-  tracking::Esm esm_;
-  tracking::OcclusionGates gates_;
-  image::RegionPyramid pyramid_;
-  cv::Size size_;
-  Eigen::Matrix3d patch_T_reference_ = Eigen::Matrix3d::Identity();
-  cv::Mat patch_;
-  cv::Mat1b valid_;
-};
+void fill(Row& row, const tracking::EsmResult& result, const GatedEsm& gated) {
+  row.iterations = result.iterations;
+  row.corner_error = result.corner_error;
+  row.gain = result.state.gain;
+  row.sigma = result.sigma;
+  row.last_step = result.last_step;
+  row.status = static_cast<int>(result.status);
+  if (!GatedEsm::usable(result)) return;
+  row.zncc = gated.zncc();
+  row.visible_fraction = gated.visibleFraction();
+}
 
 struct Trials {
   int per_frame = 3;
@@ -162,7 +108,7 @@ void perturb(Sequence& sequence, const Trials& trials, unsigned seed, std::ostre
   const geometry::Rectangle& roi = sequence.roi();
   cv::Mat first, image;
   if (!sequence.next(first)) return;
-  GatedEsm gated(first, roi);
+  GatedEsm gated(tracking::TrackerConfig(), first, roi);
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform(0.0, trials.most);
   for (std::size_t frame = 1; sequence.next(image); ++frame) {
@@ -173,10 +119,10 @@ void perturb(Sequence& sequence, const Trials& trials, unsigned seed, std::ostre
       const Eigen::Matrix3d off =
           trial % 2 == 0 ? displacedCorners(roi, sigma, random) : displaced(2.0 * sigma, random);
       Row row{"esm", sequence.name(), frame, sequence.covered()[frame]};
-      Eigen::Matrix3d found = truth;
       row.start_error = cornerError(truth * off, truth, roi);
-      gated.align(image, truth * off, row, found);
-      row.error = cornerError(found, truth, roi);
+      const tracking::EsmResult aligned = gated.align(image, truth * off);
+      fill(row, aligned, gated);
+      row.error = cornerError(aligned.state.g, truth, roi);
       write(out, row);
 
       // The tracker cannot be told where to start: the image moves instead, so that the ROI is `off` from where it was

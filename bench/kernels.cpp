@@ -242,13 +242,12 @@ void colourGate(State& state) {
   const Scene scene(static_cast<int>(state.range(0)));
   tracking::OcclusionGates gates{tracking::OcclusionConfig(), tracking::EsmConfig().saturation};
   const cv::Size size(scene.side, scene.side);
-  cv::Mat patch;
-  cv::Mat1b valid;
-  image::warpNearest(scene.image, scene.patch_T_reference, size, patch, valid);
-  gates.setReference(patch.clone());
+  image::ColourPatch patch;
+  image::warpNearest(scene.image, scene.patch_T_reference, size, patch);
+  gates.setReference(patch);
   measure(state, scene.pixels(), [&] {
-    image::warpNearest(scene.seen, scene.moved * scene.patch_T_reference, size, patch, valid);
-    gates.observeColour(patch, valid);
+    image::warpNearest(scene.seen, scene.moved * scene.patch_T_reference, size, patch);
+    gates.observeColour(patch);
     benchmark::DoNotOptimize(gates.weights().data);
     return 1;
   });
@@ -262,14 +261,16 @@ void structureGate(State& state) {
   esm.setReference(scene.reference, scene.roi);
   const tracking::EsmResult result = esm.align(scene.pyramid, tracking::EsmState());
   const image::AreaGrid grid(scene.side, scene.side, 14, 14);
-  std::vector<float> dissimilarity;
+  const tracking::EsmLevel& level = esm.level(0);
+  tracking::StructureStatistics statistics;
   measure(state, scene.pixels(), [&] {
-    tracking::structureDissimilarity(esm.warped(), esm.level(0).value.view(), esm.valid(),
-                                     {result.state.gain, result.state.bias}, result.sigma, grid, dissimilarity);
-    benchmark::DoNotOptimize(dissimilarity.data());
+    statistics.compute(level.warped, level.value, level.valid, grid);
+    for (int k = 0; k < statistics.count(); ++k) {
+      benchmark::DoNotOptimize(statistics.dissimilarity(k, result.state.gain, result.sigma));
+    }
     return 1;
   });
-  roofline(state, 3 * 4, 2 + 1 + 15);
+  roofline(state, 3 * 4, 14);
 }
 
 // Every iteration of ESM at the finest level: warp, scale of the residual, sums, solution.

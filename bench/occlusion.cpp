@@ -7,10 +7,12 @@
 #include <boost/program_options.hpp>
 #include <fstream>
 #include <iostream>
+#include <memory>
 #include <stdexcept>
 
 #include "bench/support/arguments.h"
 #include "bench/support/configurations.h"
+#include "bench/support/gated_esm.h"
 #include "bench/support/sequence.h"
 #include "laparoscope_servo/tracking/region_tracker.h"
 
@@ -40,6 +42,37 @@ void writeLine(std::ostream& out, int frame, const tracking::TrackResult& result
   out.precision(12);
   out << '\n';
 }
+
+// The paper's tracker: every image starts where the last one ended, and what comes out is the estimate.
+class PapersTracker {
+ public:
+  PapersTracker(const tracking::TrackerConfig& config, const cv::Mat& image, const geometry::Rectangle& roi)
+      : gated_(config, image, roi) {}
+
+  tracking::TrackResult track(const cv::Mat& image) {
+    const tracking::EsmResult found = gated_.align(image, g_);
+    const bool usable = GatedEsm::usable(found) && found.state.g.allFinite();
+    if (usable) g_ = found.state.g;
+    tracking::TrackResult result;
+    result.state = usable ? tracking::State::kTracking : tracking::State::kLost;
+    result.g = g_;
+    result.corner_error = found.corner_error;
+    result.iterations = found.iterations;
+    const tracking::OcclusionGates& gates = gated_.gates();
+    result.areas = {gates.grid().rows(), gates.grid().columns(), gates.distances(), {}};
+    int kept = 0;
+    for (int k = 0; k < gates.grid().count(); ++k) {
+      result.areas.occluded.push_back(gates.occluded(k));
+      kept += gates.occluded(k) ? 0 : 1;
+    }
+    result.visible_fraction = static_cast<double>(kept) / gates.grid().count();
+    return result;
+  }
+
+ private:
+  GatedEsm gated_;
+  Eigen::Matrix3d g_ = Eigen::Matrix3d::Identity();
+};
 
 int program(int argc, char** argv) {
   namespace po = boost::program_options;
@@ -72,10 +105,16 @@ int program(int argc, char** argv) {
   }
   std::ostream& out = file.empty() ? std::cout : stream;
   out.precision(12);
+  std::unique_ptr<PapersTracker> papers;
   cv::Mat image;
   for (int frame = 0; sequence.next(image); ++frame) {
-    const tracking::TrackResult result =
-        frame == 0 ? tracker.select(image, 0.0, roi) : tracker.track(image, kPeriod * frame);
+    tracking::TrackResult result;
+    if (configuration == "default") {
+      result = frame == 0 ? tracker.select(image, 0.0, roi) : tracker.track(image, kPeriod * frame);
+    } else {
+      if (frame == 0) papers = std::make_unique<PapersTracker>(tracker.config(), image, roi);
+      result = papers->track(image);
+    }
     if (frame == 0) writeHeader(out, result.areas.rows * result.areas.columns);
     writeLine(out, frame, result);
   }

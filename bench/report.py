@@ -200,8 +200,8 @@ def two_thresholds(one, other, right):
 def honesty(report, file):
     rows = table_of(file)
     report.text("## Honesty", f"Wrong is an error of {LOST:.0f} px or more at the worst corner. What can be known of an estimate without the truth, "
-                "for right and wrong ones: of the tracker image by image (`sequence`), of the tracker thrown onto a later, displaced image and "
-                "told to believe everything (`jump`), and of ESM with the gates from displaced starts (`esm`). The curves are the data to choose "
+                "for right and wrong ones: of the tracker image by image (`sequence`), of the tracker thrown onto a later, displaced image, "
+                "its limits as lax as can be set (`jump`), and of ESM with the gates from displaced starts (`esm`). The curves are the data to choose "
                 "the thresholds of the state on.")
     state = [r for r in rows if r["source"] == "sequence"]
     if state:

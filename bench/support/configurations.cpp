@@ -8,6 +8,7 @@ tracking::QualityConfig credulous() {
   tracking::QualityConfig quality;
   quality.min_zncc = 0.0;
   quality.min_visible_fraction = 0.0;
+  quality.min_return_fraction = 0.0;
   quality.max_corner_error = 100.0;
   quality.max_area_ratio = 1000.0;
   quality.max_jump = 10.0;
@@ -21,14 +22,12 @@ tracking::TrackerConfig configurationNamed(const std::string& name) {
   if (name != "none" && name != "published") {
     throw std::invalid_argument("configuration \"" + name + "\", expected none, published or default");
   }
-  config.occlusion.colour = name == "published" ? tracking::ColourGate::kPublished : tracking::ColourGate::kOff;
+  config.occlusion.colour = name == "published" ? tracking::ColourGate::kPublished : tracking::ColourGate::kNone;
   config.occlusion.structure = false;
   config.esm.light = tracking::Light::kConstant;
   config.esm.robust = false;
   config.esm.saturation = 256;
   config.esm.adapt_channel = false;
-  config.velocity_damping = 0.0;
-  config.quality = credulous();
   return config;
 }
 

@@ -7,7 +7,8 @@
 
 namespace laparoscope_servo::bench {
 
-// Believes nearly every estimate, so that wrong ones are seen, too.
+// Every limit that can be set as lax as it goes, so that wrong estimates are seen, too. What the tracker compares with
+// its own record of the ROI stays.
 tracking::QualityConfig credulous();
 
 // "none", "published" or "default"; throws std::invalid_argument for another name.
