@@ -1,0 +1,34 @@
+#include "bench/support/configurations.h"
+
+#include <stdexcept>
+
+namespace laparoscope_servo::bench {
+
+tracking::QualityConfig credulous() {
+  tracking::QualityConfig quality;
+  quality.min_zncc = 0.0;
+  quality.min_visible_fraction = 0.0;
+  quality.min_return_fraction = 0.0;
+  quality.max_corner_error = 100.0;
+  quality.max_area_ratio = 1000.0;
+  quality.max_jump = 10.0;
+  quality.confirmations = 1;
+  return quality;
+}
+
+tracking::TrackerConfig configurationNamed(const std::string& name) {
+  tracking::TrackerConfig config;
+  if (name == "default") return config;
+  if (name != "none" && name != "published") {
+    throw std::invalid_argument("configuration \"" + name + "\", expected none, published or default");
+  }
+  config.occlusion.colour = name == "published" ? tracking::ColourGate::kPublished : tracking::ColourGate::kNone;
+  config.occlusion.structure = false;
+  config.esm.light = tracking::Light::kConstant;
+  config.esm.robust = false;
+  config.esm.saturation = 256;
+  config.esm.adapt_channel = false;
+  return config;
+}
+
+}  // namespace laparoscope_servo::bench

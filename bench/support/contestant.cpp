@@ -1,0 +1,57 @@
+#include "bench/support/contestant.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "laparoscope_servo/tracking/region_tracker.h"
+
+namespace laparoscope_servo::bench {
+
+namespace {
+
+constexpr double kPeriod = 0.04;  // s, between images
+
+class Ours : public Contestant {
+ public:
+  std::string name() const override { return "ours"; }
+  void select(const cv::Mat& image, const geometry::Rectangle& roi) override {
+    frame_ = 0;
+    tracker_.reset();
+    tracker_.select(image, 0.0, roi);
+  }
+  Verdict track(const cv::Mat& image) override {
+    const tracking::TrackResult result = tracker_.track(image, kPeriod * ++frame_);
+    return {result.g, result.state == tracking::State::kTracking};
+  }
+
+ private:
+  tracking::RegionTracker tracker_{tracking::TrackerConfig()};
+  int frame_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Contestant> makeOurs() {
+  return std::make_unique<Ours>();
+}
+
+std::vector<std::unique_ptr<Contestant>> makeContestants(const std::vector<std::string>& names) {
+  std::vector<std::unique_ptr<Contestant>> all;
+  all.push_back(makeOurs());
+#ifdef LAPAROSCOPE_SERVO_BENCH_VISP
+  all.push_back(makeVispTuned(3));
+  all.push_back(makeVispDefault());
+#endif
+  all.push_back(makeEcc());
+  all.push_back(makeKlt());
+  if (names.empty()) return all;
+  std::vector<std::unique_ptr<Contestant>> chosen;
+  for (const std::string& name : names) {
+    const auto found = std::find_if(all.begin(), all.end(), [&](const auto& c) { return c && c->name() == name; });
+    if (found == all.end()) throw std::invalid_argument("no contestant \"" + name + "\" in this build");
+    chosen.push_back(std::move(*found));
+  }
+  return chosen;
+}
+
+}  // namespace laparoscope_servo::bench

@@ -1,0 +1,45 @@
+// The trackers that are compared, behind one interface: this package's and its peers.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+#include "laparoscope_servo/geometry/homography.h"
+
+namespace laparoscope_servo::bench {
+
+struct Verdict {
+  Eigen::Matrix3d g = Eigen::Matrix3d::Identity();  // reference to current pixels, any scale
+  bool claims = false;                              // the tracker says that it tracks
+  bool idle = false;                                // it has stopped for good: it takes no time any more
+};
+
+class Contestant {
+ public:
+  virtual ~Contestant() = default;
+  virtual std::string name() const = 0;
+  // CV_8UC3; the ROI lies in the image. The image may be kept, nobody writes into it.
+  virtual void select(const cv::Mat& image, const geometry::Rectangle& roi) = 0;
+  virtual Verdict track(const cv::Mat& image) = 0;
+};
+
+// This package's region tracker, as configured by default.
+std::unique_ptr<Contestant> makeOurs();
+// OpenCV's findTransformECC from where the last image left the ROI, on the grey image around it.
+std::unique_ptr<Contestant> makeEcc();
+// Corners of the reference, followed from image to image by pyramidal Lucas-Kanade around the ROI, and a robust
+// homography.
+std::unique_ptr<Contestant> makeKlt();
+// ViSP's vpTemplateTrackerSSDESM with an SL(3) warp: as constructed, or with lambda 1e-6, gain 2 and `levels` of
+// pyramid.
+std::unique_ptr<Contestant> makeVispDefault();
+std::unique_ptr<Contestant> makeVispTuned(unsigned int levels);
+
+// All that this build has, ours first; with `names`, those only. Throws std::invalid_argument for a name that there is
+// not.
+std::vector<std::unique_ptr<Contestant>> makeContestants(const std::vector<std::string>& names);
+
+}  // namespace laparoscope_servo::bench

@@ -1,0 +1,32 @@
+// Writes JSON: objects and arrays nested by calls, numbers that are not finite as null.
+#pragma once
+
+#include <ostream>
+#include <string>
+#include <vector>
+
+namespace laparoscope_servo::bench {
+
+class JsonWriter {
+ public:
+  explicit JsonWriter(std::ostream& out) : out_(out) { out_.precision(9); }
+
+  // Inside an object every value has a name; inside an array the name is empty.
+  void beginObject(const std::string& name = "");
+  void beginArray(const std::string& name = "");
+  void end();
+  void value(const std::string& name, double number);
+  void value(const std::string& name, const std::string& text);
+  void values(const std::string& name, const std::vector<double>& numbers);
+
+ private:
+  void separate(const std::string& name);
+  void write(double number);
+  void write(const std::string& text);
+
+  std::ostream& out_;
+  std::string closing_;  // what ends the levels that are open
+  bool first_ = true;
+};
+
+}  // namespace laparoscope_servo::bench

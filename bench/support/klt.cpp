@@ -1,0 +1,91 @@
+#include <opencv2/calib3d.hpp>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/video/tracking.hpp>
+
+#include "bench/support/contestant.h"
+#include "bench/support/crop.h"
+
+// USAC came with OpenCV 4.5.1.
+#if CV_VERSION_MAJOR > 4 || \
+    (CV_VERSION_MAJOR == 4 && (CV_VERSION_MINOR > 5 || (CV_VERSION_MINOR == 5 && CV_VERSION_REVISION >= 1)))
+#define LAPAROSCOPE_SERVO_BENCH_MAGSAC
+#endif
+
+namespace laparoscope_servo::bench {
+
+namespace {
+
+constexpr double kMargin = 48.0;  // px
+constexpr int kCorners = 200;
+constexpr int kFewest = 8;
+
+class Klt : public Contestant {
+ public:
+#ifdef LAPAROSCOPE_SERVO_BENCH_MAGSAC
+  std::string name() const override {
+    return "klt_magsac";
+  }
+  static constexpr int kMethod = cv::USAC_MAGSAC;
+#else
+  std::string name() const override {
+    return "klt_ransac";
+  }
+  static constexpr int kMethod = cv::RANSAC;
+#endif
+
+  void select(const cv::Mat& image, const geometry::Rectangle& roi) override {
+    roi_ = roi;
+    g_.setIdentity();
+    const cv::Rect box(static_cast<int>(roi.x), static_cast<int>(roi.y), static_cast<int>(roi.width),
+                       static_cast<int>(roi.height));
+    cv::Mat grey;
+    cv::cvtColor(image(box), grey, cv::COLOR_BGR2GRAY);
+    reference_.clear();
+    cv::goodFeaturesToTrack(grey, reference_, kCorners, 0.01, 5.0);
+    for (cv::Point2f& p : reference_) p += cv::Point2f(static_cast<float>(box.x), static_cast<float>(box.y));
+    points_ = reference_;
+    last_ = image;
+  }
+
+  Verdict track(const cv::Mat& image) override {
+    const cv::Rect box = boxAround(g_, roi_, kMargin, image.size());
+    if (static_cast<int>(points_.size()) < kFewest || box.width < 32 || box.height < 32) {
+      return {g_, false, true};
+    }
+    cv::cvtColor(last_(box), grey_before_, cv::COLOR_BGR2GRAY);
+    cv::cvtColor(image(box), grey_, cv::COLOR_BGR2GRAY);
+    last_ = image;
+    const cv::Point2f origin(static_cast<float>(box.x), static_cast<float>(box.y));
+    for (cv::Point2f& p : points_) p -= origin;
+    cv::calcOpticalFlowPyrLK(grey_before_, grey_, points_, next_, status_, cv::noArray(), cv::Size(21, 21), 3);
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < next_.size(); ++k) {
+      if (status_[k] == 0) continue;
+      reference_[kept] = reference_[k];
+      next_[kept++] = next_[k] + origin;
+    }
+    reference_.resize(kept);
+    next_.resize(kept);
+    points_ = next_;
+    if (static_cast<int>(kept) < kFewest) return {g_, false};
+    const cv::Mat h = cv::findHomography(reference_, points_, kMethod, 3.0);
+    if (h.empty()) return {g_, false};
+    for (int k = 0; k < 9; ++k) g_(k / 3, k % 3) = h.at<double>(k / 3, k % 3);
+    return {g_, true};
+  }
+
+ private:
+  geometry::Rectangle roi_;
+  Eigen::Matrix3d g_ = Eigen::Matrix3d::Identity();
+  cv::Mat last_, grey_before_, grey_;
+  std::vector<cv::Point2f> reference_, points_, next_;
+  std::vector<unsigned char> status_;
+};
+
+}  // namespace
+
+std::unique_ptr<Contestant> makeKlt() {
+  return std::make_unique<Klt>();
+}
+
+}  // namespace laparoscope_servo::bench

@@ -1,0 +1,109 @@
+#include "bench/support/sequence.h"
+
+#include <algorithm>
+#include <boost/property_tree/json_parser.hpp>
+#include <boost/property_tree/ptree.hpp>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <opencv2/imgcodecs.hpp>
+#include <sstream>
+#include <stdexcept>
+
+namespace laparoscope_servo::bench {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+bool isImage(const fs::path& file) {
+  static const std::vector<std::string> kEndings = {".png", ".jpg", ".jpeg", ".bmp", ".ppm", ".tif", ".tiff"};
+  std::string ending = file.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
+}
+
+}  // namespace
+
+Sequence::Sequence(const std::string& path) : path_(path) {
+  fs::path where = fs::path(path);
+  if (!fs::exists(where)) throw std::runtime_error(path + ": no such file or folder");
+  if (!where.has_filename()) where = where.parent_path();  // a slash at the end
+  name_ = where.stem().string();
+  if (fs::is_directory(where)) {
+    const fs::path folder = fs::is_directory(where / "frames") ? where / "frames" : where;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+      if (isImage(entry.path())) files_.push_back(entry.path().string());
+    }
+    std::sort(files_.begin(), files_.end());
+    if (files_.empty()) throw std::runtime_error(folder.string() + ": no images");
+    if (fs::exists(where / "scene.json")) readScene((where / "scene.json").string());
+    if (fs::exists(where / "truth.csv")) readTruth((where / "truth.csv").string());
+    // The generator's folders end in a hash of what made them.
+    const std::size_t dash = name_.rfind('-');
+    if (hasTruth() && dash != std::string::npos && dash > 0) name_.erase(dash);
+  } else {
+    rewind();
+  }
+}
+
+void Sequence::rewind() {
+  position_ = 0;
+  if (files_.empty() && !video_.open(path_))
+    throw std::runtime_error(path_ + ": no folder, and no video that can be read");
+}
+
+bool Sequence::next(cv::Mat& image) {
+  if (files_.empty()) return video_.read(image);
+  if (position_ == files_.size()) return false;
+  const std::string& file = files_[position_++];
+  image = cv::imread(file, cv::IMREAD_COLOR);
+  if (image.empty()) throw std::runtime_error(file + ": cannot be read as an image");
+  return true;
+}
+
+void Sequence::readScene(const std::string& file) {
+  boost::property_tree::ptree tree;
+  boost::property_tree::read_json(file, tree);
+  std::vector<double> roi;
+  for (const auto& number : tree.get_child("roi")) roi.push_back(number.second.get_value<double>());
+  if (roi.size() != 4)
+    throw std::runtime_error(file + ": roi has " + std::to_string(roi.size()) + " numbers, expected 4");
+  roi_ = {roi[0], roi[1], roi[2], roi[3]};
+}
+
+void Sequence::readTruth(const std::string& file) {
+  std::ifstream stream(file);
+  std::string line;
+  std::getline(stream, line);
+  while (std::getline(stream, line)) {
+    std::replace(line.begin(), line.end(), ',', ' ');
+    std::istringstream numbers(line);
+    double frame = 0.0, covered = 0.0;
+    Eigen::Matrix3d g;
+    numbers >> frame;
+    for (int k = 0; k < 9; ++k) numbers >> g(k / 3, k % 3);
+    numbers >> covered;
+    if (!numbers)
+      throw std::runtime_error(file + ": line " + std::to_string(truth_.size() + 2) + ": expected 11 numbers");
+    truth_.push_back(g);
+    covered_.push_back(covered);
+  }
+  if (truth_.size() != files_.size()) {
+    throw std::runtime_error(file + ": " + std::to_string(truth_.size()) + " lines for " +
+                             std::to_string(files_.size()) + " images");
+  }
+}
+
+double cornerError(const Eigen::Matrix3d& g, const Eigen::Matrix3d& truth, const geometry::Rectangle& roi) {
+  double worst = 0.0;
+  for (const Eigen::Vector2d& corner : roi.corners()) {
+    const Eigen::Vector3d p = g * corner.homogeneous();
+    const Eigen::Vector3d q = truth * corner.homogeneous();
+    if (!(p.z() > 0.0)) return std::numeric_limits<double>::infinity();
+    worst = std::max(worst, (p.hnormalized() - q.hnormalized()).norm());
+  }
+  return worst;
+}
+
+}  // namespace laparoscope_servo::bench
