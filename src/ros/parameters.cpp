@@ -211,6 +211,7 @@ void ParameterReader::refuseUnknown(const std::string& group) {
       refuseUnknown(path);
     } else if (read_.count(path) == 0) {
       errors_.push_back(full(path) + " is no parameter of this program");
+      read_.insert(path);  // said once, also when a larger group is asked about later
     }
   }
 }
