@@ -11,6 +11,8 @@
 #include "laparoscope_servo/image/colour_patch.h"
 #include "laparoscope_servo/image/pyramid.h"
 #include "laparoscope_servo/tracking/esm.h"
+#include "laparoscope_servo/tracking/feature_search.h"
+#include "laparoscope_servo/tracking/keyframes.h"
 #include "laparoscope_servo/tracking/occlusion_gates.h"
 #include "laparoscope_servo/tracking/quality.h"
 #include "laparoscope_servo/tracking/relocalisation.h"
@@ -21,6 +23,9 @@ namespace {
 
 constexpr double kTypicalNoise = 2.0;    // grey levels, of a laparoscope's camera
 constexpr int kSearchCandidates = 3;
+// A view is worth storing that was seen nearly whole, and clearly.
+constexpr double kKeyframeVisible = 0.7;
+constexpr double kKeyframeZncc = 0.85;
 constexpr int kMaxStructureRounds = 3;
 constexpr double kGateShift = 2.0;       // px: masks drawn further from the estimate than this are drawn again
 
@@ -100,7 +105,8 @@ const char* stateName(State state) {
 class RegionTracker::Implementation {
  public:
   explicit Implementation(const TrackerConfig& config)
-      : config_(config), esm_(config.esm), gates_(config.occlusion, config.esm.saturation) {}
+      : config_(config), esm_(config.esm), gates_(config.occlusion, config.esm.saturation), keyframes_(config.search.keyframes),
+        feature_search_(config.search) {}
 
   TrackResult select(const cv::Mat& image, double stamp, const geometry::Rectangle& roi);
   TrackResult track(const cv::Mat& image, double stamp);
@@ -119,6 +125,8 @@ class RegionTracker::Implementation {
   Eigen::Matrix3d predict(double stamp) const;
   Attempt attempt(const cv::Mat& image, const EsmState& start, bool from_track);
   Attempt search(const cv::Mat& image);
+  std::vector<Eigen::Matrix3d> searchCoarsely(const cv::Mat& image);
+  void keepView(const cv::Mat& image, const Attempt& seen);
   void look(const cv::Mat& image, const Eigen::Matrix3d& g);
   void decide(const Attempt& best, double stamp);
   TrackResult report(const Attempt& attempt, double stamp) const;
@@ -131,6 +139,8 @@ class RegionTracker::Implementation {
   image::ChannelWeights channel_ = image::kLuma;
   cv::Mat patch_;
   cv::Mat1b valid_;
+  Keyframes keyframes_;
+  FeatureSearch feature_search_;
 
   State state_ = State::kIdle;
   cv::Size image_size_;
@@ -180,6 +190,7 @@ TrackResult RegionTracker::Implementation::select(const cv::Mat& image, double s
             << error << " px, expected at most " << config_.min_texture;
     throw std::invalid_argument(message.str());
   }
+  fresh.keyframes_.setReference(image, roi, fresh.gates_.weights());
   fresh.state_ = State::kTracking;
   fresh.image_size_ = image.size();
   fresh.reference_stamp_ = fresh.last_stamp_ = fresh.last_good_stamp_ = stamp;
@@ -221,6 +232,7 @@ TrackResult RegionTracker::Implementation::track(const cv::Mat& image, double st
     best = search(image);
   }
   decide(best, stamp);
+  keepView(image, best);
   gates_.advance();
   last_stamp_ = stamp;
   return report(best, stamp);
@@ -289,31 +301,54 @@ RegionTracker::Implementation::Attempt RegionTracker::Implementation::attempt(co
   return result;
 }
 
+// What the last image suggested comes first, then where the ROI was last seen, then what points suggest, then the whole image.
+// Later stages are asked only when the earlier ones failed.
 RegionTracker::Implementation::Attempt RegionTracker::Implementation::search(const cv::Mat& image) {
-  gates_.forget();
-  // What the last image suggested comes first, then where the ROI was last seen, then the whole image.
-  std::vector<EsmState> starts;
-  if (confirmations_ > 0) starts.push_back(candidate_);
-  starts.push_back(last_);
   Attempt best;
-  for (const EsmState& start : starts) {
-    best = attempt(image, start, false);
-    if (best.doubt.empty()) return best;
+  const auto tryAt = [&](const EsmState& start) {
     gates_.forget();
+    esm_.forgetLight();  // of an alignment elsewhere
+    best = attempt(image, start, false);
+    return best.doubt.empty();
+  };
+  const auto tryEach = [&](const std::vector<Eigen::Matrix3d>& places) {
+    EsmState start = last_;
+    for (const Eigen::Matrix3d& g : places) {
+      start.g = g;
+      if (tryAt(start)) return true;
+    }
+    return false;
+  };
+  if (confirmations_ > 0 && tryAt(candidate_)) return best;
+  if (tryAt(last_)) return best;
+  if (config_.search.features) {
+    std::vector<Eigen::Matrix3d> places;
+    for (const FeatureCandidate& candidate : feature_search_.find(image, channel_, keyframes_)) {
+      if (static_cast<int>(places.size()) < kSearchCandidates) places.push_back(candidate.g);
+    }
+    if (tryEach(places)) return best;
   }
+  if (config_.search.correlation) tryEach(searchCoarsely(image));
+  return best;
+}
+
+std::vector<Eigen::Matrix3d> RegionTracker::Implementation::searchCoarsely(const cv::Mat& image) {
   const int l = esm_.levels() - 1;
   image::RegionPyramid whole;
   whole.build(image, cv::Rect(0, 0, image.cols, image.rows), l + 1, channel_);
   const EsmLevel& level = esm_.level(l);
-  for (const Candidate& candidate : searchByCorrelation(level.value.view(), level.image_T_patch, whole.level(l), level.scale, esm_.roi(),
-                                                        last_.g, kSearchCandidates)) {
-    EsmState start = last_;
-    start.g = candidate.g;
-    const Attempt next = attempt(image, start, false);
-    if (next.doubt.empty()) return next;
-    gates_.forget();
+  std::vector<Eigen::Matrix3d> places;
+  for (const Candidate& candidate : searchByCorrelation(level.value.view(), level.image_T_patch, whole.level(l), level.scale,
+                                                        esm_.roi(), last_.g, kSearchCandidates)) {
+    places.push_back(candidate.g);
   }
-  return best;
+  return places;
+}
+
+void RegionTracker::Implementation::keepView(const cv::Mat& image, const Attempt& seen) {
+  const Evidence& e = seen.evidence;
+  if (state_ != State::kTracking || !(e.visible_fraction >= kKeyframeVisible) || !(e.zncc >= kKeyframeZncc)) return;
+  if (config_.search.features && keyframes_.wants(last_.g)) keyframes_.add(image, last_.g, gates_.weights());
 }
 
 void RegionTracker::Implementation::decide(const Attempt& best, double stamp) {
