@@ -60,6 +60,8 @@ void readSearch(ParameterReader& reader, tracking::SearchConfig& config) {
   reader.read("tracking/search/max_ratio", config.max_ratio, 0.1, 1.0);
   reader.read("tracking/search/min_inliers", config.min_inliers, 4, 1000);
   reader.read("tracking/search/keyframes", config.keyframes, 0, 64);
+  reader.read("tracking/search/min_visible_fraction", config.min_visible_fraction, 0.0, 1.0);
+  reader.read("tracking/search/min_detail", config.min_detail, 0.0, 1.0);
 }
 
 void readTracking(ParameterReader& reader, tracking::TrackerConfig& config) {

@@ -10,6 +10,7 @@
 #include "laparoscope_servo/geometry/sl3.h"
 #include "laparoscope_servo/image/colour_patch.h"
 #include "laparoscope_servo/image/pyramid.h"
+#include "laparoscope_servo/tracking/detail.h"
 #include "laparoscope_servo/tracking/esm.h"
 #include "laparoscope_servo/tracking/feature_search.h"
 #include "laparoscope_servo/tracking/keyframes.h"
@@ -22,7 +23,7 @@ namespace laparoscope_servo::tracking {
 namespace {
 
 constexpr double kTypicalNoise = 2.0;    // grey levels, of a laparoscope's camera
-constexpr int kSearchCandidates = 3;
+constexpr int kSearchCandidates = 2;  // that are aligned, of each stage of the search
 // A view is worth storing that was seen nearly whole, and clearly.
 constexpr double kKeyframeVisible = 0.7;
 constexpr double kKeyframeZncc = 0.85;
@@ -126,6 +127,7 @@ class RegionTracker::Implementation {
   Attempt attempt(const cv::Mat& image, const EsmState& start, bool from_track);
   Attempt search(const cv::Mat& image);
   std::vector<Eigen::Matrix3d> searchCoarsely(const cv::Mat& image);
+  std::string doubtWhatWasFound(const Attempt& found);
   void keepView(const cv::Mat& image, const Attempt& seen);
   void look(const cv::Mat& image, const Eigen::Matrix3d& g);
   void decide(const Attempt& best, double stamp);
@@ -152,6 +154,7 @@ class RegionTracker::Implementation {
   bool has_velocity_ = false;
   int confirmations_ = 0;
   EsmState candidate_;                 // while searching: what is being confirmed
+  unsigned search_turn_ = 0;           // images searched since the ROI was lost
   Eigen::Matrix3d n_ = Eigen::Matrix3d::Identity();  // N, see Esm
   Eigen::Matrix3d shown_ = Eigen::Matrix3d::Identity();
 };
@@ -301,14 +304,15 @@ RegionTracker::Implementation::Attempt RegionTracker::Implementation::attempt(co
   return result;
 }
 
-// What the last image suggested comes first, then where the ROI was last seen, then what points suggest, then the whole image.
-// Later stages are asked only when the earlier ones failed.
+// What the last image suggested comes first, then where the ROI was last seen, then what points suggest, or, in turn with them,
+// what correlates anywhere in the image: one of both an image, so that the time is bounded.
 RegionTracker::Implementation::Attempt RegionTracker::Implementation::search(const cv::Mat& image) {
   Attempt best;
   const auto tryAt = [&](const EsmState& start) {
     gates_.forget();
     esm_.forgetLight();  // of an alignment elsewhere
     best = attempt(image, start, false);
+    if (best.doubt.empty()) best.doubt = doubtWhatWasFound(best);
     return best.doubt.empty();
   };
   const auto tryEach = [&](const std::vector<Eigen::Matrix3d>& places) {
@@ -321,15 +325,35 @@ RegionTracker::Implementation::Attempt RegionTracker::Implementation::search(con
   };
   if (confirmations_ > 0 && tryAt(candidate_)) return best;
   if (tryAt(last_)) return best;
-  if (config_.search.features) {
+  const SearchConfig& stages = config_.search;
+  const bool features = stages.features && (!stages.correlation || search_turn_ % 2 == 0);
+  ++search_turn_;
+  if (features) {
     std::vector<Eigen::Matrix3d> places;
     for (const FeatureCandidate& candidate : feature_search_.find(image, channel_, keyframes_)) {
       if (static_cast<int>(places.size()) < kSearchCandidates) places.push_back(candidate.g);
     }
-    if (tryEach(places)) return best;
+    tryEach(places);
+  } else if (stages.correlation) {
+    tryEach(searchCoarsely(image));
   }
-  if (config_.search.correlation) tryEach(searchCoarsely(image));
   return best;
+}
+
+// A search asks at many places, so that one of them may pass by chance what a tracked region passes by right: more is asked.
+std::string RegionTracker::Implementation::doubtWhatWasFound(const Attempt& found) {
+  const double fraction = found.evidence.visible_fraction;
+  const double detail = detailCorrelation(esm_.warped(), esm_.level(0).value.view(), gates_.weights().mul(esm_.valid()));
+  std::ostringstream why;
+  why.precision(3);
+  if (found.evidence.esm.status != EsmStatus::kConverged) {
+    why << "still moving where it was searched";
+  } else if (!(fraction >= config_.search.min_visible_fraction)) {
+    why << "visible fraction " << fraction << " where it was searched, expected at least " << config_.search.min_visible_fraction;
+  } else if (!(detail >= config_.search.min_detail)) {
+    why << "correlation of details " << detail << " where it was searched, expected at least " << config_.search.min_detail;
+  }
+  return why.str();
 }
 
 std::vector<Eigen::Matrix3d> RegionTracker::Implementation::searchCoarsely(const cv::Mat& image) {
@@ -356,7 +380,11 @@ void RegionTracker::Implementation::decide(const Attempt& best, double stamp) {
   if (!best.doubt.empty()) {
     confirmations_ = 0;
     has_velocity_ = false;
-    if (state_ == State::kTracking) state_ = State::kSearching;
+    if (state_ == State::kTracking) {
+      state_ = State::kSearching;
+      search_turn_ = 0;
+      feature_search_.restart();
+    }
     if (stamp - last_good_stamp_ > quality.max_search_time) state_ = State::kLost;
     return;
   }

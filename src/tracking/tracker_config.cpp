@@ -43,6 +43,8 @@ std::vector<std::string> validate(const TrackerConfig& c) {
   check.range("search/max_ratio", c.search.max_ratio, 0.1, 1.0);
   check.range("search/min_inliers", c.search.min_inliers, 4, 1000);
   check.range("search/keyframes", c.search.keyframes, 0, 64);
+  check.range("search/min_visible_fraction", c.search.min_visible_fraction, 0.0, 1.0);
+  check.range("search/min_detail", c.search.min_detail, 0.0, 1.0);
   check.range("velocity_damping", c.velocity_damping, 0.0, 1.0);
   check.range("min_roi_side", c.min_roi_side, 8, 1000);
   check.range("min_texture", c.min_texture, 0.01, 10.0);

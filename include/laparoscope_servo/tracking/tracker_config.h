@@ -60,6 +60,8 @@ struct SearchConfig {
   double max_ratio = 0.85;      // 0.1 to 1: distance of a point's best match over that of its second best
   int min_inliers = 8;          // 4 to 1000 matches that agree
   int keyframes = 8;            // 0 to 64 views stored beside the reference
+  double min_visible_fraction = 0.3;  // 0 to 1, share of the ROI's pixels used, where it was found
+  double min_detail = 0.7;            // 0 to 1, correlation of the fine structure, where it was found
 };
 
 struct TrackerConfig {
