@@ -8,9 +8,9 @@ namespace laparoscope_servo::tracking {
 
 namespace {
 
-constexpr int kBlock = 16;       // px
-constexpr int kFewPixels = 32;   // an eighth of a block
-constexpr double kBlur = 1.0;    // px
+constexpr int kBlock = 16;      // px
+constexpr int kFewPixels = 32;  // an eighth of a block
+constexpr double kBlur = 1.0;   // px
 
 }  // namespace
 

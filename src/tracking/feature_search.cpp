@@ -13,16 +13,16 @@ namespace laparoscope_servo::tracking {
 
 namespace {
 
-constexpr int kCells = 8;              // the image's features are spread over as many rows and columns of cells
-constexpr int kSurplus = 4;            // how many times the features wanted are detected, to spread them
-constexpr int kFastThreshold = 5;      // grey levels: tissue has little contrast
+constexpr int kCells = 8;          // the image's features are spread over as many rows and columns of cells
+constexpr int kSurplus = 4;        // how many times the features wanted are detected, to spread them
+constexpr int kFastThreshold = 5;  // grey levels: tissue has little contrast
 constexpr float kOctaveStep = 1.2f;
 constexpr int kOctaves = 4;
-constexpr int kEdge = 16;              // px, of the downscaled image: nothing is detected nearer to its border
-constexpr int kBrightest = 250;        // grey levels: highlights move with the lamp
-constexpr int kGrowBright = 3;         // px, of the downscaled image
-constexpr double kInlier = 4.0;        // px, of the downscaled image
-constexpr int kManyInliers = 30;       // from here on eight parameters are better determined than four
+constexpr int kEdge = 16;         // px, of the downscaled image: nothing is detected nearer to its border
+constexpr int kBrightest = 250;   // grey levels: highlights move with the lamp
+constexpr int kGrowBright = 3;    // px, of the downscaled image
+constexpr double kInlier = 4.0;   // px, of the downscaled image
+constexpr int kManyInliers = 30;  // from here on eight parameters are better determined than four
 constexpr int kMaxTrials = 1000;
 constexpr double kMaxAreaRatio = 50.0;
 
@@ -51,7 +51,8 @@ void spreadOut(std::vector<cv::KeyPoint>& points, const cv::Size& size, int coun
   std::vector<std::vector<cv::KeyPoint>> cells(kCells * kCells);
   for (const cv::KeyPoint& point : points) {
     const int row = std::clamp(static_cast<int>(point.pt.y * kCells / static_cast<float>(size.height)), 0, kCells - 1);
-    const int column = std::clamp(static_cast<int>(point.pt.x * kCells / static_cast<float>(size.width)), 0, kCells - 1);
+    const int column =
+        std::clamp(static_cast<int>(point.pt.x * kCells / static_cast<float>(size.width)), 0, kCells - 1);
     cells[row * kCells + column].push_back(point);
   }
   points.clear();
@@ -85,8 +86,8 @@ bool plausible(const Eigen::Matrix3d& g, const geometry::Rectangle& roi) {
 
 FeatureSearch::FeatureSearch(const SearchConfig& config)
     : config_(config),
-      many_(cv::ORB::create(kSurplus * config.max_features, kOctaveStep, kOctaves, kEdge, 0, 2, cv::ORB::HARRIS_SCORE, 31,
-                            kFastThreshold)),
+      many_(cv::ORB::create(kSurplus * config.max_features, kOctaveStep, kOctaves, kEdge, 0, 2, cv::ORB::HARRIS_SCORE,
+                            31, kFastThreshold)),
       few_(cv::ORB::create(config.max_features / 2, kOctaveStep, kOctaves, kEdge, 0, 2, cv::ORB::HARRIS_SCORE, 31,
                            kFastThreshold)) {}
 
@@ -128,7 +129,8 @@ Features FeatureSearch::draw(const cv::Mat& image, const cv::Point& first, const
   return features;
 }
 
-void FeatureSearch::describe(Keyframe& view, const geometry::Rectangle& roi, double scale, const image::ChannelWeights& weights) {
+void FeatureSearch::describe(Keyframe& view, const geometry::Rectangle& roi, double scale,
+                             const image::ChannelWeights& weights) {
   // Where the crop shows what can be trusted of the ROI.
   Eigen::Matrix3d from_roi = Eigen::Matrix3d::Identity();
   from_roi.topRightCorner<2, 1>() << roi.x, roi.y;
@@ -140,7 +142,8 @@ void FeatureSearch::describe(Keyframe& view, const geometry::Rectangle& roi, dou
     for (int c = 0; c < 3; ++c) warp(r, c) = g(r, c);
   }
   cv::Mat1b mask;
-  cv::warpPerspective(view.trusted, mask, warp, view.crop.size(), cv::INTER_NEAREST, cv::BORDER_CONSTANT, cv::Scalar(0));
+  cv::warpPerspective(view.trusted, mask, warp, view.crop.size(), cv::INTER_NEAREST, cv::BORDER_CONSTANT,
+                      cv::Scalar(0));
   view.features = draw(view.crop, view.first, mask, scale, weights, config_.max_features / 2, false);
   view.described = true;
 }
@@ -187,7 +190,8 @@ void FeatureSearch::match(const Keyframe& view, const geometry::Rectangle& roi, 
   };
   // Four parameters hold where few matches would let eight run away; what they miss of the tilt, the alignment mends.
   cv::Mat agree;
-  const cv::Mat similarity = cv::estimateAffinePartial2D(from, to, agree, cv::RANSAC, kInlier * scale, kMaxTrials, 0.99);
+  const cv::Mat similarity =
+      cv::estimateAffinePartial2D(from, to, agree, cv::RANSAC, kInlier * scale, kMaxTrials, 0.99);
   offer(similarity, agree, config_.min_inliers);
   if (static_cast<int>(from.size()) < kManyInliers) return;
   const cv::Mat homography = cv::findHomography(from, to, kRobustMethod, kInlier * scale, agree, kMaxTrials, 0.99);

@@ -31,8 +31,8 @@ double viewDistance(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b, const ge
   const Eigen::Matrix2d change = to * from.inverse();
   const Eigen::Vector2d lengths = Eigen::JacobiSVD<Eigen::Matrix2d>(change).singularValues();
   const double turn = std::atan2(change(1, 0) - change(0, 1), change(0, 0) + change(1, 1));
-  return std::max({std::abs(std::log(lengths[0])) / std::log(kLengthStep), std::abs(std::log(lengths[1])) / std::log(kLengthStep),
-                   std::abs(turn) / kTurnStep});
+  return std::max({std::abs(std::log(lengths[0])) / std::log(kLengthStep),
+                   std::abs(std::log(lengths[1])) / std::log(kLengthStep), std::abs(turn) / kTurnStep});
 }
 
 void Keyframes::setReference(const cv::Mat& image, const geometry::Rectangle& roi, const cv::Mat1f& weights) {

@@ -22,8 +22,8 @@ class FeatureSearch {
   explicit FeatureSearch(const SearchConfig& config);
 
   // Where the views say that the ROI may be in `image` (CV_8UC1 or CV_8UC3), best first; none when nothing agrees. The
-  // reference is asked every time, the other views one a call in turn, so that the time is bounded whatever is stored. Draws
-  // the features of a view when it is its turn for the first time.
+  // reference is asked every time, the other views one a call in turn, so that the time is bounded whatever is stored.
+  // Draws the features of a view when it is its turn for the first time.
   std::vector<FeatureCandidate> find(const cv::Mat& image, const image::ChannelWeights& weights, Keyframes& keyframes);
 
   // Starts the turns again.

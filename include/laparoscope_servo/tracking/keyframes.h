@@ -1,6 +1,6 @@
-// Views of the region of interest (ROI) that were tracked well, so that the search for a lost ROI knows it at scales and tilts
-// that the reference does not show. They give places to start from and nothing else: what is aligned and believed is always the
-// reference itself, which no view replaces.
+// Views of the region of interest (ROI) that were tracked well, so that the search for a lost ROI knows it at scales
+// and tilts that the reference does not show. They give places to start from and nothing else: what is aligned and
+// believed is always the reference itself, which no view replaces.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,8 +27,8 @@ struct Keyframe {
   Features features;
 };
 
-// How differently two homographies show the ROI's centre: 1 for a factor of 1.3 in length in some direction, or a turn of
-// 0.6 rad in the image; the larger of both. Infinite where a homography shows it mirrored or not at all.
+// How differently two homographies show the ROI's centre: 1 for a factor of 1.3 in length in some direction, or a turn
+// of 0.6 rad in the image; the larger of both. Infinite where a homography shows it mirrored or not at all.
 double viewDistance(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b, const geometry::Rectangle& roi);
 
 class Keyframes {
@@ -36,11 +36,12 @@ class Keyframes {
   // capacity: how many views are kept beside the reference, 0 or more.
   explicit Keyframes(int capacity) : capacity_(capacity) {}
 
-  // Forgets every view; the reference becomes the first. `weights` is CV_32F of the ROI's size, 0 where it cannot be trusted.
+  // Forgets every view; the reference becomes the first. `weights` is CV_32F of the ROI's size, 0 where it cannot be
+  // trusted.
   void setReference(const cv::Mat& image, const geometry::Rectangle& roi, const cv::Mat1f& weights);
 
-  // Whether the view is at a distance of at least 1 from each that is stored and, when all places are taken, further from them
-  // than the least singular of those is from the others: what is stored spreads, and comes to rest.
+  // Whether the view is at a distance of at least 1 from each that is stored and, when all places are taken, further
+  // from them than the least singular of those is from the others: what is stored spreads, and comes to rest.
   bool wants(const Eigen::Matrix3d& g) const;
 
   // Stores a view that wants() said yes to.

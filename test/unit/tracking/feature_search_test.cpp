@@ -17,7 +17,8 @@ Eigen::Matrix3d motion(double zoom, double angle, double tilt, const Eigen::Vect
   Eigen::Matrix3d centre = Eigen::Matrix3d::Identity();
   centre.topRightCorner<2, 1>() << -kRoi.x - 0.5 * kRoi.width, -kRoi.y - 0.5 * kRoi.height;
   Eigen::Matrix3d g;
-  g << zoom * std::cos(angle), -zoom * std::sin(angle), to.x(), zoom * std::sin(angle), zoom * std::cos(angle), to.y(), 0, 0, 1;
+  g << zoom * std::cos(angle), -zoom * std::sin(angle), to.x(), zoom * std::sin(angle), zoom * std::cos(angle), to.y(),
+      0, 0, 1;
   Eigen::Matrix3d tilted = Eigen::Matrix3d::Identity();
   tilted(0, 0) = std::cos(tilt);
   tilted(2, 0) = std::sin(tilt) / 500.0;
@@ -33,7 +34,9 @@ class FeatureSearchTest : public ::testing::Test {
 
   void SetUp() override { views_.setReference(scene_, kRoi, weights_); }
   std::vector<FeatureCandidate> find(const cv::Mat& image) { return search_.find(image, image::kLuma, views_); }
-  cv::Mat seen(const Eigen::Matrix3d& g, unsigned seed = 1) const { return test::view(scene_, g, 0.9, 10.0, 2.0, seed); }
+  cv::Mat seen(const Eigen::Matrix3d& g, unsigned seed = 1) const {
+    return test::view(scene_, g, 0.9, 10.0, 2.0, seed);
+  }
 };
 
 TEST_F(FeatureSearchTest, FindsTheRegionMovedTurnedAndZoomed) {

@@ -17,7 +17,8 @@ Eigen::Matrix3d zoomAndTurn(double zoom, double angle, double tilt = 0.0, const 
   Eigen::Matrix3d centre = Eigen::Matrix3d::Identity();
   centre.topRightCorner<2, 1>() << -kRoi.x - 0.5 * kRoi.width, -kRoi.y - 0.5 * kRoi.height;
   Eigen::Matrix3d g;
-  g << zoom * std::cos(angle), -zoom * std::sin(angle), to.x(), zoom * std::sin(angle), zoom * std::cos(angle), to.y(), 0, 0, 1;
+  g << zoom * std::cos(angle), -zoom * std::sin(angle), to.x(), zoom * std::sin(angle), zoom * std::cos(angle), to.y(),
+      0, 0, 1;
   Eigen::Matrix3d tilted = Eigen::Matrix3d::Identity();
   tilted(0, 0) = std::cos(tilt);
   return geometry::normaliseDeterminant(g * tilted * centre);
@@ -79,7 +80,8 @@ TEST_F(KeyframesTest, WhenFullItSpreadsAndComesToRest) {
   cv::RNG rng(5);
   int late = 0;
   for (int k = 0; k < 2000; ++k) {
-    const Eigen::Matrix3d g = zoomAndTurn(std::exp(rng.uniform(-1.0, 1.0)), rng.uniform(-1.5, 1.5), rng.uniform(0.0, 1.0));
+    const Eigen::Matrix3d g =
+        zoomAndTurn(std::exp(rng.uniform(-1.0, 1.0)), rng.uniform(-1.5, 1.5), rng.uniform(0.0, 1.0));
     if (!views.wants(g)) continue;
     views.add(image_, g, weights_);
     late += k >= 1000 ? 1 : 0;

@@ -21,8 +21,8 @@ constexpr int kAfter = 10;
 
 struct Return {
   double zoom;
-  double angle;  // rad
-  double tilt;   // rad
+  double angle;        // rad
+  double tilt;         // rad
   Eigen::Vector2d to;  // px, of the ROI's centre
 };
 
@@ -34,7 +34,8 @@ Eigen::Matrix3d motion(const Return& target, double share) {
   Eigen::Matrix3d centre = Eigen::Matrix3d::Identity();
   centre.topRightCorner<2, 1>() = -from;
   Eigen::Matrix3d g;
-  g << zoom * std::cos(angle), -zoom * std::sin(angle), to.x(), zoom * std::sin(angle), zoom * std::cos(angle), to.y(), 0, 0, 1;
+  g << zoom * std::cos(angle), -zoom * std::sin(angle), to.x(), zoom * std::sin(angle), zoom * std::cos(angle), to.y(),
+      0, 0, 1;
   Eigen::Matrix3d tilted = Eigen::Matrix3d::Identity();
   tilted(0, 0) = std::cos(share * target.tilt);
   tilted(2, 0) = std::sin(share * target.tilt) / 450.0;
@@ -68,7 +69,8 @@ class LossAndReturnTest : public ::testing::Test {
       // While hidden there is nothing to track: the first image may still be SEARCHING's cause.
       if (tracking && (hidden || test::cornerDistance(r.g, g, kRoi) >= kLie)) ++outcome.lies;
       if (hidden && !tracking) outcome.lost = true;
-      if (!hidden && frame > kBefore && tracking && outcome.first_after < 0) outcome.first_after = frame - kBefore - kHidden;
+      if (!hidden && frame > kBefore && tracking && outcome.first_after < 0)
+        outcome.first_after = frame - kBefore - kHidden;
       outcome.results.push_back(r);
     }
     return outcome;
@@ -124,7 +126,8 @@ TEST_F(LossAndReturnTest, NothingIsFoundInSmoke) {
   tracker.select(scene_, 0.0, kRoi);
   for (int frame = 1; frame < 20; ++frame) {
     cv::Mat smoke(kSize, CV_8UC3, cv::Scalar(130, 130, 135));
-    const TrackResult r = tracker.track(test::view(smoke, Eigen::Matrix3d::Identity(), 1.0, 0.0, 3.0, frame), kPeriod * frame);
+    const TrackResult r =
+        tracker.track(test::view(smoke, Eigen::Matrix3d::Identity(), 1.0, 0.0, 3.0, frame), kPeriod * frame);
     ASSERT_NE(r.state, State::kTracking) << frame;
     ASSERT_NE(r.reason, "");
   }
