@@ -1,60 +1,112 @@
 #include "laparoscope_servo/image/colour_patch.h"
 
 #include <algorithm>
-#include <cstring>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
+#include <string>
+
+#include "laparoscope_servo/image/multiversion.h"
 
 namespace laparoscope_servo::image {
 
-void warpNearest(const cv::Mat& image, const Eigen::Matrix3d& g, const cv::Size& size, cv::Mat& patch, cv::Mat1b& valid) {
+namespace {
+
+constexpr int kChunk = 256;  // pixels that a row is worked in
+
+struct Row {
+  float u0, u1;
+  float v0, v1;
+  float w0, w1;
+};
+
+// Offset of the pixel's first byte in the image; that of the first pixel where it lies outside, with valid 0.
+LAPAROSCOPE_SERVO_CLONES
+void locate(const Row& row, int width, int height, int stride, int channels, int first, int count, int* __restrict offset,
+            unsigned char* __restrict valid) {
+  const Row r = row;
+  const float right = static_cast<float>(width);
+  const float bottom = static_cast<float>(height);
+#pragma omp simd
+  for (int i = 0; i < count; ++i) {
+    const float x = static_cast<float>(first + i);
+    const float w = r.w0 + r.w1 * x;
+    // From the pixel's upper left corner, so that the conversion to int, towards zero, finds the nearest centre.
+    const float u = (r.u0 + r.u1 * x) / w + 0.5f;
+    const float v = (r.v0 + r.v1 * x) / w + 0.5f;
+    const int inside = static_cast<int>(u > 0.0f) & static_cast<int>(u < right) & static_cast<int>(v > 0.0f) &
+                       static_cast<int>(v < bottom) & static_cast<int>(w > 0.0f);
+    const int column = static_cast<int>(inside != 0 ? u : 0.0f);
+    const int line = static_cast<int>(inside != 0 ? v : 0.0f);
+    offset[i] = line * stride + column * channels;
+    valid[i] = static_cast<unsigned char>(-inside);
+  }
+}
+
+LAPAROSCOPE_SERVO_CLONES
+int markBright(const unsigned char* __restrict b, const unsigned char* __restrict g, const unsigned char* __restrict r, int count,
+               int threshold, unsigned char* __restrict mask) {
+  int any = 0;
+#pragma omp simd reduction(| : any)
+  for (int i = 0; i < count; ++i) {
+    const int bright = static_cast<int>(b[i] >= threshold) | static_cast<int>(g[i] >= threshold) |
+                       static_cast<int>(r[i] >= threshold);
+    mask[i] = static_cast<unsigned char>(-bright);
+    any |= bright;
+  }
+  return any;
+}
+
+}  // namespace
+
+void warpNearest(const cv::Mat& image, const Eigen::Matrix3d& g, const cv::Size& size, ColourPatch& patch) {
   if (image.type() != CV_8UC1 && image.type() != CV_8UC3) {
     throw std::invalid_argument("image of OpenCV type " + std::to_string(image.type()) +
                                 ", expected 8 bit with one channel or three");
   }
-  patch.create(size, image.type());
-  valid.create(size);
-  const int channels = image.channels();
-  const float right = static_cast<float>(image.cols) - 0.5f;
-  const float bottom = static_cast<float>(image.rows) - 0.5f;
+  patch.has_colour = image.channels() == 3;
+  patch.blue.create(size);
+  patch.valid.create(size);
+  if (patch.has_colour) {
+    patch.green.create(size);
+    patch.red.create(size);
+  }
+  const int stride = static_cast<int>(image.step[0]);
+  int offset[kChunk];
   for (int j = 0; j < size.height; ++j) {
     const Eigen::Vector3f start = (g.col(1) * j + g.col(2)).cast<float>();
     const Eigen::Vector3f step = g.col(0).cast<float>();
-    unsigned char* to = patch.ptr<unsigned char>(j);
-    unsigned char* ok = valid.ptr<unsigned char>(j);
-    for (int i = 0; i < size.width; ++i, to += channels) {
-      const float x = static_cast<float>(i);
-      const float w = start[2] + step[2] * x;
-      const float u = (start[0] + step[0] * x) / w;
-      const float v = (start[1] + step[1] * x) / w;
-      const bool inside = w > 0.0f && u > -0.5f && u < right && v > -0.5f && v < bottom;
-      ok[i] = inside ? 255 : 0;
-      if (!inside) {
-        std::memset(to, 0, channels);
+    const Row row = {start[0], step[0], start[1], step[1], start[2], step[2]};
+    for (int first = 0; first < size.width; first += kChunk) {
+      const int count = std::min(kChunk, size.width - first);
+      unsigned char* valid = patch.valid.ptr<unsigned char>(j) + first;
+      locate(row, image.cols, image.rows, stride, image.channels(), first, count, offset, valid);
+      unsigned char* blue = patch.blue.ptr<unsigned char>(j) + first;
+      if (!patch.has_colour) {
+        for (int i = 0; i < count; ++i) blue[i] = image.data[offset[i]] & valid[i];
         continue;
       }
-      const int column = std::min(static_cast<int>(u + 0.5f), image.cols - 1);
-      const int row = std::min(static_cast<int>(v + 0.5f), image.rows - 1);
-      std::memcpy(to, image.ptr<unsigned char>(row) + channels * column, channels);
+      unsigned char* green = patch.green.ptr<unsigned char>(j) + first;
+      unsigned char* red = patch.red.ptr<unsigned char>(j) + first;
+      for (int i = 0; i < count; ++i) {
+        const unsigned char* pixel = image.data + offset[i];
+        blue[i] = pixel[0] & valid[i];
+        green[i] = pixel[1] & valid[i];
+        red[i] = pixel[2] & valid[i];
+      }
     }
   }
 }
 
-void saturatedPixels(const cv::Mat& patch, int threshold, int grow, cv::Mat1b& mask) {
+void saturatedPixels(const ColourPatch& patch, int threshold, int grow, cv::Mat1b& mask) {
   mask.create(patch.size());
-  const int channels = patch.channels();
-  bool any = false;
-  for (int j = 0; j < patch.rows; ++j) {
-    const unsigned char* from = patch.ptr<unsigned char>(j);
-    unsigned char* to = mask.ptr<unsigned char>(j);
-    for (int i = 0; i < patch.cols; ++i) {
-      int brightest = from[channels * i];
-      for (int c = 1; c < channels; ++c) brightest = std::max<int>(brightest, from[channels * i + c]);
-      to[i] = brightest >= threshold ? 255 : 0;
-      any |= brightest >= threshold;
-    }
+  int any = 0;
+  for (int j = 0; j < mask.rows; ++j) {
+    const unsigned char* blue = patch.blue.ptr<unsigned char>(j);
+    const unsigned char* green = patch.has_colour ? patch.green.ptr<unsigned char>(j) : blue;
+    const unsigned char* red = patch.has_colour ? patch.red.ptr<unsigned char>(j) : blue;
+    any |= markBright(blue, green, red, mask.cols, threshold, mask.ptr<unsigned char>(j));
   }
-  if (any && grow > 0) {
+  if (any != 0 && grow > 0) {
     cv::dilate(mask, mask, cv::getStructuringElement(cv::MORPH_RECT, cv::Size(2 * grow + 1, 2 * grow + 1)));
   }
 }

@@ -4,9 +4,16 @@
 #include <stdexcept>
 #include <string>
 
+#include "laparoscope_servo/image/multiversion.h"
+
 namespace laparoscope_servo::image {
 
 namespace {
+
+LAPAROSCOPE_SERVO_CLONES
+void weighRow(const unsigned char* __restrict from, int count, float b, float g, float r, float* __restrict to) {
+  for (int u = 0; u < count; ++u) to[u] = b * from[3 * u] + g * from[3 * u + 1] + r * from[3 * u + 2];
+}
 
 void toOneChannel(const cv::Mat& image, const ChannelWeights& weights, cv::Mat1f& grey) {
   grey.create(image.size());
@@ -14,13 +21,8 @@ void toOneChannel(const cv::Mat& image, const ChannelWeights& weights, cv::Mat1f
     image.convertTo(grey, CV_32F);
     return;
   }
-  const float b = weights[0];
-  const float g = weights[1];
-  const float r = weights[2];
   for (int v = 0; v < image.rows; ++v) {
-    const unsigned char* from = image.ptr<unsigned char>(v);
-    float* to = grey.ptr<float>(v);
-    for (int u = 0; u < image.cols; ++u) to[u] = b * from[3 * u] + g * from[3 * u + 1] + r * from[3 * u + 2];
+    weighRow(image.ptr<unsigned char>(v), image.cols, weights[0], weights[1], weights[2], grey.ptr<float>(v));
   }
 }
 

@@ -126,7 +126,11 @@ void AesopNode::shutDown() {
     ROS_ERROR(
         "the controller has not confirmed the disable; it stops by itself when the last command's time has run out");
   }
-  transport_.drain(0.1);
+  try {
+    transport_.drain(0.1);
+  } catch (const aesop::TransportError& error) {
+    ROS_ERROR_STREAM(error.what());  // the line has gone in the meantime: nothing more can be said to it
+  }
   transport_.close();
 }
 

@@ -125,6 +125,7 @@ AesopParameters readAesopParameters(ParameterReader& reader) {
   readCommand(reader, parameters.driver.command);
   readLink(reader, parameters.driver.session);
   readPoint(reader, "insertion_point", parameters.driver.insertion_point);
+  reader.refuseUnknown("");
   reader.addErrors(aesop::validate(parameters.driver));
   return parameters;
 }

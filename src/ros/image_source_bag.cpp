@@ -119,6 +119,7 @@ class BagSource : public ImageSource {
 
   std::size_t size() const override { return size_; }
   double rate() const override { return rate_; }
+  bool hasRecordedStamps() const override { return true; }
 
  private:
   void open(const SourceOptions& options) {

@@ -58,6 +58,7 @@ class VideoSource : public ImageSource {
 
   std::size_t size() const override { return size_; }
   double rate() const override { return rate_; }
+  bool hasRecordedStamps() const override { return false; }
 
  private:
   std::string path_;
@@ -105,6 +106,7 @@ class FolderSource : public ImageSource {
 
   std::size_t size() const override { return files_.size(); }
   double rate() const override { return rate_; }
+  bool hasRecordedStamps() const override { return false; }
 
  private:
   double rate_;

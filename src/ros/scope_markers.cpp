@@ -10,7 +10,7 @@ using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
 constexpr double kPeriod = 0.1;          // s
-constexpr double kLinkRadius = 0.018;    // m
+constexpr double kLinkRadius = 0.014;    // m
 constexpr double kTrocarRadius = 0.009;  // m
 const char* const kBase = "aesop_base";
 const char* const kEndEffector = "end_effector";
@@ -86,11 +86,6 @@ void ScopeMarkers::addInsertionPoint(MarkerArray& array) const {
   sphere.scale.x = sphere.scale.y = sphere.scale.z = 2.0 * kTrocarRadius;
   setColour(sphere, 1.0, 0.75, 0.1, 0.9);
   array.markers.push_back(sphere);
-  Marker text = marker(config_.frame_prefix + config_.insertion_point, "insertion_point", 1, Marker::TEXT_VIEW_FACING);
-  text.pose.position.z = 3.0 * kTrocarRadius;
-  text.scale.z = 0.016;
-  text.text = "insertion point";
-  array.markers.push_back(text);
 }
 
 }  // namespace laparoscope_servo::skin

@@ -69,7 +69,7 @@ void TrackerDiagnostics::summarise(double now, diagnostic_updater::DiagnosticSta
 }
 
 std::string TrackerDiagnostics::colourGate() const {
-  if (config_.occlusion.colour == tracking::ColourGate::kOff) return "off";
+  if (config_.occlusion.colour == tracking::ColourGate::kNone) return "none";
   return has_colour_ ? "on" : "stands aside: the images have no colour";
 }
 

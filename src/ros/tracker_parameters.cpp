@@ -45,6 +45,7 @@ void readEsm(ParameterReader& reader, tracking::EsmConfig& config) {
 void readQuality(ParameterReader& reader, tracking::QualityConfig& config) {
   reader.read("tracking/quality/min_zncc", config.min_zncc, 0.0, 1.0);
   reader.read("tracking/quality/min_visible_fraction", config.min_visible_fraction, 0.0, 1.0);
+  reader.read("tracking/quality/min_return_fraction", config.min_return_fraction, 0.0, 1.0);
   reader.read("tracking/quality/max_corner_error", config.max_corner_error, 0.01, 100.0);
   reader.read("tracking/quality/max_area_ratio", config.max_area_ratio, 1.01, 1000.0);
   reader.read("tracking/quality/max_jump", config.max_jump, 0.01, 10.0);
@@ -60,7 +61,6 @@ void readSearch(ParameterReader& reader, tracking::SearchConfig& config) {
   reader.read("tracking/search/max_ratio", config.max_ratio, 0.1, 1.0);
   reader.read("tracking/search/min_inliers", config.min_inliers, 4, 1000);
   reader.read("tracking/search/keyframes", config.keyframes, 0, 64);
-  reader.read("tracking/search/min_visible_fraction", config.min_visible_fraction, 0.0, 1.0);
   reader.read("tracking/search/min_detail", config.min_detail, 0.0, 1.0);
 }
 

@@ -1,9 +1,12 @@
 #include "laparoscope_servo/ros/video_player.h"
 
 #include <camera_calibration_parsers/parse.h>
+#include <image_transport/camera_common.h>
+#include <ros/callback_queue.h>
 #include <rosgraph_msgs/Clock.h>
 
 #include <algorithm>
+#include <boost/make_shared.hpp>
 #include <stdexcept>
 #include <thread>
 
@@ -15,6 +18,8 @@ namespace laparoscope_servo::skin {
 namespace {
 
 constexpr std::chrono::milliseconds kClockPeriod(10);
+constexpr std::chrono::milliseconds kCameraInfoTimeout(500);
+constexpr std::chrono::seconds kResultTimeout(2);  // a tracker that gives none must not stop the video
 
 sensor_msgs::CameraInfo calibration(const std::string& file) {
   sensor_msgs::CameraInfo info;
@@ -30,8 +35,9 @@ sensor_msgs::CameraInfo calibration(const std::string& file) {
 
 VideoPlayerConfig videoPlayerConfig(ParameterReader& reader) {
   VideoPlayerConfig config;
-  reader.require("video", "a video file or a folder of images");
+  reader.require("video", "a bag, a video file or a folder of images");
   reader.read("video", config.video);
+  reader.read("image_topic", config.image_topic);
   reader.read("camera_info", config.camera_info);
   reader.read("frame_id", config.frame_id);
   reader.read("fps", config.fps, 0.1, 1000.0);
@@ -41,20 +47,28 @@ VideoPlayerConfig videoPlayerConfig(ParameterReader& reader) {
   reader.read("loop", config.loop);
   reader.read("restart_time", config.restart_time);
   reader.read("clock", config.clock);
+  reader.read("lockstep", config.lockstep);
   reader.read("subscribers", config.subscribers, 0, 100);
   reader.refuseUnknown("");
   return config;
 }
 
-VideoPlayer::VideoPlayer(ros::NodeHandle node, const VideoPlayerConfig& config)
-    : config_(config), transport_(node), offset_(config.first_stamp) {
+VideoPlayer::VideoPlayer(ros::NodeHandle node, const VideoPlayerConfig& config) : config_(config), transport_(node) {
+  options_.image_topic = config.image_topic;
   options_.start = config.start;
   options_.folder_rate = config.fps;
   source_ = openImageSource(config.video, options_);
+  if (!source_->hasRecordedStamps()) offset_ = ros::Duration(config.first_stamp);
   camera_info_ = calibration(config.camera_info);
   if (config.clock) clock_publisher_ = node.advertise<rosgraph_msgs::Clock>("/clock", 10);
+  if (config.lockstep) {
+    homography_subscriber_ = node.subscribe<Homography>(
+        "homography", 10, [this](const HomographyConstPtr& result) { result_stamp_ = result->header.stamp; });
+  }
   // A queue long enough that a burst after a slow read loses nothing.
-  publisher_ = transport_.advertiseCamera("image_raw", 50);
+  image_publisher_ = transport_.advertise("image_raw", 50);
+  const std::string info_topic = image_transport::getCameraInfoTopic(node.resolveName("image_raw"));
+  camera_info_publisher_ = node.advertise<sensor_msgs::CameraInfo>(info_topic, 50);
 }
 
 void VideoPlayer::run() {
@@ -66,72 +80,106 @@ void VideoPlayer::run() {
       throw SourceError("'" + config_.video + "' has no image after " + std::to_string(config_.start) + " s");
     }
     if (!config_.loop) break;
-    if (!config_.restart_time) offset_ = last_stamp_ + 1.0 / source_->rate() - config_.start;
+    if (!config_.restart_time) offset_ += last_ - begin_ + ros::Duration(1.0 / source_->rate());
     source_ = openImageSource(config_.video, options_);
   } while (ros::ok());
 }
 
 void VideoPlayer::waitForSubscribers() const {
-  for (int waited = 0; ros::ok(); ++waited) {
-    const auto subscribers = static_cast<int>(publisher_.getNumSubscribers());
-    if (subscribers >= config_.subscribers) return;
+  int waited = 0;
+  for (; ros::ok(); ++waited) {
+    const auto subscribers = static_cast<int>(image_publisher_.getNumSubscribers());
+    const bool tracker = !config_.lockstep || homography_subscriber_.getNumPublishers() > 0;
+    if (subscribers >= config_.subscribers && tracker) break;
     if (waited % 500 == 100) {
-      ROS_INFO("waiting for subscribers of %s: %d of %d", publisher_.getTopic().c_str(), subscribers,
-               config_.subscribers);
+      ROS_INFO("waiting for subscribers of %s: %d of %d%s", image_publisher_.getTopic().c_str(), subscribers,
+               config_.subscribers, tracker ? "" : ", and for a tracker");
     }
+    std::this_thread::sleep_for(kClockPeriod);
+  }
+  // Who listens to the images mostly listens to the intrinsics, too, and needs them with the first image.
+  const auto end = Clock::now() + kCameraInfoTimeout;
+  while (ros::ok() && waited > 0 && camera_info_publisher_.getNumSubscribers() == 0 && Clock::now() < end) {
     std::this_thread::sleep_for(kClockPeriod);
   }
 }
 
+ros::Time VideoPlayer::timeOf(const SourceImage& image) const {
+  return (source_->hasRecordedStamps() ? image.record_time : image.header.stamp) + offset_;
+}
+
 void VideoPlayer::playOnce() {
-  bool first = true;
-  while (ros::ok()) {
+  for (bool first = true; ros::ok(); first = false) {
     const std::optional<SourceImage> image = source_->next();
     if (!image) return;
-    const double stamp = stampOf(*image);
+    last_ = timeOf(*image);
     if (first) {
-      begin_stamp_ = stamp;
-      begin_time_ = Clock::now();
-      first = false;
+      begin_ = last_;
+      begin_due_ = Clock::now();
     }
-    waitUntil(stamp);
-    publishClock(stamp);
+    waitUntil(last_);
+    publishClock(last_);
     if (image->error.empty()) {
-      publish(*image, ros::Time(stamp));
+      publish(*image);
+      if (config_.lockstep) waitForResult(image->header.stamp + offset_, last_);
     } else {
       ROS_ERROR("image %zu is left out: %s", image->frame, image->error.c_str());
     }
-    last_stamp_ = stamp;
     ros::spinOnce();
   }
 }
 
-void VideoPlayer::waitUntil(double time) {
-  const auto due = begin_time_ + std::chrono::duration_cast<Clock::duration>(
-                                     std::chrono::duration<double>((time - begin_stamp_) / config_.speed));
+VideoPlayer::Clock::time_point VideoPlayer::dueTime(const ros::Time& time) const {
+  const std::chrono::duration<double> elapsed((time - begin_).toSec() / config_.speed);
+  return begin_due_ + std::chrono::duration_cast<Clock::duration>(elapsed);
+}
+
+void VideoPlayer::waitUntil(const ros::Time& time) {
+  const auto due = dueTime(time);
   for (auto next = Clock::now() + kClockPeriod; next < due && ros::ok(); next += kClockPeriod) {
     std::this_thread::sleep_until(next);
-    const std::chrono::duration<double> elapsed = next - begin_time_;
-    publishClock(std::min(time, begin_stamp_ + elapsed.count() * config_.speed));
+    const std::chrono::duration<double> left = due - next;
+    publishClock(time - ros::Duration(left.count() * config_.speed));
   }
   std::this_thread::sleep_until(due);
 }
 
-void VideoPlayer::publishClock(double time) {
+void VideoPlayer::waitForResult(const ros::Time& stamp, const ros::Time& time) {
+  const auto begin = Clock::now();
+  while (ros::ok() && result_stamp_ != stamp && homography_subscriber_.getNumPublishers() > 0 &&
+         Clock::now() - begin < kResultTimeout) {
+    ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.001));
+  }
+  // What comes late does not make the next ones hurry.
+  const auto late = Clock::now() - dueTime(time + ros::Duration(1.0 / source_->rate()));
+  if (late > Clock::duration::zero()) begin_due_ += late;
+}
+
+void VideoPlayer::publishClock(const ros::Time& time) {
   if (!config_.clock) return;
   rosgraph_msgs::Clock message;
-  message.clock = ros::Time(time);
+  message.clock = time;
   clock_publisher_.publish(message);
 }
 
-void VideoPlayer::publish(const SourceImage& image, const ros::Time& stamp) {
-  std_msgs::Header header;
-  header.stamp = stamp;
-  header.frame_id = config_.frame_id;
-  const sensor_msgs::ImagePtr message = imageMessage(header, trackerImage(image.decoded));
+void VideoPlayer::publish(const SourceImage& image) {
+  std_msgs::Header header = image.header;
+  header.stamp += offset_;
+  if (!source_->hasRecordedStamps()) header.frame_id = config_.frame_id;
+
+  sensor_msgs::ImagePtr message;
+  if (image.message) {
+    message = boost::make_shared<sensor_msgs::Image>(*image.message);
+    message->header = header;
+  } else {
+    message = imageMessage(header, trackerImage(image.decoded));
+  }
   if (config_.camera_info.empty()) {
-    camera_info_.width = message->width;
-    camera_info_.height = message->height;
+    if (image.camera_info) camera_info_ = *image.camera_info;
+    if (camera_info_.K[0] == 0.0) {
+      camera_info_.width = message->width;
+      camera_info_.height = message->height;
+    }
   } else if (camera_info_.width != message->width || camera_info_.height != message->height) {
     throw std::runtime_error("calibration '" + config_.camera_info + "' is for images of " +
                              std::to_string(camera_info_.width) + "x" + std::to_string(camera_info_.height) +
@@ -139,7 +187,8 @@ void VideoPlayer::publish(const SourceImage& image, const ros::Time& stamp) {
                              std::to_string(message->height) + " px");
   }
   camera_info_.header = header;
-  publisher_.publish(*message, camera_info_);
+  camera_info_publisher_.publish(camera_info_);
+  image_publisher_.publish(message);
   ++published_;
 }
 

@@ -334,34 +334,4 @@ EsmResult Esm::align(const image::RegionPyramid& current, const EsmState& start,
   return result;
 }
 
-double zncc(const cv::Mat1f& a, const cv::Mat1f& b, const cv::Mat1f& weight) {
-  double sw = 0.0, sa = 0.0, sb = 0.0, saa = 0.0, sbb = 0.0, sab = 0.0;
-  for (int j = 0; j < a.rows; ++j) {
-    const float* pa = a.ptr<float>(j);
-    const float* pb = b.ptr<float>(j);
-    const float* pw = weight.ptr<float>(j);
-    float w = 0, wa = 0, wb = 0, waa = 0, wbb = 0, wab = 0;
-#pragma omp simd reduction(+ : w, wa, wb, waa, wbb, wab)
-    for (int i = 0; i < a.cols; ++i) {
-      w += pw[i];
-      wa += pw[i] * pa[i];
-      wb += pw[i] * pb[i];
-      waa += pw[i] * pa[i] * pa[i];
-      wbb += pw[i] * pb[i] * pb[i];
-      wab += pw[i] * pa[i] * pb[i];
-    }
-    sw += w;
-    sa += wa;
-    sb += wb;
-    saa += waa;
-    sbb += wbb;
-    sab += wab;
-  }
-  const double va = saa * sw - sa * sa;
-  const double vb = sbb * sw - sb * sb;
-  // Rounding in float leaves about 1e-6 of the square of the mean.
-  if (!(va > 1e-5 * saa * sw) || !(vb > 1e-5 * sbb * sw)) return 0.0;
-  return std::clamp((sab * sw - sa * sb) / std::sqrt(va * vb), -1.0, 1.0);
-}
-
 }  // namespace laparoscope_servo::tracking

@@ -7,7 +7,6 @@
 #include <opencv2/imgproc.hpp>
 
 #include "laparoscope_servo/geometry/sl3.h"
-#include "laparoscope_servo/image/colour_patch.h"
 
 namespace laparoscope_servo::tracking {
 
@@ -103,8 +102,8 @@ Features FeatureSearch::draw(const cv::Mat& image, const cv::Point& first, const
     small = image;
   }
   cv::Mat1b usable;
-  image::saturatedPixels(small, kBrightest, kGrowBright, usable);
-  usable = usable == 0;
+  cv::inRange(small, cv::Scalar::all(0), cv::Scalar::all(kBrightest - 1), usable);
+  cv::erode(usable, usable, cv::Mat(), cv::Point(-1, -1), kGrowBright);
   if (!mask.empty()) {
     cv::Mat1b wanted;
     cv::resize(mask, wanted, size, 0.0, 0.0, cv::INTER_NEAREST);

@@ -45,6 +45,13 @@ cv::Rect boundingBox(const geometry::Quadrilateral& q, double margin) {
   return {first, last + cv::Point(1, 1)};
 }
 
+// Pixels of the ROI to those of the image.
+Eigen::Matrix3d fromPatch(const geometry::Rectangle& roi) {
+  Eigen::Matrix3d m = Eigen::Matrix3d::Identity();
+  m.topRightCorner<2, 1>() << roi.x, roi.y;
+  return m;
+}
+
 double farthestCorner(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b, const geometry::Rectangle& roi) {
   const geometry::Quadrilateral p = geometry::apply(a, roi.corners());
   const geometry::Quadrilateral q = geometry::apply(b, roi.corners());
@@ -139,8 +146,7 @@ class RegionTracker::Implementation {
   OcclusionGates gates_;
   image::RegionPyramid pyramid_;
   image::ChannelWeights channel_ = image::kLuma;
-  cv::Mat patch_;
-  cv::Mat1b valid_;
+  image::ColourPatch patch_;
   Keyframes keyframes_;
   FeatureSearch feature_search_;
 
@@ -152,6 +158,7 @@ class RegionTracker::Implementation {
   double last_good_stamp_ = 0.0;
   geometry::Vector8d velocity_ = geometry::Vector8d::Zero();  // 1/s, of the last motion, in normalised template coordinates
   bool has_velocity_ = false;
+  TrackRecord record_;
   int confirmations_ = 0;
   EsmState candidate_;                 // while searching: what is being confirmed
   unsigned search_turn_ = 0;           // images searched since the ROI was lost
@@ -183,7 +190,8 @@ TrackResult RegionTracker::Implementation::select(const cv::Mat& image, double s
   if (image.channels() == 3 && config_.esm.adapt_channel) fresh.channel_ = strongestChannel(image(box));
   fresh.pyramid_.build(image, boundingBox(roi.corners(), 4.0 * (1 << config_.esm.levels)), config_.esm.levels, fresh.channel_);
   fresh.esm_.setReference(fresh.pyramid_, roi);
-  fresh.gates_.setReference(image(box).clone());
+  image::warpNearest(image, fromPatch(roi), box.size(), fresh.patch_);
+  fresh.gates_.setReference(fresh.patch_);
   fresh.esm_.setWeights(fresh.gates_.weights());
   const double error = fresh.esm_.referenceCornerError(kTypicalNoise);
   if (!(error <= config_.min_texture)) {
@@ -252,10 +260,8 @@ Eigen::Matrix3d RegionTracker::Implementation::predict(double stamp) const {
 // The gates' view of the image where the ROI is taken to be.
 void RegionTracker::Implementation::look(const cv::Mat& image, const Eigen::Matrix3d& g) {
   const geometry::Rectangle& roi = esm_.roi();
-  Eigen::Matrix3d from_patch = Eigen::Matrix3d::Identity();
-  from_patch.topRightCorner<2, 1>() << roi.x, roi.y;
-  image::warpNearest(image, g * from_patch, cv::Size(gates_.grid().width(), gates_.grid().height()), patch_, valid_);
-  gates_.observeColour(patch_, valid_);
+  image::warpNearest(image, g * fromPatch(roi), cv::Size(gates_.grid().width(), gates_.grid().height()), patch_);
+  gates_.observeColour(patch_);
   esm_.setWeights(gates_.weights());
   shown_ = g;
 }
@@ -267,7 +273,9 @@ RegionTracker::Implementation::Attempt RegionTracker::Implementation::attempt(co
   Evidence& e = result.evidence;
   e.roi = roi;
   e.predicted = start.g;
-  e.predicted_from_track = from_track;
+  e.from_track = from_track;
+  e.last_gain = last_.gain;
+  e.record = record_;
   e.esm.state = start;
   e.esm.status = EsmStatus::kOutOfView;
   const cv::Rect box = boundingBox(geometry::apply(start.g, roi.corners()), std::max(32.0, 0.25 * std::max(roi.width, roi.height)));
@@ -289,16 +297,15 @@ RegionTracker::Implementation::Attempt RegionTracker::Implementation::attempt(co
     refine();
   }
   for (int round = 0; round < kMaxStructureRounds && usable(); ++round) {
-    const LightModel light = {e.esm.state.gain, e.esm.state.bias};
-    if (gates_.observeStructure(esm_.warped(), esm_.level(0).value.view(), esm_.valid(), light, e.esm.sigma) == 0) break;
+    const EsmLevel& level = esm_.level(0);
+    if (gates_.observeStructure(level.warped, level.value, level.valid, e.esm.state.gain, e.esm.sigma) == 0) break;
     esm_.setWeights(gates_.weights());
     refine();
   }
   e.esm.iterations = iterations;
   if (usable()) {
-    const cv::Mat1f used = gates_.weights().mul(esm_.valid());
-    e.visible_fraction = cv::sum(used)[0] / static_cast<double>(used.total());
-    e.zncc = zncc(esm_.warped(), esm_.level(0).value.view(), used);
+    e.visible_fraction = gates_.visibleFraction();
+    e.zncc = gates_.correlation();
   }
   result.doubt = doubt(e, config_.quality);
   return result;
@@ -342,14 +349,12 @@ RegionTracker::Implementation::Attempt RegionTracker::Implementation::search(con
 
 // A search asks at many places, so that one of them may pass by chance what a tracked region passes by right: more is asked.
 std::string RegionTracker::Implementation::doubtWhatWasFound(const Attempt& found) {
-  const double fraction = found.evidence.visible_fraction;
-  const double detail = detailCorrelation(esm_.warped(), esm_.level(0).value.view(), gates_.weights().mul(esm_.valid()));
+  const EsmLevel& level = esm_.level(0);
+  const double detail = detailCorrelation(level.warped.view(), level.value.view(), level.weight.view().mul(level.valid.view()));
   std::ostringstream why;
   why.precision(3);
   if (found.evidence.esm.status != EsmStatus::kConverged) {
     why << "still moving where it was searched";
-  } else if (!(fraction >= config_.search.min_visible_fraction)) {
-    why << "visible fraction " << fraction << " where it was searched, expected at least " << config_.search.min_visible_fraction;
   } else if (!(detail >= config_.search.min_detail)) {
     why << "correlation of details " << detail << " where it was searched, expected at least " << config_.search.min_detail;
   }
@@ -390,14 +395,17 @@ void RegionTracker::Implementation::decide(const Attempt& best, double stamp) {
   }
   const EsmState& now = best.evidence.esm.state;
   if (state_ != State::kTracking) {
-    const bool agrees = confirmations_ == 0 || farthestCorner(candidate_.g, now.g, esm_.roi()) <
-                                                   quality.max_jump * std::hypot(esm_.roi().width, esm_.roi().height);
+    // False fits do not come back to the same place.
+    const double apart = confirmations_ == 0 ? 0.0 : farthestCorner(candidate_.g, now.g, esm_.roi());
+    const bool agrees = apart <= allowedJump(record_, quality, esm_.roi(), 0.0, best.evidence.esm.corner_error);
     confirmations_ = agrees ? confirmations_ + 1 : 1;
     candidate_ = now;
     if (confirmations_ < quality.confirmations) return;
     state_ = State::kTracking;
     has_velocity_ = false;
   } else {
+    record_.add(best.evidence.zncc, best.evidence.esm.sigma, farthestCorner(best.evidence.predicted, now.g, esm_.roi()),
+                best.evidence.visible_fraction);
     const double dt = stamp - last_good_stamp_;
     has_velocity_ = dt > 0.0;
     if (has_velocity_) {
@@ -421,6 +429,7 @@ TrackResult RegionTracker::Implementation::report(const Attempt& attempt, double
   result.zncc = attempt.evidence.zncc;
   result.iterations = attempt.evidence.esm.iterations;
   result.corner_error = attempt.evidence.esm.corner_error;
+  result.sigma = attempt.evidence.esm.sigma;
   result.gain = attempt.evidence.esm.state.gain;
   result.bias = attempt.evidence.esm.state.bias;
   result.colour_used = gates_.colourUsed();
@@ -446,9 +455,8 @@ cv::Mat RegionTracker::Implementation::occlusionMask() const {
   for (int j = 0; j < grid.height(); ++j) {
     for (int i = 0; i < grid.width(); ++i) areas(j, i) = gates_.occluded(grid.areaOf(i, j)) ? 255 : 0;
   }
-  Eigen::Matrix3d from_patch = Eigen::Matrix3d::Identity();
-  from_patch.topRightCorner<2, 1>() << esm_.roi().x, esm_.roi().y;
-  const Eigen::Matrix3d g = (state_ == State::kTracking || confirmations_ == 0 ? last_.g : candidate_.g) * from_patch;
+  const Eigen::Matrix3d g =
+      (state_ == State::kTracking || confirmations_ == 0 ? last_.g : candidate_.g) * fromPatch(esm_.roi());
   cv::Matx33d warp;
   for (int r = 0; r < 3; ++r) {
     for (int c = 0; c < 3; ++c) warp(r, c) = g(r, c);

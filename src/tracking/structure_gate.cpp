@@ -1,48 +1,73 @@
 #include "laparoscope_servo/tracking/structure_gate.h"
 
-#include <cmath>
+#include <algorithm>
 #include <limits>
+
+#include "laparoscope_servo/image/multiversion.h"
 
 namespace laparoscope_servo::tracking {
 
-void structureDissimilarity(const cv::Mat1f& image, const cv::Mat1f& reference, const cv::Mat1f& valid, const LightModel& light,
-                            double sigma, const image::AreaGrid& grid, std::vector<float>& dissimilarity) {
-  dissimilarity.resize(grid.count());
-  const float gain = static_cast<float>(light.gain);
-  const float bias = static_cast<float>(light.bias);
+namespace {
+
+// Adds a row of pixels to the sums of the columns: six arrays, one after the other.
+LAPAROSCOPE_SERVO_CLONES
+void addRow(const float* __restrict image, const float* __restrict reference, const float* __restrict weight, int count,
+            float* __restrict sums) {
+  float* __restrict w = sums;
+  float* __restrict a = sums + count;
+  float* __restrict b = sums + 2 * count;
+  float* __restrict aa = sums + 3 * count;
+  float* __restrict bb = sums + 4 * count;
+  float* __restrict ab = sums + 5 * count;
+#pragma omp simd
+  for (int i = 0; i < count; ++i) {
+    const float wa = weight[i] * image[i];
+    const float wb = weight[i] * reference[i];
+    w[i] += weight[i];
+    a[i] += wa;
+    b[i] += wb;
+    aa[i] += wa * image[i];
+    bb[i] += wb * reference[i];
+    ab[i] += wa * reference[i];
+  }
+}
+
+}  // namespace
+
+void StructureStatistics::compute(const image::Patch& image, const image::Patch& reference, const image::Patch& weight,
+                                  const image::AreaGrid& grid) {
+  areas_.resize(grid.count());
+  const int width = grid.width();
+  columns_.resize(static_cast<std::size_t>(6) * width);
   for (int row = 0; row < grid.rows(); ++row) {
+    std::fill(columns_.begin(), columns_.end(), 0.0f);
+    for (int j = grid.rowBegin(row); j < grid.rowBegin(row + 1); ++j) {
+      addRow(image.row(j), reference.row(j), weight.row(j), width, columns_.data());
+    }
     for (int column = 0; column < grid.columns(); ++column) {
-      float n = 0, sa = 0, sb = 0, saa = 0, sbb = 0, sab = 0;
-      const int begin = grid.columnBegin(column);
-      const int end = grid.columnBegin(column + 1);
-      for (int j = grid.rowBegin(row); j < grid.rowBegin(row + 1); ++j) {
-        const float* pi = image.ptr<float>(j);
-        const float* pr = reference.ptr<float>(j);
-        const float* pv = valid.ptr<float>(j);
-#pragma omp simd reduction(+ : n, sa, sb, saa, sbb, sab)
-        for (int i = begin; i < end; ++i) {
-          const float w = pv[i];
-          const float a = gain * pi[i] + bias;
-          const float b = pr[i];
-          n += w;
-          sa += w * a;
-          sb += w * b;
-          saa += w * a * a;
-          sbb += w * b * b;
-          sab += w * a * b;
-        }
+      double sums[6] = {};
+      for (int k = 0; k < 6; ++k) {
+        const float* values = columns_.data() + static_cast<std::size_t>(k) * width;
+        for (int i = grid.columnBegin(column); i < grid.columnBegin(column + 1); ++i) sums[k] += values[i];
       }
       const int area = row * grid.columns() + column;
-      if (n < 0.5f * static_cast<float>(grid.pixelsIn(area))) {
-        dissimilarity[area] = std::numeric_limits<float>::quiet_NaN();
-        continue;
-      }
-      const double va = (saa - static_cast<double>(sa) * sa / n) / n;
-      const double vb = (sbb - static_cast<double>(sb) * sb / n) / n;
-      const double cov = (sab - static_cast<double>(sa) * sb / n) / n;
-      dissimilarity[area] = static_cast<float>((va + vb - 2.0 * cov) / (0.5 * (va + vb) + sigma * sigma));
+      const double n = sums[0];
+      areas_[area] = {};
+      if (!(n > 0.0)) continue;
+      const double a = sums[1] / n;
+      const double b = sums[2] / n;
+      areas_[area] = {static_cast<float>(n / grid.pixelsIn(area)), static_cast<float>(std::max(0.0, sums[3] / n - a * a)),
+                      static_cast<float>(std::max(0.0, sums[4] / n - b * b)), static_cast<float>(sums[5] / n - a * b)};
     }
   }
+}
+
+float StructureStatistics::dissimilarity(int k, double gain, double sigma) const {
+  const AreaMoments& m = areas_[k];
+  if (!(m.share >= 0.5f)) return std::numeric_limits<float>::quiet_NaN();
+  const double image = gain * gain * m.image;
+  const double difference = image + m.reference - 2.0 * gain * m.both;
+  return static_cast<float>(difference / (0.5 * (image + m.reference) + sigma * sigma));
 }
 
 }  // namespace laparoscope_servo::tracking

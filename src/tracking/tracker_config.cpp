@@ -33,6 +33,7 @@ std::vector<std::string> validate(const TrackerConfig& c) {
   check.range("esm/saturation", c.esm.saturation, 1, 256);
   check.range("quality/min_zncc", c.quality.min_zncc, 0.0, 1.0);
   check.range("quality/min_visible_fraction", c.quality.min_visible_fraction, 0.0, 1.0);
+  check.range("quality/min_return_fraction", c.quality.min_return_fraction, 0.0, 1.0);
   check.range("quality/max_corner_error", c.quality.max_corner_error, 0.01, 100.0);
   check.range("quality/max_area_ratio", c.quality.max_area_ratio, 1.01, 1000.0);
   check.range("quality/max_jump", c.quality.max_jump, 0.01, 10.0);
@@ -43,7 +44,6 @@ std::vector<std::string> validate(const TrackerConfig& c) {
   check.range("search/max_ratio", c.search.max_ratio, 0.1, 1.0);
   check.range("search/min_inliers", c.search.min_inliers, 4, 1000);
   check.range("search/keyframes", c.search.keyframes, 0, 64);
-  check.range("search/min_visible_fraction", c.search.min_visible_fraction, 0.0, 1.0);
   check.range("search/min_detail", c.search.min_detail, 0.0, 1.0);
   check.range("velocity_damping", c.velocity_damping, 0.0, 1.0);
   check.range("min_roi_side", c.min_roi_side, 8, 1000);

@@ -6,12 +6,21 @@
 
 namespace laparoscope_servo::image {
 
-// patch(j, i) = the image's pixel nearest to the point that `g` takes (i, j, 1) to; valid(j, i) = 255 there, 0 where that lies
-// outside the image (the patch is then black). `image` is CV_8UC1 or CV_8UC3, `patch` gets its type; both get `size`.
-void warpNearest(const cv::Mat& image, const Eigen::Matrix3d& g, const cv::Size& size, cv::Mat& patch, cv::Mat1b& valid);
+// One plane a channel; an image without colour has `blue` alone. 255 in `valid` where the pixel lies in the image, else 0, and the
+// planes are black. Buffers are kept from one use to the next.
+struct ColourPatch {
+  cv::Mat1b blue, green, red, valid;
+  bool has_colour = false;
 
-// 255 where any channel is at least `threshold` (grey levels), grown by `grow` px in every direction; 0 elsewhere. CV_8UC1 or
-// CV_8UC3. Highlights move with the lamp rather than with the tissue, and their rims are bleached.
-void saturatedPixels(const cv::Mat& patch, int threshold, int grow, cv::Mat1b& mask);
+  cv::Size size() const { return valid.size(); }
+};
+
+// patch(j, i) = the image's pixel nearest to the point that `g` takes (i, j, 1) to. `image` is CV_8UC1 or CV_8UC3, blue first; another
+// type throws std::invalid_argument. Where the denominator of g is not positive, nothing is valid.
+void warpNearest(const cv::Mat& image, const Eigen::Matrix3d& g, const cv::Size& size, ColourPatch& patch);
+
+// 255 where any channel is at least `threshold` (grey levels), grown by `grow` px in every direction; 0 elsewhere. Highlights move
+// with the lamp rather than with the tissue, and their rims are bleached.
+void saturatedPixels(const ColourPatch& patch, int threshold, int grow, cv::Mat1b& mask);
 
 }  // namespace laparoscope_servo::image

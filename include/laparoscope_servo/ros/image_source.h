@@ -48,6 +48,8 @@ class ImageSource {
   virtual std::size_t size() const = 0;
   // Hz, for a video made of the images.
   virtual double rate() const = 0;
+  // Whether the stamps are those of a recording, or counted from 0.
+  virtual bool hasRecordedStamps() const = 0;
 };
 
 // Throws SourceError when `path` does not exist, or is none of the above.

@@ -1,9 +1,11 @@
-// The node `video_player`: plays a video or a folder of images as a camera driver would publish them, and the time that
-// goes with them as `rosbag play --clock` would.
+// The node `video_player`: plays a bag, a video or a folder of images as a camera driver would publish them, and the
+// time that goes with them as `rosbag play --clock` would.
 //
-// Publishes: image_raw (sensor_msgs/Image), camera_info (sensor_msgs/CameraInfo; all zero when no calibration is given,
-// so that nobody takes it for one), and /clock. Stamps are first_stamp + frame / rate of the video, whatever the speed
-// at which it is played; everything is paced by a steady clock. At a loop, time jumps back as with a looped bag.
+// Subscribes: homography (laparoscope_servo/Homography), in lockstep only. Publishes: image_raw (sensor_msgs/Image),
+// camera_info (sensor_msgs/CameraInfo; all zero when no calibration is known, so that nobody takes it for one), and
+// /clock. A bag's images keep their headers; stamps of a video are first_stamp + frame / rate, whatever the speed at
+// which it is played. Everything is paced by a steady clock. At a loop, time jumps back as with a looped bag. Of a bag,
+// only images and their camera_info are played: nothing that was recorded can move an arm.
 #pragma once
 
 #include <image_transport/image_transport.h>
@@ -14,13 +16,15 @@
 #include <memory>
 #include <string>
 
+#include "laparoscope_servo/Homography.h"
 #include "laparoscope_servo/ros/image_source.h"
 #include "laparoscope_servo/ros/parameters.h"
 
 namespace laparoscope_servo::skin {
 
 struct VideoPlayerConfig {
-  std::string video;        // file, or folder of images
+  std::string video;        // bag, video file, or folder of images
+  std::string image_topic;  // of a bag; may be empty when it has only one with images
   std::string camera_info;  // file of camera_calibration (YAML or INI); empty: intrinsics unknown
   std::string frame_id = "laparoscope_optical";
   double fps = 25.0;         // Hz, 0.1 to 1000, of a folder and of a video that does not tell its own
@@ -30,6 +34,7 @@ struct VideoPlayerConfig {
   bool loop = false;         // begin again at the end
   bool restart_time = true;  // false: stamps go on at a loop instead of jumping back
   bool clock = true;         // publish /clock
+  bool lockstep = false;     // the next image waits for the tracker's result, so that a slow one misses none
   int subscribers = 1;       // 0 to 100: wait for so many of image_raw before the first image
 };
 
@@ -52,23 +57,30 @@ class VideoPlayer {
 
   void waitForSubscribers() const;
   void playOnce();
-  void waitUntil(double time);
-  void publish(const SourceImage& image, const ros::Time& stamp);
-  void publishClock(double time);
-  double stampOf(const SourceImage& image) const { return offset_ + image.header.stamp.toSec(); }
+  void waitUntil(const ros::Time& time);
+  Clock::time_point dueTime(const ros::Time& time) const;
+  void publish(const SourceImage& image);
+  void publishClock(const ros::Time& time);
+  void waitForResult(const ros::Time& stamp, const ros::Time& time);
+  // The time on /clock that the image belongs to.
+  ros::Time timeOf(const SourceImage& image) const;
 
   VideoPlayerConfig config_;
   SourceOptions options_;
   std::unique_ptr<ImageSource> source_;
   sensor_msgs::CameraInfo camera_info_;
   image_transport::ImageTransport transport_;
-  image_transport::CameraPublisher publisher_;
+  // Not a CameraPublisher, which cannot tell whether it is the images that somebody listens to.
+  image_transport::Publisher image_publisher_;
+  ros::Publisher camera_info_publisher_;
   ros::Publisher clock_publisher_;
+  ros::Subscriber homography_subscriber_;
+  ros::Time result_stamp_;  // of the newest result
   std::size_t published_ = 0;
-  double offset_ = 0.0;           // s, stamp of the video's time 0
-  double last_stamp_ = 0.0;       // s
-  double begin_stamp_ = 0.0;      // s, stamp that was due ...
-  Clock::time_point begin_time_;  // ... at this time
+  ros::Duration offset_;         // added to the stamps of the source
+  ros::Time begin_;              // time on /clock that was due ...
+  Clock::time_point begin_due_;  // ... then
+  ros::Time last_;               // time on /clock of the last image
 };
 
 }  // namespace laparoscope_servo::skin

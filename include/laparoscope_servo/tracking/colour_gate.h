@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "laparoscope_servo/image/area_grid.h"
+#include "laparoscope_servo/image/colour_patch.h"
 #include "laparoscope_servo/tracking/tracker_config.h"
 
 namespace laparoscope_servo::tracking {
@@ -27,8 +28,8 @@ class ColourHistograms {
  public:
   ColourHistograms(ColourGate mode, int bins) : mode_(mode), bins_(bins) {}
 
-  // `patch`: CV_8UC3, blue first, of the grid's size; pixels with valid = 0 do not count.
-  void compute(const cv::Mat& patch, const cv::Mat1b& valid, const image::AreaGrid& grid);
+  // `patch` has colour and the grid's size; pixels with valid = 0 do not count.
+  void compute(const image::ColourPatch& patch, const image::AreaGrid& grid);
 
   // The area's histogram, eq. (1), `bins` numbers that sum to 1 when pixels(area) > 0.
   const float* histogram(int area) const { return histograms_.data() + static_cast<std::size_t>(area) * bins_; }
@@ -38,6 +39,8 @@ class ColourHistograms {
  private:
   ColourGate mode_;
   int bins_;
+  std::vector<int> counts_;  // like histograms_
+  std::vector<int> bin_of_;  // of a row
   std::vector<float> histograms_;
   std::vector<int> pixels_;
 };

@@ -94,10 +94,6 @@ class Esm {
   // N, see above.
   const Eigen::Matrix3d& normalisation() const { return n_; }
 
-  // The image, warped to the ROI by the last alignment's last iteration, and where it is valid (1, else 0), at the finest level.
-  const cv::Mat1f warped() const { return levels_[0].warped.view(); }
-  const cv::Mat1f valid() const { return levels_[0].valid.view(); }
-
  private:
   void planLight(EsmLevel& level) const;
   void warp(const image::RegionPyramid& current, EsmLevel& level, int l, const Eigen::Matrix3d& g);
@@ -124,8 +120,5 @@ class Esm {
   std::vector<BlockSums> block_sums_;
   bool light_known_ = false;
 };
-
-// Weighted zero-mean normalised cross-correlation, in [-1, 1]; 0 where either side is constant. Sizes must agree.
-double zncc(const cv::Mat1f& a, const cv::Mat1f& b, const cv::Mat1f& weight);
 
 }  // namespace laparoscope_servo::tracking

@@ -19,14 +19,21 @@ class OcclusionGates {
   OcclusionGates(const OcclusionConfig& config, int saturation);
 
   // The reference's ROI. Throws std::invalid_argument when it has fewer pixels than areas in a direction.
-  void setReference(const cv::Mat& patch);
+  void setReference(const image::ColourPatch& patch);
 
-  // Before ESM: `patch` is the ROI warped from the current image, with what is valid of it (see image::warpNearest).
-  void observeColour(const cv::Mat& patch, const cv::Mat1b& valid);
+  // Before ESM: `patch` is the ROI as the current image shows it where it is expected, see image::warpNearest.
+  void observeColour(const image::ColourPatch& patch);
 
-  // After ESM: see structureDissimilarity. Returns how many areas that drove ESM turned out to be occluded.
-  int observeStructure(const cv::Mat1f& image, const cv::Mat1f& reference, const cv::Mat1f& valid, const LightModel& light,
+  // After ESM: the warped image and the reference, where the former is valid (1, else 0), the gain that brings it to the reference's
+  // light, and the standard deviation of the residual [grey levels]. Returns how many areas that drove ESM turned out to be occluded.
+  int observeStructure(const image::Patch& image, const image::Patch& reference, const image::Patch& valid, double gain,
                        double sigma);
+
+  // Of the last observeStructure: the zero-mean normalised cross-correlation over the areas that are not occluded, -1 to 1, each area's
+  // own means taken out; 0 when there is nothing to compare. Light and shade do not raise it.
+  double correlation() const;
+  // Share of the ROI's pixels that are used in those areas, 0 to 1.
+  double visibleFraction() const;
 
   // Forgets what the structure gate rejected: the place has changed.
   void forget();
@@ -51,11 +58,13 @@ class OcclusionGates {
   ColourHistograms current_;
   bool reference_has_colour_ = false;
   bool colour_used_ = false;
-  cv::Mat1b reference_saturated_, saturated_, valid_;
+  cv::Mat1b reference_saturated_, saturated_, unusable_;  // 255 or 0 per pixel; unusable: saturated in either, or not valid
   std::vector<float> distances_;       // (2) per area
   std::vector<char> colour_rejects_;   // per area, in this image
   std::vector<int> held_;              // per area: images for which the structure gate keeps it out
-  std::vector<float> dissimilarity_;
+  StructureStatistics statistics_;
+  image::Patch unsaturated_;           // 1 where the image is valid and neither it nor the reference saturated
+  std::vector<float> row_weights_;
   cv::Mat1f weights_;
 };
 

@@ -36,9 +36,10 @@ struct TrackResult {
   geometry::Rectangle roi;                          // in the reference image, px
   double reference_stamp = 0.0;                     // s
   double visible_fraction = 0.0;                    // 0 to 1, share of the ROI's pixels that the estimate used
-  double zncc = 0.0;                                // -1 to 1, over those pixels
+  double zncc = 0.0;                                // -1 to 1, over those pixels, the mean of each area taken out
   int iterations = 0;                               // of ESM, all levels
   double corner_error = 0.0;                        // px, standard deviation of the worst corner that the residuals predict
+  double sigma = 0.0;                               // grey levels, robust standard deviation of the residual
   double gain = 1.0;                                // gain * image + bias has the light of the reference
   double bias = 0.0;                                // grey levels
   bool colour_used = false;                         // false: the image has no colour, the colour gate stands aside

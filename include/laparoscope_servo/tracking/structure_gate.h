@@ -1,26 +1,42 @@
-// Which areas of the aligned region do not look like the reference, whatever their colour: an occluder of tissue, smoke, blood.
+// Which areas of the aligned region do not look like the reference, whatever their colour: an occluder of tissue, smoke, blood; and
+// how alike the rest is.
 //
-// Works after ESM on the warped patch: the image, brought to the reference's light by gain and bias, must differ from the
-// reference by less than two unrelated patches of the same contrast would.
+// Works after ESM on the warped patch, area by area, with each area's mean taken out: shading tells nothing of where the tissue is.
 #pragma once
 
 #include <opencv2/core.hpp>
 #include <vector>
 
 #include "laparoscope_servo/image/area_grid.h"
+#include "laparoscope_servo/image/patch.h"
 
 namespace laparoscope_servo::tracking {
 
-struct LightModel {
-  double gain = 1.0;  // gain * image + bias = reference
-  double bias = 0.0;  // grey levels
+// Of the pixels of an area that are used: their share, and the second moments about their means, per pixel [grey levels squared].
+struct AreaMoments {
+  float share = 0.0f;  // 0 to 1, of the area's pixels
+  float image = 0.0f;
+  float reference = 0.0f;
+  float both = 0.0f;  // covariance
 };
 
-// Per area: the variance of (gain * image + bias - reference) over the mean variance of both plus that of the noise, as
-// standard deviation `sigma` [grey levels] per pixel of the difference. 0 for equal patches, about 2 for unrelated ones, about
-// 2/3 where there is nothing but noise. Pixels with valid = 0 do not count; NaN where less than half of an area is valid.
-void structureDissimilarity(const cv::Mat1f& image, const cv::Mat1f& reference, const cv::Mat1f& valid, const LightModel& light,
-                            double sigma, const image::AreaGrid& grid, std::vector<float>& dissimilarity);
+class StructureStatistics {
+ public:
+  // `weight`: 1 for pixels that are used, 0 for the others. Sizes must agree with the grid's.
+  void compute(const image::Patch& image, const image::Patch& reference, const image::Patch& weight, const image::AreaGrid& grid);
+
+  const AreaMoments& area(int k) const { return areas_[k]; }
+  int count() const { return static_cast<int>(areas_.size()); }
+
+  // The variance of gain * image - reference over the mean variance of both plus that of the noise, whose standard deviation per pixel
+  // of the difference is `sigma` [grey levels]. 0 for equal patches, about 2 for unrelated ones, about 2/3 where there is nothing but
+  // noise. NaN where less than half of the area is used.
+  float dissimilarity(int k, double gain, double sigma) const;
+
+ private:
+  std::vector<AreaMoments> areas_;
+  std::vector<float> columns_;  // six sums for each column of a row of areas
+};
 
 // Areas above this are occluded: for two patches of equal contrast it is a correlation of 0.5.
 constexpr float kMaxDissimilarity = 1.0f;

@@ -8,7 +8,7 @@ namespace laparoscope_servo::tracking {
 
 // What the histograms of the areas are made of, before ESM.
 enum class ColourGate {
-  kOff,
+  kNone,
   kPublished,   // S0 cos H, eq. (4) and (5) of Bourger et al. (2007)
   kNormalised,  // the same divided by the pixel's intensity: bears changes of brightness
 };
@@ -42,13 +42,15 @@ struct EsmConfig {
 
 // When an estimate is believed.
 struct QualityConfig {
-  double min_zncc = 0.7;              // 0 to 1, over the pixels used
+  double min_zncc = 0.5;              // 0 to 1, over the pixels used; the tracker asks for more of a ROI that was better
   double min_visible_fraction = 0.1;  // 0 to 1, share of the ROI's pixels used
+  double min_return_fraction = 0.3;   // 0 to 1, the same to be believed again after a loss
   double max_corner_error = 1.5;      // px, 0.01 to 100: standard deviation of the worst corner that the residuals predict
   double max_area_ratio = 6.0;        // 1.01 to 1000: area of the ROI in the image over that in the reference, or its inverse
-  double max_jump = 0.35;             // 0.01 to 10 of the ROI's diagonal: how far a corner may be from its prediction
+  double max_jump = 0.35;             // 0.01 to 10 of the ROI's diagonal: how far a corner may be from its prediction; less when
+                                      // little of the ROI is visible
   double max_search_time = 2.0;       // s, 0 to 3600: SEARCHING for longer is LOST
-  int confirmations = 2;              // 1 to 100 images in a row that pass every test, before TRACKING is said again
+  int confirmations = 3;              // 1 to 100 images in a row that pass every test, before TRACKING is said again
 };
 
 // Where to look for the ROI when it was lost. After the place where it was seen last, which is always tried.
@@ -60,7 +62,6 @@ struct SearchConfig {
   double max_ratio = 0.85;      // 0.1 to 1: distance of a point's best match over that of its second best
   int min_inliers = 8;          // 4 to 1000 matches that agree
   int keyframes = 8;            // 0 to 64 views stored beside the reference
-  double min_visible_fraction = 0.3;  // 0 to 1, share of the ROI's pixels used, where it was found
   double min_detail = 0.7;            // 0 to 1, correlation of the fine structure, where it was found
 };
 

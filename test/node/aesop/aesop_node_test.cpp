@@ -1,11 +1,14 @@
 // The node as others see it: topics, services, tf.
+#include <XmlRpcClient.h>
 #include <gtest/gtest.h>
+#include <ros/master.h>
+#include <ros/network.h>
 #include <tf2_ros/transform_listener.h>
 
 #include <cmath>
 #include <limits>
 
-#include "aesop_bench.h"
+#include "system/aesop/aesop_bench.h"
 
 namespace laparoscope_servo::test {
 namespace {
@@ -109,10 +112,31 @@ TEST(AesopNode, aFaultClearsToDisabled) {
   EXPECT_TRUE(bench.startMoving());
 }
 
-TEST(AesopNode, disablesTheArmWhenTold_toEnd) {
+TEST(AesopNode, disablesTheArmWhenItIsTerminated) {
   AesopBench bench;
   ASSERT_TRUE(bench.startMoving());
   bench.node().kill(SIGTERM);
+  EXPECT_EQ(bench.node().exitStatus(5.0), 0);
+  EXPECT_EQ(bench.truth().motion().state, "DISABLED");
+  EXPECT_LT(bench.timeToStandStill(), 3.0);
+}
+
+// As `rosnode kill` does: ROS is down before the node knows.
+TEST(AesopNode, disablesTheArmWhenRosShutsItDown) {
+  AesopBench bench;
+  ASSERT_TRUE(bench.startMoving());
+  XmlRpc::XmlRpcValue request;
+  XmlRpc::XmlRpcValue response;
+  XmlRpc::XmlRpcValue uri;
+  request[0] = ros::this_node::getName();
+  request[1] = std::string("/aesop");
+  ASSERT_TRUE(ros::master::execute("lookupNode", request, response, uri, false));
+  std::string host;
+  std::uint32_t port = 0;
+  ASSERT_TRUE(ros::network::splitURI(static_cast<std::string&>(uri), host, port));
+  request[1] = std::string("test");
+  XmlRpc::XmlRpcClient client(host.c_str(), static_cast<int>(port), "/");
+  client.execute("shutdown", request, response);
   EXPECT_EQ(bench.node().exitStatus(5.0), 0);
   EXPECT_EQ(bench.truth().motion().state, "DISABLED");
   EXPECT_LT(bench.timeToStandStill(), 3.0);

@@ -1,4 +1,4 @@
-#include "aesop_bench.h"
+#include "system/aesop/aesop_bench.h"
 
 #include <stdlib.h>
 

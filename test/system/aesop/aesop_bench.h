@@ -14,10 +14,10 @@
 #include <optional>
 #include <string>
 
-#include "child_process.h"
 #include "laparoscope_servo/OperatingState.h"
 #include "laparoscope_servo/ScopeVelocity.h"
 #include "laparoscope_servo/sim/emulator_control_client.h"
+#include "system/aesop/child_process.h"
 
 namespace laparoscope_servo::test {
 

@@ -1,25 +1,13 @@
-// Ports that are wrong, lines that are bad or go away: the node says so, the arm stands, and nothing else dies.
+// Lines that are bad or go away while the arm moves: the node says so, the arm stands, and only enable moves it again.
 #include <gtest/gtest.h>
-#include <rosgraph_msgs/Clock.h>
 
-#include <fstream>
-#include <sstream>
-
-#include "aesop_bench.h"
-#include "laparoscope_servo/ros/parameters.h"
+#include "system/aesop/aesop_bench.h"
 
 namespace laparoscope_servo::test {
 namespace {
 
 bool mentions(const std::string& text, const std::string& what) {
   return text.find(what) != std::string::npos;
-}
-
-std::string contents(const std::string& path) {
-  std::ifstream file(path);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
 }
 
 TEST(AesopLine, portTakenAwayWhileMoving) {
@@ -79,92 +67,6 @@ TEST(AesopLine, controllerThatRestartsOrDiesIsNotMovedAgain) {
   bench.emulator().kill(SIGCONT);
   ASSERT_TRUE(bench.commandUntil([&] { return bench.isUp() && !bench.jointsMove(); }, 0.05));
   EXPECT_EQ(bench.motionWithin(0.6, [&] { bench.send(0.05, 0.0, ros::Time::now()); }), 0.0);
-}
-
-// Starts a second node, on another port, and waits until it has said `what`.
-void expectComplaint(AesopBench& bench, const std::string& port, const std::string& what) {
-  const std::string output = bench.directory() + "/output";
-  XmlRpc::XmlRpcValue parameters = skin::parametersFromYaml(AESOP_CONFIG);
-  parameters["port"] = port;
-  ros::param::set("/other", parameters);
-  std::optional<OperatingState> state;
-  ros::NodeHandle node;
-  const ros::Subscriber subscriber = node.subscribe<OperatingState>(
-      "other/operating_state", 1, [&](const OperatingState::ConstPtr& message) { state = *message; });
-  {
-    ChildProcess other(AESOP_NODE, {"__name:=other", "servo_command:=other_command"}, output);
-    EXPECT_TRUE(bench.waitFor([&] { return state && mentions(state->reason, what); }))
-        << port << ": " << contents(output);
-    EXPECT_TRUE(state && state->state == "DISABLED");
-    EXPECT_TRUE(other.isRunning()) << "it waits for the port to come";
-    EXPECT_TRUE(mentions(contents(output), what)) << contents(output);
-    other.kill(SIGTERM);
-    EXPECT_EQ(other.exitStatus(5.0), 0);
-  }
-  ::unlink(output.c_str());
-}
-
-TEST(AesopLine, portsThatCannotBe) {
-  AesopBench bench;
-  expectComplaint(bench, bench.directory() + "/nothing", "no such port");
-  const std::string file = bench.directory() + "/file";
-  std::ofstream(file) << "text";
-  expectComplaint(bench, file, "no serial port");
-  ::unlink(file.c_str());
-  expectComplaint(bench, bench.port(), "in use");
-  EXPECT_TRUE(bench.startMoving()) << "the first one is not disturbed";
-}
-
-TEST(AesopLine, wrongParametersAreAllNamedAndTheNodeDoesNotStart) {
-  AesopBench bench(false);
-  const std::string output = bench.directory() + "/output";
-  XmlRpc::XmlRpcValue parameters = skin::parametersFromYaml(AESOP_CONFIG);
-  parameters["baud_rate"] = "fast";
-  XmlRpc::XmlRpcValue plane;
-  plane[0] = plane[1] = 0.5;
-  parameters["insertion_point"] = plane;
-  parameters["command"]["timeout"] = -1.0;
-  parameters["link"]["raet"] = 40.0;
-  ros::param::del("/wrong");
-  ros::param::set("/wrong", parameters);
-  ChildProcess node(AESOP_NODE, {"__name:=wrong"}, output);
-  EXPECT_EQ(node.exitStatus(10.0), 1);
-  const std::string text = contents(output);
-  for (const char* what : {"/wrong/port is not set", "/wrong/baud_rate = 'fast'", "/wrong/insertion_point",
-                           "timeout = -1", "/wrong/link/raet", "5 errors"}) {
-    EXPECT_TRUE(mentions(text, what)) << "does not name " << what << ":\n" << text;
-  }
-  ::unlink(output.c_str());
-}
-
-// Last in this file: it changes what time it is for every node that starts after it.
-TEST(AesopLine, simulatedTimeThatStandsDoesNotStopTheWatchdog) {
-  ros::param::set("/use_sim_time", true);
-  AesopBench bench(false);
-  ros::NodeHandle node;
-  ros::Publisher clock = node.advertise<rosgraph_msgs::Clock>("/clock", 1);
-  double simulated = 100.0;
-  const auto tick = [&] {
-    simulated += 0.001;
-    rosgraph_msgs::Clock message;
-    message.clock = ros::Time(simulated);
-    clock.publish(message);
-  };
-  bench.startNode();
-  ASSERT_TRUE(bench.waitFor([&] {
-    tick();
-    return clock.getNumSubscribers() > 0 && simulated > 100.3;
-  }));
-  EXPECT_TRUE(bench.call("enable").success);
-  double sent = 0.0;
-  EXPECT_TRUE(bench.waitFor([&] {
-    tick();
-    if (simulated - sent > 0.02) bench.send(0.05, 0.0, ros::Time(sent = simulated));
-    return bench.jointsMove();
-  }));
-  // Clock and commands end together: no time passes for ROS, but it does for the arm.
-  EXPECT_LT(bench.timeToStandStill(), 1.5);
-  ros::param::set("/use_sim_time", false);
 }
 
 }  // namespace

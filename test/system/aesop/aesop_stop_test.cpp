@@ -7,7 +7,7 @@
 #include <iostream>
 #include <limits>
 
-#include "aesop_bench.h"
+#include "system/aesop/aesop_bench.h"
 
 namespace laparoscope_servo::test {
 namespace {
@@ -37,8 +37,8 @@ TEST(AesopStop, controllerKilled) {
   std::vector<double> times;
   for (int run = 0; run < runs(); ++run) {
     ASSERT_TRUE(bench.enable());
-    ChildProcess controller(COMMAND_PUBLISHER,
-                            {"__name:=command_publisher", run % 2 == 0 ? "_pan:=0.05" : "_pan:=-0.05"});
+    ChildProcess controller("/proc/self/exe",
+                            {"publish", "__name:=command_publisher", run % 2 == 0 ? "_pan:=0.05" : "_pan:=-0.05"});
     ASSERT_TRUE(bench.waitFor([&] { return bench.jointsMove(); }, 10.0));
     bench.waitFor([] { return false; }, 0.5);
     controller.kill(SIGKILL);
@@ -149,12 +149,29 @@ TEST(AesopStop, faultOfTheRobot) {
   report("fault of the robot", times);
 }
 
+// Stands in for a controller: commands a pan of ~pan rad/s at 25 Hz until it is killed.
+int publish() {
+  ros::NodeHandle node;
+  ros::Publisher publisher = node.advertise<ScopeVelocity>("servo_command", 1);
+  const double pan = ros::param::param("~pan", kPan);
+  ros::WallRate rate(25.0);
+  while (ros::ok()) {
+    ScopeVelocity command;
+    command.header.stamp = ros::Time::now();
+    command.pan = pan;
+    publisher.publish(command);
+    rate.sleep();
+  }
+  return 0;
+}
+
 }  // namespace
 }  // namespace laparoscope_servo::test
 
 int main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);
   ros::init(argc, argv, "aesop_stop_test");
+  if (argc > 1 && std::string(argv[1]) == "publish") return laparoscope_servo::test::publish();
   const ros::NodeHandle keep_alive;
   return RUN_ALL_TESTS();
 }

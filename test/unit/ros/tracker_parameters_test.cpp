@@ -123,7 +123,7 @@ TEST(TrackerParametersTest, ReadEveryKindOfValue) {
 }
 
 TEST(TrackerParametersTest, KnowEveryName) {
-  const std::pair<const char*, tracking::ColourGate> gates[] = {{"none", tracking::ColourGate::kOff},
+  const std::pair<const char*, tracking::ColourGate> gates[] = {{"none", tracking::ColourGate::kNone},
                                                                 {"published", tracking::ColourGate::kPublished},
                                                                 {"normalised", tracking::ColourGate::kNormalised}};
   for (const auto& [name, gate] : gates) {

@@ -63,8 +63,12 @@ Compared compare(ColourGate mode, const cv::Mat& reference, const cv::Mat& curre
   Compared result;
   result.grid = image::AreaGrid(reference.cols, reference.rows, 14, 14);
   ColourHistograms a(mode, 32), b(mode, 32);
-  a.compute(reference, cv::Mat1b(reference.size(), 255), result.grid);
-  b.compute(current, valid, result.grid);
+  image::ColourPatch patch;
+  image::warpNearest(reference, Eigen::Matrix3d::Identity(), reference.size(), patch);
+  a.compute(patch, result.grid);
+  image::warpNearest(current, Eigen::Matrix3d::Identity(), current.size(), patch);
+  patch.valid &= valid;
+  b.compute(patch, result.grid);
   for (int area = 0; area < result.grid.count(); ++area) {
     float sum = 0.0f;
     for (int l = 0; l < 32; ++l) sum += a.histogram(area)[l];

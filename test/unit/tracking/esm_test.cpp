@@ -217,24 +217,5 @@ TEST_F(EsmTest, LevelsThatWouldBeTooSmallAreLeftOut) {
   EXPECT_EQ(esm.levels(), 2);  // 20, 10, then 5 px
 }
 
-TEST(Zncc, IsACorrelation) {
-  cv::Mat1f a(10, 12), noise(10, 12);
-  cv::RNG rng(3);
-  rng.fill(a, cv::RNG::NORMAL, 100.0, 20.0);
-  rng.fill(noise, cv::RNG::NORMAL, 0.0, 20.0);
-  const cv::Mat1f all = cv::Mat1f::ones(a.size());
-  EXPECT_NEAR(zncc(a, a, all), 1.0, 1e-5);
-  EXPECT_NEAR(zncc(a, 0.5 * a + 30.0, all), 1.0, 1e-5);
-  EXPECT_NEAR(zncc(a, 255.0 - a, all), -1.0, 1e-5);
-  EXPECT_NEAR(zncc(a, a + noise, all), std::sqrt(0.5), 0.15);
-  EXPECT_EQ(zncc(a, cv::Mat1f(a.size(), 7.0f), all), 0.0);
-  EXPECT_EQ(zncc(a, a, cv::Mat1f::zeros(a.size())), 0.0);
-  cv::Mat1f damaged = a.clone();
-  damaged.row(0).setTo(0.0f);
-  cv::Mat1f rest = all.clone();
-  rest.row(0).setTo(0.0f);
-  EXPECT_NEAR(zncc(a, damaged, rest), 1.0, 1e-5);
-}
-
 }  // namespace
 }  // namespace laparoscope_servo::tracking

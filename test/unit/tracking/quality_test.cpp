@@ -14,9 +14,11 @@ Evidence good() {
   e.esm.status = EsmStatus::kConverged;
   e.esm.corner_error = 0.1;
   e.predicted = Eigen::Matrix3d::Identity();
-  e.predicted_from_track = true;
+  e.from_track = true;
   e.visible_fraction = 0.9;
   e.zncc = 0.95;
+  e.esm.sigma = 2.0;
+  for (int k = 0; k < 50; ++k) e.record.add(0.95, 2.0, 1.0, 0.9);
   return e;
 }
 
@@ -43,6 +45,9 @@ TEST(Doubt, NamesEachFlawByItself) {
       {"small", "area", [](Evidence& e) { e.esm.state.g(0, 0) = e.esm.state.g(1, 1) = 0.3; }},
       {"unlike", "correlation", [](Evidence& e) { e.zncc = 0.3; }},
       {"unlike nan", "correlation", [=](Evidence& e) { e.zncc = nan; }},
+      {"worse than it was", "correlation", [](Evidence& e) { e.zncc = 0.75; }},
+      {"residual", "residual", [](Evidence& e) { e.esm.sigma = 6.0; }},
+      {"residual nan", "residual", [=](Evidence& e) { e.esm.sigma = nan; }},
       {"vague", "corner error", [](Evidence& e) { e.esm.corner_error = 7.0; }},
       {"vague inf", "corner error", [](Evidence& e) { e.esm.corner_error = INFINITY; }},
       {"jump", "jump", [](Evidence& e) { e.esm.state.g(0, 2) = 100.0; }},
@@ -54,11 +59,65 @@ TEST(Doubt, NamesEachFlawByItself) {
   }
 }
 
-TEST(Doubt, AJumpFromASearchIsNone) {
+TEST(Doubt, AsksMoreOfASearch) {
+  const std::vector<Flaw> flaws = {
+      {"visible", "visible", [](Evidence& e) { e.visible_fraction = 0.2; }},
+      {"correlation", "correlation", [](Evidence& e) { e.zncc = 0.84; }},
+      {"residual", "residual", [](Evidence& e) { e.esm.sigma = 4.0; }},
+      {"gain", "gain", [](Evidence& e) { e.esm.state.gain = 2.5; }},
+      {"gain nan", "gain", [](Evidence& e) { e.esm.state.gain = std::nan(""); }},
+  };
+  for (const Flaw& flaw : flaws) {
+    Evidence e = good();
+    flaw.apply(e);
+    if (std::isfinite(e.esm.state.gain)) {
+      EXPECT_EQ(doubt(e, QualityConfig()), "") << flaw.name;
+    }
+    e.from_track = false;
+    EXPECT_NE(doubt(e, QualityConfig()).find(flaw.word), std::string::npos) << flaw.name;
+  }
+}
+
+TEST(Doubt, WhatIsTooBadDependsOnTheRecord) {
   Evidence e = good();
-  e.esm.state.g(0, 2) = 100.0;
-  e.predicted_from_track = false;
+  e.zncc = 0.7;
+  e.esm.sigma = 7.0;
+  EXPECT_NE(doubt(e, QualityConfig()), "");
+  e.record = TrackRecord();  // nothing known yet
   EXPECT_EQ(doubt(e, QualityConfig()), "");
+}
+
+TEST(AllowedJump, ShrinksWithWhatIsVisible) {
+  const Evidence e = good();
+  const QualityConfig q;
+  EXPECT_NEAR(allowedJump(e.record, q, e.roi, 0.9, 0.1), q.max_jump * std::hypot(101.0, 101.0), 1e-9);
+  double last = 1e9;
+  for (double visible = 1.0; visible >= 0.0; visible -= 0.05) {
+    const double now = allowedJump(e.record, q, e.roi, visible, 0.1);
+    EXPECT_LE(now, last);
+    last = now;
+  }
+  EXPECT_NEAR(last, 3.0 + 4.0 * e.record.innovation() + 0.3, 1e-9);
+}
+
+TEST(TrackRecord, BeginsWithTheFirstImageAndThenFollowsSlowly) {
+  TrackRecord record;
+  record.add(0.9, 3.0, 2.0, 1.0);
+  EXPECT_DOUBLE_EQ(record.zncc(), 0.9);
+  EXPECT_DOUBLE_EQ(record.sigma(), 3.0);
+  EXPECT_DOUBLE_EQ(record.innovation(), 2.0);
+  for (int k = 0; k < 200; ++k) record.add(0.9, 3.0, 2.0, 1.0);
+  record.add(0.5, 30.0, 20.0, 1.0);
+  EXPECT_GT(record.zncc(), 0.87);
+  EXPECT_LT(record.sigma(), 5.0);
+}
+
+TEST(TrackRecord, LearnsNothingOfLikenessFromWhatIsHardlyVisible) {
+  TrackRecord record;
+  const double zncc = record.zncc();
+  record.add(0.2, 50.0, 1.0, 0.1);
+  EXPECT_EQ(record.zncc(), zncc);
+  EXPECT_DOUBLE_EQ(record.innovation(), 1.0);
 }
 
 TEST(Doubt, NearlyConvergedIsGoodEnough) {

@@ -236,34 +236,26 @@ TEST_F(RegionTrackerTest, ResetForgetsTheRegion) {
   select();
 }
 
-// The paper's detector as published, on its own: a still target, a sheet that moves in front.
+// The paper's detector as published, without the structure gate: a still target, a sheet that moves in front.
 TEST_F(RegionTrackerTest, ThePublishedDetectorHoldsAStillTargetBehindAMovingSheet) {
   TrackerConfig config;
-  config.occlusion.colour = ColourGate::kPublished;
   config.occlusion.structure = false;
-  config.esm.robust = false;
-  config.esm.light = Light::kConstant;
+  config.occlusion.colour = ColourGate::kPublished;
   RegionTracker with(config);
-  config.occlusion.colour = ColourGate::kOff;
-  config.quality.min_zncc = 0.0;
+  config.occlusion.colour = ColourGate::kNone;
   RegionTracker without(config);
   with.select(image(0), 0.0, kRoi);
   without.select(image(0), 0.0, kRoi);
-  double worst_with = 0.0, worst_without = 0.0;
+  int lost_without = 0;
   for (int frame = 1; frame < 20; ++frame) {
     cv::Mat seen = test::view(scene_, motion(0), 1.0, 0.0, 2.0, frame);
     seen(cv::Rect(0, 0, 110 + 4 * frame, kSize.height)).setTo(cv::Scalar(180, 185, 190));
     const TrackResult r = with.track(seen, 0.04 * frame);
-    ASSERT_EQ(r.state, State::kTracking) << r.reason;
-    worst_with = std::max(worst_with, error(r, 0));
-    const TrackResult pulled = without.track(seen, 0.04 * frame);
-    // Lost is further than any distance.
-    worst_without = std::max(worst_without, pulled.state == State::kTracking ? error(pulled, 0) : HUGE_VAL);
+    ASSERT_EQ(r.state, State::kTracking) << frame << ": " << r.reason;
+    EXPECT_LT(error(r, 0), 1.0) << frame;
+    lost_without += without.track(seen, 0.04 * frame).state != State::kTracking;
   }
-  // Areas that are covered by less than half stay in, and pull; the paper reports a factor of three (Fig. 4).
-  EXPECT_GT(worst_without, 3.0 * worst_with);
-  RecordProperty("worst_with_px", std::to_string(worst_with));
-  RecordProperty("worst_without_px", std::to_string(worst_without));
+  EXPECT_GT(lost_without, 0);
 }
 
 }  // namespace

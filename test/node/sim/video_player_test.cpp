@@ -1,0 +1,240 @@
+// The video player as a process, with files that the test makes.
+#include <gtest/gtest.h>
+#include <rosbag/bag.h>
+#include <rosgraph_msgs/Clock.h>
+#include <sensor_msgs/CompressedImage.h>
+
+#include <algorithm>
+#include <memory>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/videoio.hpp>
+
+#include "laparoscope_servo/Homography.h"
+#include "laparoscope_servo/ros/result_messages.h"
+#include "node_bench.h"
+
+namespace laparoscope_servo::test {
+namespace {
+
+constexpr int kImages = 6;
+
+// Images that tell which one they are by their grey.
+cv::Mat image(int k) {
+  return {48, 64, CV_8UC3, cv::Scalar::all(30 + 20 * k)};
+}
+int numberOf(const sensor_msgs::Image& message) {
+  return (message.data[message.data.size() / 2] - 25) / 20;
+}
+
+class VideoPlayer : public testing::Test {
+ protected:
+  ~VideoPlayer() override { ros::param::del("/player"); }
+
+  std::string folder() {
+    std::filesystem::create_directory(directory_.file("images"));
+    for (int k = 0; k < kImages; ++k) cv::imwrite(directory_.file("images/" + std::to_string(k) + ".png"), image(k));
+    return directory_.file("images");
+  }
+  std::string video() {
+    const std::string file = directory_.file("video.avi");
+    cv::VideoWriter writer(file, cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 50.0, {64, 48});
+    for (int k = 0; k < kImages; ++k) writer.write(image(k));
+    return file;
+  }
+  std::string bag(bool compressed) {
+    const std::string file = directory_.file("images.bag");
+    rosbag::Bag bag(file, rosbag::bagmode::Write);
+    for (int k = 0; k < kImages; ++k) {
+      std_msgs::Header header;
+      header.stamp = ros::Time(1500000000, static_cast<std::uint32_t>(20000003 * (k + 1)));
+      header.frame_id = "camera_of_the_bag";
+      const ros::Time recorded = header.stamp + ros::Duration(0.001);
+      sensor_msgs::CameraInfo info;
+      info.header = header;
+      info.width = 64;
+      info.height = 48;
+      info.K[0] = info.K[4] = 77.0;
+      bag.write("/scope/camera_info", recorded, info);
+      if (compressed) {
+        sensor_msgs::CompressedImage message;
+        message.header = header;
+        message.format = "bgr8; png compressed bgr8";
+        cv::imencode(".png", image(k), message.data);
+        bag.write("/scope/image_raw/compressed", recorded, message);
+      } else {
+        bag.write("/scope/image_raw", recorded, *skin::imageMessage(header, image(k)));
+      }
+    }
+    return file;
+  }
+  std::string calibration(int width) {
+    const std::string file = directory_.file("calibration.yaml");
+    std::ofstream(file) << "image_width: " << width << "\nimage_height: 48\ncamera_name: scope\n"
+                        << "camera_matrix: {rows: 3, cols: 3, data: [90, 0, 31, 0, 91, 23, 0, 0, 1]}\n"
+                        << "distortion_model: plumb_bob\n"
+                        << "distortion_coefficients: {rows: 1, cols: 5, data: [0, 0, 0, 0, 0]}\n"
+                        << "rectification_matrix: {rows: 3, cols: 3, data: [1, 0, 0, 0, 1, 0, 0, 0, 1]}\n"
+                        << "projection_matrix: {rows: 3, cols: 4, data: [90, 0, 31, 0, 0, 91, 23, 0, 0, 0, 1, 0]}\n";
+    return file;
+  }
+
+  void start(const std::string& file) {
+    // A listener left over would be one for whom the player does not wait.
+    images_.reset();
+    infos_.reset();
+    clock_.reset();
+    parameters_["video"] = file;
+    ros::param::set("/player", parameters_);
+    player_ = std::make_unique<ChildProcess>(VIDEO_PLAYER, std::vector<std::string>{"__name:=player"}, log());
+  }
+  // Listens only once the player has been there for a while: it has to wait.
+  void listen() {
+    ASSERT_TRUE(spinUntil([] {
+      ros::master::V_TopicInfo topics;
+      ros::master::getTopics(topics);
+      return std::any_of(topics.begin(), topics.end(), [](const auto& topic) { return topic.name == "/image_raw"; });
+    }));
+    clock_ = std::make_unique<Recorder<rosgraph_msgs::Clock>>(node_, "/clock");
+    infos_ = std::make_unique<Recorder<sensor_msgs::CameraInfo>>(node_, "camera_info");
+    ASSERT_TRUE(spinUntil([this] { return clock_->connected() && infos_->connected(); }));
+    images_ = std::make_unique<Recorder<sensor_msgs::Image>>(node_, "image_raw");
+  }
+  void play(const std::string& file) {
+    start(file);
+    ASSERT_NO_FATAL_FAILURE(listen());
+    ASSERT_TRUE(spinUntil([this] { return images_->all.size() >= kImages && infos_->all.size() >= kImages; }));
+    EXPECT_EQ(player_->exitStatus(5.0), 0);
+    ros::spinOnce();
+    ASSERT_EQ(images_->all.size(), static_cast<std::size_t>(kImages));
+    for (int k = 0; k < kImages; ++k) EXPECT_EQ(numberOf(*images_->all[static_cast<std::size_t>(k)]), k);
+  }
+  void expectRefusal(const std::string& file, const std::string& part) {
+    parameters_["subscribers"] = 0;
+    start(file);
+    EXPECT_EQ(player_->exitStatus(10.0), 1);
+    EXPECT_NE(contents(log()).find(part), std::string::npos) << part << " in\n" << contents(log());
+  }
+  std::string log() const { return directory_.file("player.log"); }
+  ros::Time stamp(std::size_t k) const { return images_->all[k]->header.stamp; }
+
+  TemporaryDirectory directory_;
+  ros::NodeHandle node_;
+  XmlRpc::XmlRpcValue parameters_;
+  std::unique_ptr<ChildProcess> player_;
+  std::unique_ptr<Recorder<sensor_msgs::Image>> images_;
+  std::unique_ptr<Recorder<sensor_msgs::CameraInfo>> infos_;
+  std::unique_ptr<Recorder<rosgraph_msgs::Clock>> clock_;
+};
+
+TEST_F(VideoPlayer, PlaysAFolderFromItsFirstImageWithStampsByNumber) {
+  parameters_["fps"] = 50.0;
+  ASSERT_NO_FATAL_FAILURE(play(folder()));
+  for (std::size_t k = 0; k < kImages; ++k) {
+    EXPECT_NEAR(stamp(k).toSec(), 1.0 + 0.02 * static_cast<double>(k), 1e-8);
+    EXPECT_EQ(images_->all[k]->header.frame_id, "laparoscope_optical");
+    EXPECT_EQ(infos_->all[k]->header.stamp, stamp(k));
+    EXPECT_EQ(infos_->all[k]->K[0], 0.0) << "intrinsics that nobody knows";
+  }
+  ASSERT_GE(clock_->all.size(), static_cast<std::size_t>(kImages));
+  for (std::size_t k = 1; k < clock_->all.size(); ++k) EXPECT_GE(clock_->all[k]->clock, clock_->all[k - 1]->clock);
+  EXPECT_EQ(clock_->all.back()->clock, stamp(kImages - 1));
+}
+
+TEST_F(VideoPlayer, PlaysAVideoAtItsOwnRateWhateverTheSpeed) {
+  parameters_["speed"] = 3.0;
+  ASSERT_NO_FATAL_FAILURE(play(video()));
+  for (std::size_t k = 0; k < kImages; ++k) EXPECT_NEAR(stamp(k).toSec(), 1.0 + 0.02 * static_cast<double>(k), 1e-8);
+}
+
+TEST_F(VideoPlayer, PlaysABagWithItsOwnHeadersAndIntrinsics) {
+  for (const bool compressed : {false, true}) {
+    SCOPED_TRACE(compressed);
+    ASSERT_NO_FATAL_FAILURE(play(bag(compressed)));
+    for (std::size_t k = 0; k < kImages; ++k) {
+      EXPECT_EQ(stamp(k), ros::Time(1500000000, static_cast<std::uint32_t>(20000003 * (k + 1))));
+      EXPECT_EQ(images_->all[k]->header.frame_id, "camera_of_the_bag");
+      EXPECT_EQ(infos_->all[k]->K[0], 77.0);
+      EXPECT_EQ(infos_->all[k]->header.stamp, stamp(k));
+    }
+    EXPECT_EQ(clock_->all.back()->clock, stamp(kImages - 1) + ros::Duration(0.001));
+  }
+}
+
+TEST_F(VideoPlayer, TimeJumpsBackAtALoopUnlessItIsToGoOn) {
+  parameters_["loop"] = true;
+  parameters_["fps"] = 100.0;
+  const std::string images = folder();
+  for (const bool restart : {true, false}) {
+    parameters_["restart_time"] = restart;
+    start(images);
+    ASSERT_NO_FATAL_FAILURE(listen());
+    ASSERT_TRUE(spinUntil([this] { return images_->all.size() > kImages; }));
+    EXPECT_EQ(numberOf(*images_->all[kImages]), 0);
+    EXPECT_NEAR(stamp(kImages).toSec(), restart ? 1.0 : 1.0 + 0.01 * kImages, 1e-8);
+    player_->kill(SIGINT);
+    player_->exitStatus(5.0);
+  }
+}
+
+TEST_F(VideoPlayer, InLockstepWaitsForTheTracker) {
+  parameters_["fps"] = 200.0;
+  parameters_["lockstep"] = true;
+  ros::Publisher tracker = node_.advertise<Homography>("homography", 10);
+  start(folder());
+  ASSERT_NO_FATAL_FAILURE(listen());
+  for (std::size_t k = 0; k < kImages; ++k) {
+    ASSERT_TRUE(spinUntil([&] { return images_->all.size() > k; }));
+    // Many times the period of the images.
+    EXPECT_FALSE(spinUntil([&] { return images_->all.size() > k + 1; }, 0.1));
+    Homography result;
+    result.header = images_->all[k]->header;
+    tracker.publish(result);
+  }
+  EXPECT_EQ(player_->exitStatus(5.0), 0);
+}
+
+TEST_F(VideoPlayer, TakesIntrinsicsFromACalibration) {
+  parameters_["camera_info"] = calibration(64);
+  ASSERT_NO_FATAL_FAILURE(play(video()));
+  EXPECT_EQ(infos_->all[0]->K[0], 90.0);
+  EXPECT_EQ(infos_->all[0]->header.stamp, stamp(0));
+}
+
+TEST_F(VideoPlayer, RefusesACalibrationForImagesOfAnotherSize) {
+  parameters_["camera_info"] = calibration(128);
+  expectRefusal(video(), "is for images of 128x48 px");
+}
+
+TEST_F(VideoPlayer, RefusesWhatItCannotPlayAndSaysWhy) {
+  expectRefusal(directory_.file("missing.mp4"), "missing.mp4' does not exist");
+  std::ofstream(directory_.file("text.mp4")) << "no video";
+  expectRefusal(directory_.file("text.mp4"), "text.mp4' cannot be opened");
+  std::filesystem::create_directory(directory_.file("empty"));
+  expectRefusal(directory_.file("empty"), "has no images");
+  parameters_["start"] = 100.0;
+  expectRefusal(video(), "has no image after 100");
+  parameters_["start"] = 0.0;
+  parameters_["image_topic"] = "/wrong";
+  expectRefusal(bag(false), "/scope/image_raw (sensor_msgs/Image)");
+}
+
+TEST_F(VideoPlayer, ListsAllErrorsInItsParameters) {
+  parameters_["speed"] = 0.0;
+  parameters_["loop"] = "yes";
+  parameters_["lop"] = true;
+  expectRefusal(folder(), "player/speed");
+  for (const char* part : {"player/loop", "player/lop is no parameter"}) {
+    EXPECT_NE(contents(log()).find(part), std::string::npos) << contents(log());
+  }
+}
+
+}  // namespace
+}  // namespace laparoscope_servo::test
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  ros::init(argc, argv, "video_player_test");
+  ros::NodeHandle keep_alive;
+  return RUN_ALL_TESTS();
+}

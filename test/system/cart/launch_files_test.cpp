@@ -1,0 +1,60 @@
+// What launch files promise; that they can be run is checked by roslaunch's own check.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdio>
+#include <set>
+#include <sstream>
+#include <string>
+
+namespace {
+
+std::string outputOf(const std::string& command) {
+  std::string output;
+  FILE* pipe = ::popen((command + " 2>&1").c_str(), "r");
+  if (pipe == nullptr) return "cannot run " + command;
+  std::array<char, 4096> buffer{};
+  while (std::fgets(buffer.data(), buffer.size(), pipe) != nullptr) output += buffer.data();
+  const int status = ::pclose(pipe);
+  return status == 0 ? output : output + command + " ended with " + std::to_string(status);
+}
+
+std::set<std::string> nodesOf(const std::string& launch) {
+  std::istringstream stream(outputOf("roslaunch --nodes laparoscope_servo " + launch));
+  std::set<std::string> nodes;
+  for (std::string line; std::getline(stream, line);) {
+    if (!line.empty()) nodes.insert(line);
+  }
+  return nodes;
+}
+
+using Nodes = std::set<std::string>;
+
+TEST(LaunchFiles, ReplayStartsNoNodeOfTheRobot) {
+  EXPECT_EQ(nodesOf("replay.launch bag:=x.bag"), (Nodes{"/player", "/tracker", "/rviz"}));
+  EXPECT_EQ(nodesOf("replay.launch video:=x.mp4 rviz:=false"), (Nodes{"/player", "/tracker"}));
+}
+
+TEST(LaunchFiles, CartAndDemoStartWhatTheySay) {
+  const Nodes cart{"/tracker", "/controller", "/aesop"};
+  Nodes demo = cart;
+  demo.insert({"/aesop_emulator", "/simulated_camera"});
+  EXPECT_EQ(nodesOf("cart.launch port:=/dev/ttyX rviz:=false"), cart);
+  EXPECT_EQ(nodesOf("demo.launch rviz:=false"), demo);
+  EXPECT_EQ(nodesOf("tracker.launch"), Nodes{"/tracker"});
+  EXPECT_EQ(nodesOf("tracker.launch manager:=camera_manager"), Nodes{"/tracker"});
+}
+
+TEST(LaunchFiles, CartNeedsItsPort) {
+  EXPECT_NE(outputOf("roslaunch --nodes laparoscope_servo cart.launch").find("port"), std::string::npos);
+}
+
+TEST(LaunchFiles, EveryArgumentIsDocumented) {
+  for (const char* launch : {"cart", "demo", "replay", "tracker"}) {
+    const std::string text = outputOf("roslaunch --ros-args laparoscope_servo " + std::string(launch) + ".launch");
+    EXPECT_NE(text.find("YAML file laid over config/tracker.yaml"), std::string::npos) << text;
+    EXPECT_EQ(text.find("undocumented"), std::string::npos) << text;
+  }
+}
+
+}  // namespace
