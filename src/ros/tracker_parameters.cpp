@@ -53,10 +53,22 @@ void readQuality(ParameterReader& reader, tracking::QualityConfig& config) {
   reader.read("tracking/quality/confirmations", config.confirmations, 1, 100);
 }
 
+void readSearch(ParameterReader& reader, tracking::SearchConfig& config) {
+  reader.read("tracking/search/features", config.features);
+  reader.read("tracking/search/correlation", config.correlation);
+  reader.read("tracking/search/max_features", config.max_features, 50, 5000);
+  reader.read("tracking/search/max_pixels", config.max_pixels, 10000, 10000000);
+  reader.read("tracking/search/max_ratio", config.max_ratio, 0.1, 1.0);
+  reader.read("tracking/search/min_inliers", config.min_inliers, 4, 1000);
+  reader.read("tracking/search/keyframes", config.keyframes, 0, 64);
+  reader.read("tracking/search/min_detail", config.min_detail, 0.0, 1.0);
+}
+
 void readTracking(ParameterReader& reader, tracking::TrackerConfig& config) {
   readOcclusion(reader, config.occlusion);
   readEsm(reader, config.esm);
   readQuality(reader, config.quality);
+  readSearch(reader, config.search);
   reader.read("tracking/velocity_damping", config.velocity_damping, 0.0, 1.0);
   reader.read("tracking/min_roi_side", config.min_roi_side, 8, 1000);
   reader.read("tracking/min_texture", config.min_texture, 0.01, 10.0);

@@ -10,7 +10,10 @@
 #include "laparoscope_servo/geometry/sl3.h"
 #include "laparoscope_servo/image/colour_patch.h"
 #include "laparoscope_servo/image/pyramid.h"
+#include "laparoscope_servo/tracking/detail.h"
 #include "laparoscope_servo/tracking/esm.h"
+#include "laparoscope_servo/tracking/feature_search.h"
+#include "laparoscope_servo/tracking/keyframes.h"
 #include "laparoscope_servo/tracking/occlusion_gates.h"
 #include "laparoscope_servo/tracking/quality.h"
 #include "laparoscope_servo/tracking/relocalisation.h"
@@ -20,7 +23,10 @@ namespace laparoscope_servo::tracking {
 namespace {
 
 constexpr double kTypicalNoise = 2.0;    // grey levels, of a laparoscope's camera
-constexpr int kSearchCandidates = 3;
+constexpr int kSearchCandidates = 2;  // that are aligned, of each stage of the search
+// A view is worth storing that was seen nearly whole, and clearly.
+constexpr double kKeyframeVisible = 0.7;
+constexpr double kKeyframeZncc = 0.85;
 constexpr int kMaxStructureRounds = 3;
 constexpr double kGateShift = 2.0;       // px: masks drawn further from the estimate than this are drawn again
 
@@ -107,7 +113,8 @@ const char* stateName(State state) {
 class RegionTracker::Implementation {
  public:
   explicit Implementation(const TrackerConfig& config)
-      : config_(config), esm_(config.esm), gates_(config.occlusion, config.esm.saturation) {}
+      : config_(config), esm_(config.esm), gates_(config.occlusion, config.esm.saturation), keyframes_(config.search.keyframes),
+        feature_search_(config.search) {}
 
   TrackResult select(const cv::Mat& image, double stamp, const geometry::Rectangle& roi);
   TrackResult track(const cv::Mat& image, double stamp);
@@ -126,6 +133,9 @@ class RegionTracker::Implementation {
   Eigen::Matrix3d predict(double stamp) const;
   Attempt attempt(const cv::Mat& image, const EsmState& start, bool from_track);
   Attempt search(const cv::Mat& image);
+  std::vector<Eigen::Matrix3d> searchCoarsely(const cv::Mat& image);
+  std::string doubtWhatWasFound(const Attempt& found);
+  void keepView(const cv::Mat& image, const Attempt& seen);
   void look(const cv::Mat& image, const Eigen::Matrix3d& g);
   void decide(const Attempt& best, double stamp);
   TrackResult report(const Attempt& attempt, double stamp) const;
@@ -137,6 +147,8 @@ class RegionTracker::Implementation {
   image::RegionPyramid pyramid_;
   image::ChannelWeights channel_ = image::kLuma;
   image::ColourPatch patch_;
+  Keyframes keyframes_;
+  FeatureSearch feature_search_;
 
   State state_ = State::kIdle;
   cv::Size image_size_;
@@ -149,6 +161,7 @@ class RegionTracker::Implementation {
   TrackRecord record_;
   int confirmations_ = 0;
   EsmState candidate_;                 // while searching: what is being confirmed
+  unsigned search_turn_ = 0;           // images searched since the ROI was lost
   Eigen::Matrix3d n_ = Eigen::Matrix3d::Identity();  // N, see Esm
   Eigen::Matrix3d shown_ = Eigen::Matrix3d::Identity();
 };
@@ -188,6 +201,7 @@ TrackResult RegionTracker::Implementation::select(const cv::Mat& image, double s
             << error << " px, expected at most " << config_.min_texture;
     throw std::invalid_argument(message.str());
   }
+  fresh.keyframes_.setReference(image, roi, fresh.gates_.weights());
   fresh.state_ = State::kTracking;
   fresh.image_size_ = image.size();
   fresh.reference_stamp_ = fresh.last_stamp_ = fresh.last_good_stamp_ = stamp;
@@ -229,6 +243,7 @@ TrackResult RegionTracker::Implementation::track(const cv::Mat& image, double st
     best = search(image);
   }
   decide(best, stamp);
+  keepView(image, best);
   gates_.advance();
   last_stamp_ = stamp;
   return report(best, stamp);
@@ -296,31 +311,73 @@ RegionTracker::Implementation::Attempt RegionTracker::Implementation::attempt(co
   return result;
 }
 
+// What the last image suggested comes first, then where the ROI was last seen, then what points suggest, or, in turn with them,
+// what correlates anywhere in the image: one of both an image, so that the time is bounded.
 RegionTracker::Implementation::Attempt RegionTracker::Implementation::search(const cv::Mat& image) {
-  gates_.forget();
-  // What the last image suggested comes first, then where the ROI was last seen, then the whole image.
-  std::vector<EsmState> starts;
-  if (confirmations_ > 0) starts.push_back(candidate_);
-  starts.push_back(last_);
   Attempt best;
-  for (const EsmState& start : starts) {
-    best = attempt(image, start, false);
-    if (best.doubt.empty()) return best;
+  const auto tryAt = [&](const EsmState& start) {
     gates_.forget();
+    esm_.forgetLight();  // of an alignment elsewhere
+    best = attempt(image, start, false);
+    if (best.doubt.empty()) best.doubt = doubtWhatWasFound(best);
+    return best.doubt.empty();
+  };
+  const auto tryEach = [&](const std::vector<Eigen::Matrix3d>& places) {
+    EsmState start = last_;
+    for (const Eigen::Matrix3d& g : places) {
+      start.g = g;
+      if (tryAt(start)) return true;
+    }
+    return false;
+  };
+  if (confirmations_ > 0 && tryAt(candidate_)) return best;
+  if (tryAt(last_)) return best;
+  const SearchConfig& stages = config_.search;
+  const bool features = stages.features && (!stages.correlation || search_turn_ % 2 == 0);
+  ++search_turn_;
+  if (features) {
+    std::vector<Eigen::Matrix3d> places;
+    for (const FeatureCandidate& candidate : feature_search_.find(image, channel_, keyframes_)) {
+      if (static_cast<int>(places.size()) < kSearchCandidates) places.push_back(candidate.g);
+    }
+    tryEach(places);
+  } else if (stages.correlation) {
+    tryEach(searchCoarsely(image));
   }
+  return best;
+}
+
+// A search asks at many places, so that one of them may pass by chance what a tracked region passes by right: more is asked.
+std::string RegionTracker::Implementation::doubtWhatWasFound(const Attempt& found) {
+  const EsmLevel& level = esm_.level(0);
+  const double detail = detailCorrelation(level.warped.view(), level.value.view(), level.weight.view().mul(level.valid.view()));
+  std::ostringstream why;
+  why.precision(3);
+  if (found.evidence.esm.status != EsmStatus::kConverged) {
+    why << "still moving where it was searched";
+  } else if (!(detail >= config_.search.min_detail)) {
+    why << "correlation of details " << detail << " where it was searched, expected at least " << config_.search.min_detail;
+  }
+  return why.str();
+}
+
+std::vector<Eigen::Matrix3d> RegionTracker::Implementation::searchCoarsely(const cv::Mat& image) {
   const int l = esm_.levels() - 1;
   image::RegionPyramid whole;
   whole.build(image, cv::Rect(0, 0, image.cols, image.rows), l + 1, channel_);
   const EsmLevel& level = esm_.level(l);
-  for (const Candidate& candidate : searchByCorrelation(level.value.view(), level.image_T_patch, whole.level(l), level.scale, esm_.roi(),
-                                                        last_.g, kSearchCandidates)) {
-    EsmState start = last_;
-    start.g = candidate.g;
-    const Attempt next = attempt(image, start, false);
-    if (next.doubt.empty()) return next;
-    gates_.forget();
+  std::vector<Eigen::Matrix3d> places;
+  for (const Candidate& candidate : searchByCorrelation(level.value.view(), level.image_T_patch, whole.level(l), level.scale,
+                                                        esm_.roi(), last_.g, kSearchCandidates)) {
+    places.push_back(candidate.g);
   }
-  return best;
+  return places;
+}
+
+void RegionTracker::Implementation::keepView(const cv::Mat& image, const Attempt& seen) {
+  const Evidence& e = seen.evidence;
+  if (state_ != State::kTracking || !(e.visible_fraction >= kKeyframeVisible) || !(e.zncc >= kKeyframeZncc)) return;
+  if (config_.search.features && keyframes_.wants(last_.g)) keyframes_.add(image, last_.g, gates_.weights());
 }
 
 void RegionTracker::Implementation::decide(const Attempt& best, double stamp) {
@@ -328,7 +385,11 @@ void RegionTracker::Implementation::decide(const Attempt& best, double stamp) {
   if (!best.doubt.empty()) {
     confirmations_ = 0;
     has_velocity_ = false;
-    if (state_ == State::kTracking) state_ = State::kSearching;
+    if (state_ == State::kTracking) {
+      state_ = State::kSearching;
+      search_turn_ = 0;
+      feature_search_.restart();
+    }
     if (stamp - last_good_stamp_ > quality.max_search_time) state_ = State::kLost;
     return;
   }

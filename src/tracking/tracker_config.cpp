@@ -39,6 +39,12 @@ std::vector<std::string> validate(const TrackerConfig& c) {
   check.range("quality/max_jump", c.quality.max_jump, 0.01, 10.0);
   check.range("quality/max_search_time", c.quality.max_search_time, 0.0, 3600.0);
   check.range("quality/confirmations", c.quality.confirmations, 1, 100);
+  check.range("search/max_features", c.search.max_features, 50, 5000);
+  check.range("search/max_pixels", c.search.max_pixels, 10000, 10000000);
+  check.range("search/max_ratio", c.search.max_ratio, 0.1, 1.0);
+  check.range("search/min_inliers", c.search.min_inliers, 4, 1000);
+  check.range("search/keyframes", c.search.keyframes, 0, 64);
+  check.range("search/min_detail", c.search.min_detail, 0.0, 1.0);
   check.range("velocity_damping", c.velocity_damping, 0.0, 1.0);
   check.range("min_roi_side", c.min_roi_side, 8, 1000);
   check.range("min_texture", c.min_texture, 0.01, 10.0);

@@ -53,10 +53,23 @@ struct QualityConfig {
   int confirmations = 3;              // 1 to 100 images in a row that pass every test, before TRACKING is said again
 };
 
+// Where to look for the ROI when it was lost. After the place where it was seen last, which is always tried.
+struct SearchConfig {
+  bool features = true;         // by points matched with stored views
+  bool correlation = true;      // by sliding the ROI over a coarse image
+  int max_features = 600;       // 50 to 5000, points drawn from an image; half of it from a stored view
+  int max_pixels = 150000;      // 10000 to 10000000: an image with more is scaled down before points are drawn
+  double max_ratio = 0.85;      // 0.1 to 1: distance of a point's best match over that of its second best
+  int min_inliers = 8;          // 4 to 1000 matches that agree
+  int keyframes = 8;            // 0 to 64 views stored beside the reference
+  double min_detail = 0.7;            // 0 to 1, correlation of the fine structure, where it was found
+};
+
 struct TrackerConfig {
   OcclusionConfig occlusion;
   EsmConfig esm;
   QualityConfig quality;
+  SearchConfig search;
   double velocity_damping = 0.8;  // 0 to 1: share of the last motion that is expected to go on
   int min_roi_side = 16;          // px, 8 to 1000
   double min_texture = 0.5;       // px, 0.01 to 10: corner error that two grey levels of noise may cause in a ROI

@@ -23,5 +23,19 @@ TEST(TrackerConfig, EveryErrorIsListedWithNameAndValue) {
   EXPECT_NE(errors[3].find("quality/confirmations = 0"), std::string::npos);
 }
 
+TEST(TrackerConfig, TheSearchHasRanges) {
+  TrackerConfig c;
+  c.search.max_features = 49;
+  c.search.max_pixels = 0;
+  c.search.max_ratio = std::nan("");
+  c.search.min_inliers = 3;
+  c.search.keyframes = -1;
+  c.search.min_detail = -0.1;
+  const std::vector<std::string> errors = validate(c);
+  ASSERT_EQ(errors.size(), 6u);
+  for (const std::string& error : errors) EXPECT_EQ(error.rfind("search/", 0), 0u) << error;
+  EXPECT_EQ(errors[0], "search/max_features = 49, expected 50 to 5000");
+}
+
 }  // namespace
 }  // namespace laparoscope_servo::tracking

@@ -1,0 +1,66 @@
+// Views of the region of interest (ROI) that were tracked well, so that the search for a lost ROI knows it at scales
+// and tilts that the reference does not show. They give places to start from and nothing else: what is aligned and
+// believed is always the reference itself, which no view replaces.
+#pragma once
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "laparoscope_servo/geometry/homography.h"
+
+namespace laparoscope_servo::tracking {
+
+// Points with binary descriptors, a row of CV_8U each.
+struct Features {
+  std::vector<cv::Point2f> points;  // px, of the image that the keyframe was cut from
+  cv::Mat descriptors;
+};
+
+struct Keyframe {
+  cv::Mat crop;       // of the image as it came: the ROI with a margin
+  cv::Point first;    // px, of the crop's first pixel in that image
+  Eigen::Matrix3d g;  // pixels of the reference to pixels of that image, determinant 1
+  cv::Mat1b trusted;  // 255 for the ROI's pixels (of the reference) that were neither occluded nor saturated, else 0
+
+  bool described = false;  // features are drawn when a search first needs them: a tracked image only pays for the copy
+  Features features;
+};
+
+// How differently two homographies show the ROI's centre: 1 for a factor of 1.3 in length in some direction, or a turn
+// of 0.6 rad in the image; the larger of both. Infinite where a homography shows it mirrored or not at all.
+double viewDistance(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b, const geometry::Rectangle& roi);
+
+class Keyframes {
+ public:
+  // capacity: how many views are kept beside the reference, 0 or more.
+  explicit Keyframes(int capacity) : capacity_(capacity) {}
+
+  // Forgets every view; the reference becomes the first. `weights` is CV_32F of the ROI's size, 0 where it cannot be
+  // trusted.
+  void setReference(const cv::Mat& image, const geometry::Rectangle& roi, const cv::Mat1f& weights);
+
+  // Whether the view is at a distance of at least 1 from each that is stored and, when all places are taken, further
+  // from them than the least singular of those is from the others: what is stored spreads, and comes to rest.
+  bool wants(const Eigen::Matrix3d& g) const;
+
+  // Stores a view that wants() said yes to.
+  void add(const cv::Mat& image, const Eigen::Matrix3d& g, const cv::Mat1f& weights);
+
+  // With the reference, which is at 0; 0 before it is set.
+  int count() const { return static_cast<int>(views_.size()); }
+  Keyframe& at(int k) { return views_[k]; }
+  const Keyframe& at(int k) const { return views_[k]; }
+  const geometry::Rectangle& roi() const { return roi_; }
+
+ private:
+  double nearest(const Eigen::Matrix3d& g, int except) const;
+  int leastSingular() const;
+  Keyframe cut(const cv::Mat& image, const Eigen::Matrix3d& g, const cv::Mat1f& weights) const;
+
+  int capacity_;
+  geometry::Rectangle roi_;
+  std::vector<Keyframe> views_;
+};
+
+}  // namespace laparoscope_servo::tracking

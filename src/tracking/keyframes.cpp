@@ -1,0 +1,100 @@
+#include "laparoscope_servo/tracking/keyframes.h"
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace laparoscope_servo::tracking {
+
+namespace {
+
+constexpr double kLengthStep = 1.3;  // a binary descriptor bears about this much between two views
+constexpr double kTurnStep = 0.6;    // rad
+// Share of the image's diagonal: detectors see nothing near the border of what they are given.
+constexpr double kMargin = 0.08;
+
+// The homography's derivative at the ROI's centre.
+Eigen::Matrix2d derivative(const Eigen::Matrix3d& g, const geometry::Rectangle& roi) {
+  const Eigen::Vector3d q = g * Eigen::Vector3d(roi.x + 0.5 * roi.width, roi.y + 0.5 * roi.height, 1.0);
+  const Eigen::Vector2d p = q.head<2>() / q.z();
+  return (g.topLeftCorner<2, 2>() - p * g.bottomLeftCorner<1, 2>()) / q.z();
+}
+
+}  // namespace
+
+double viewDistance(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b, const geometry::Rectangle& roi) {
+  const Eigen::Matrix2d from = derivative(b, roi);
+  const Eigen::Matrix2d to = derivative(a, roi);
+  if (!(from.determinant() > 0.0) || !(to.determinant() > 0.0)) return std::numeric_limits<double>::infinity();
+  const Eigen::Matrix2d change = to * from.inverse();
+  const Eigen::Vector2d lengths = Eigen::JacobiSVD<Eigen::Matrix2d>(change).singularValues();
+  const double turn = std::atan2(change(1, 0) - change(0, 1), change(0, 0) + change(1, 1));
+  return std::max({std::abs(std::log(lengths[0])) / std::log(kLengthStep),
+                   std::abs(std::log(lengths[1])) / std::log(kLengthStep), std::abs(turn) / kTurnStep});
+}
+
+void Keyframes::setReference(const cv::Mat& image, const geometry::Rectangle& roi, const cv::Mat1f& weights) {
+  roi_ = roi;
+  views_.clear();
+  views_.push_back(cut(image, Eigen::Matrix3d::Identity(), weights));
+}
+
+double Keyframes::nearest(const Eigen::Matrix3d& g, int except) const {
+  double distance = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < count(); ++k) {
+    if (k != except) distance = std::min(distance, viewDistance(g, views_[k].g, roi_));
+  }
+  return distance;
+}
+
+int Keyframes::leastSingular() const {
+  int least = 1;
+  for (int k = 2; k < count(); ++k) {
+    if (nearest(views_[k].g, k) < nearest(views_[least].g, least)) least = k;
+  }
+  return least;
+}
+
+bool Keyframes::wants(const Eigen::Matrix3d& g) const {
+  if (capacity_ == 0 || views_.empty()) return false;
+  const double distance = nearest(g, -1);
+  if (!(distance >= 1.0) || !std::isfinite(distance)) return false;
+  if (count() <= capacity_) return true;
+  const int least = leastSingular();
+  return distance > nearest(views_[least].g, least);
+}
+
+void Keyframes::add(const cv::Mat& image, const Eigen::Matrix3d& g, const cv::Mat1f& weights) {
+  Keyframe view = cut(image, g, weights);
+  if (view.crop.empty()) return;
+  if (count() <= capacity_) {
+    views_.push_back(std::move(view));
+  } else {
+    views_[leastSingular()] = std::move(view);
+  }
+}
+
+Keyframe Keyframes::cut(const cv::Mat& image, const Eigen::Matrix3d& g, const cv::Mat1f& weights) const {
+  Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
+  Eigen::Vector2d high = -low;
+  for (const Eigen::Vector2d& corner : geometry::apply(g, roi_.corners())) {
+    low = low.cwiseMin(corner);
+    high = high.cwiseMax(corner);
+  }
+  const double margin = kMargin * std::hypot(image.cols, image.rows);
+  const auto bounded = [](double x) { return static_cast<int>(std::clamp(x, -1e6, 1e6)); };
+  const cv::Point first(bounded(std::floor(low.x() - margin)), bounded(std::floor(low.y() - margin)));
+  const cv::Point last(bounded(std::ceil(high.x() + margin)), bounded(std::ceil(high.y() + margin)));
+  const cv::Rect box = cv::Rect(first, last) & cv::Rect(cv::Point(0, 0), image.size());
+  Keyframe view;
+  view.g = g;
+  if (box.empty()) return view;
+  view.crop = image(box).clone();
+  view.first = box.tl();
+  view.trusted = weights > 0.0f;
+  return view;
+}
+
+}  // namespace laparoscope_servo::tracking
