@@ -152,6 +152,31 @@ TEST_F(RegionTrackerTest, FollowsTheRegionPartlyOutOfTheImage) {
   }
 }
 
+// The picture of a laparoscope is round; what is black beside it stays where it is while the tissue moves.
+TEST_F(RegionTrackerTest, FollowsTheRegionIntoTheRoundBorderOfThePicture) {
+  cv::Mat1b picture(kSize, 0);
+  cv::circle(picture, cv::Point(180, 150), 140, 255, -1);
+  const auto throughTheScope = [&](const Eigen::Matrix3d& g, unsigned seed) {
+    cv::Mat seen(kSize, CV_8UC3, cv::Scalar(2, 2, 2));
+    test::view(scene_, g, 1.0, 0.0, 2.0, seed).copyTo(seen, picture);
+    return seen;
+  };
+  tracker_.select(throughTheScope(Eigen::Matrix3d::Identity(), 1), 0.0, kRoi);
+  TrackResult r;
+  for (int frame = 1; frame < 20; ++frame) {
+    Eigen::Matrix3d g = Eigen::Matrix3d::Identity();
+    g(0, 2) = -4.0 * frame;
+    r = tracker_.track(throughTheScope(g, 100 + frame), 0.04 * frame);
+    ASSERT_EQ(r.state, State::kTracking) << frame << ": " << r.reason;
+    EXPECT_LT(test::cornerDistance(r.g, g, kRoi), 1.0) << frame;
+  }
+  const cv::Rect roi(110 - 4 * 19, 80, 112, 112);
+  const double in_picture = cv::countNonZero(picture(roi)) / static_cast<double>(roi.area());
+  EXPECT_LT(r.visible_fraction, in_picture + 0.02);
+  EXPECT_GT(r.visible_fraction, in_picture - 0.1);
+  EXPECT_TRUE(r.areas.occluded[0]);  // its upper left corner is beside the picture
+}
+
 TEST_F(RegionTrackerTest, TimeThatJumpsBackResets) {
   select();
   ASSERT_EQ(tracker_.track(image(1), 10.0).state, State::kTracking);
