@@ -27,7 +27,7 @@ tracking::TrackerConfig configurationNamed(const std::string& name) {
   config.esm.light = tracking::Light::kConstant;
   config.esm.robust = false;
   config.esm.saturation = 256;
-  config.esm.adapt_channel = false;
+  config.esm.channels = tracking::TrackedChannels::kLuma;
   return config;
 }
 

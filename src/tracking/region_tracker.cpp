@@ -1,21 +1,16 @@
 #include "laparoscope_servo/tracking/region_tracker.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <sstream>
 #include <stdexcept>
 
-#include "laparoscope_servo/geometry/sl3.h"
-#include "laparoscope_servo/image/colour_patch.h"
-#include "laparoscope_servo/image/pyramid.h"
-#include "laparoscope_servo/tracking/detail.h"
-#include "laparoscope_servo/tracking/esm.h"
 #include "laparoscope_servo/tracking/feature_search.h"
 #include "laparoscope_servo/tracking/keyframes.h"
-#include "laparoscope_servo/tracking/occlusion_gates.h"
+#include "laparoscope_servo/tracking/motion_filter.h"
 #include "laparoscope_servo/tracking/quality.h"
+#include "laparoscope_servo/tracking/region_aligner.h"
 #include "laparoscope_servo/tracking/relocalisation.h"
 
 namespace laparoscope_servo::tracking {
@@ -27,62 +22,10 @@ constexpr int kSearchCandidates = 2;  // that are aligned, of each stage of the 
 // A view is worth storing that was seen nearly whole, and clearly.
 constexpr double kKeyframeVisible = 0.7;
 constexpr double kKeyframeZncc = 0.85;
-constexpr int kMaxStructureRounds = 3;
-constexpr double kGateShift = 2.0;       // px: masks drawn further from the estimate than this are drawn again
-
-cv::Rect boundingBox(const geometry::Quadrilateral& q, double margin) {
-  double left = q[0].x(), right = q[0].x(), top = q[0].y(), bottom = q[0].y();
-  for (const Eigen::Vector2d& corner : q) {
-    left = std::min(left, corner.x());
-    right = std::max(right, corner.x());
-    top = std::min(top, corner.y());
-    bottom = std::max(bottom, corner.y());
-  }
-  // Far outside any image; keeps the conversion to int defined.
-  const auto bounded = [](double x) { return static_cast<int>(std::clamp(x, -1e6, 1e6)); };
-  const cv::Point first(bounded(std::floor(left - margin)), bounded(std::floor(top - margin)));
-  const cv::Point last(bounded(std::ceil(right + margin)), bounded(std::ceil(bottom + margin)));
-  return {first, last + cv::Point(1, 1)};
-}
-
-// Pixels of the ROI to those of the image.
-Eigen::Matrix3d fromPatch(const geometry::Rectangle& roi) {
-  Eigen::Matrix3d m = Eigen::Matrix3d::Identity();
-  m.topRightCorner<2, 1>() << roi.x, roi.y;
-  return m;
-}
-
-double farthestCorner(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b, const geometry::Rectangle& roi) {
-  const geometry::Quadrilateral p = geometry::apply(a, roi.corners());
-  const geometry::Quadrilateral q = geometry::apply(b, roi.corners());
-  double distance = 0.0;
-  for (int k = 0; k < 4; ++k) distance = std::max(distance, (p[k] - q[k]).norm());
-  return distance;
-}
-
-// The combination of the channels whose gradient is strongest for its noise: the principal axis of sum grad_c grad_d. Scaled
-// so that the weights' magnitudes sum to one, which keeps the range of grey levels.
-image::ChannelWeights strongestChannel(const cv::Mat& patch) {
-  cv::Mat3f gx, gy, smooth;
-  patch.convertTo(smooth, CV_32FC3);
-  cv::GaussianBlur(smooth, smooth, cv::Size(), 1.0);
-  cv::Sobel(smooth, gx, CV_32F, 1, 0, 1, 0.5);
-  cv::Sobel(smooth, gy, CV_32F, 0, 1, 1, 0.5);
-  Eigen::Matrix3d energy = Eigen::Matrix3d::Zero();
-  for (int j = 0; j < patch.rows; ++j) {
-    for (int i = 0; i < patch.cols; ++i) {
-      const Eigen::Vector3d x(gx(j, i)[0], gx(j, i)[1], gx(j, i)[2]);
-      const Eigen::Vector3d y(gy(j, i)[0], gy(j, i)[1], gy(j, i)[2]);
-      energy += x * x.transpose() + y * y.transpose();
-    }
-  }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(energy);
-  Eigen::Vector3d axis = solver.eigenvectors().col(2);
-  const double magnitude = axis.cwiseAbs().sum();
-  if (solver.info() != Eigen::Success || !(magnitude > 0.0)) return image::kLuma;
-  axis *= (axis.sum() < 0.0 ? -1.0 : 1.0) / magnitude;
-  return {static_cast<float>(axis[0]), static_cast<float>(axis[1]), static_cast<float>(axis[2])};
-}
+// px, by how much a corner is searched for around its prediction: so many times what is usual, and never less than this.
+constexpr double kReach = 4.0;
+constexpr double kLeastReach = 12.0;
+constexpr double kSearchReach = 0.25;  // of the ROI's larger side, when it has been lost
 
 std::string roiText(const geometry::Rectangle& roi) {
   std::ostringstream text;
@@ -113,7 +56,7 @@ const char* stateName(State state) {
 class RegionTracker::Implementation {
  public:
   explicit Implementation(const TrackerConfig& config)
-      : config_(config), esm_(config.esm), gates_(config.occlusion, config.esm.saturation), keyframes_(config.search.keyframes),
+      : config_(config), aligner_(config), filter_(config.velocity_damping), keyframes_(config.search.keyframes),
         feature_search_(config.search) {}
 
   TrackResult select(const cv::Mat& image, double stamp, const geometry::Rectangle& roi);
@@ -130,23 +73,18 @@ class RegionTracker::Implementation {
   };
 
   geometry::Rectangle checkedRoi(const cv::Mat& image, const geometry::Rectangle& roi) const;
-  Eigen::Matrix3d predict(double stamp) const;
-  Attempt attempt(const cv::Mat& image, const EsmState& start, bool from_track);
+  Attempt attempt(const cv::Mat& image, const EsmState& start, const MotionPrior* prior);
   Attempt search(const cv::Mat& image);
   std::vector<Eigen::Matrix3d> searchCoarsely(const cv::Mat& image);
   std::string doubtWhatWasFound(const Attempt& found);
   void keepView(const cv::Mat& image, const Attempt& seen);
-  void look(const cv::Mat& image, const Eigen::Matrix3d& g);
-  void decide(const Attempt& best, double stamp);
+  void decide(const Attempt& best, const MotionPrior& prior, double stamp);
   TrackResult report(const Attempt& attempt, double stamp) const;
   TrackResult idle(double stamp, const std::string& reason) const;
 
   TrackerConfig config_;
-  Esm esm_;
-  OcclusionGates gates_;
-  image::RegionPyramid pyramid_;
-  image::ChannelWeights channel_ = image::kLuma;
-  image::ColourPatch patch_;
+  RegionAligner aligner_;
+  MotionFilter filter_;
   Keyframes keyframes_;
   FeatureSearch feature_search_;
 
@@ -155,15 +93,10 @@ class RegionTracker::Implementation {
   double reference_stamp_ = 0.0;
   double last_stamp_ = 0.0;
   EsmState last_;                      // last estimate that was believed
-  double last_good_stamp_ = 0.0;
-  geometry::Vector8d velocity_ = geometry::Vector8d::Zero();  // 1/s, of the last motion, in normalised template coordinates
-  bool has_velocity_ = false;
   TrackRecord record_;
   int confirmations_ = 0;
   EsmState candidate_;                 // while searching: what is being confirmed
   unsigned search_turn_ = 0;           // images searched since the ROI was lost
-  Eigen::Matrix3d n_ = Eigen::Matrix3d::Identity();  // N, see Esm
-  Eigen::Matrix3d shown_ = Eigen::Matrix3d::Identity();
 };
 
 geometry::Rectangle RegionTracker::Implementation::checkedRoi(const cv::Mat& image, const geometry::Rectangle& roi) const {
@@ -183,17 +116,11 @@ geometry::Rectangle RegionTracker::Implementation::checkedRoi(const cv::Mat& ima
 TrackResult RegionTracker::Implementation::select(const cv::Mat& image, double stamp, const geometry::Rectangle& wanted) {
   checkImage(image);
   const geometry::Rectangle roi = checkedRoi(image, wanted);
-  const cv::Rect box(static_cast<int>(roi.x), static_cast<int>(roi.y), static_cast<int>(roi.width), static_cast<int>(roi.height));
 
   // Everything is built aside, so that a ROI that is refused leaves the tracker as it was.
   Implementation fresh(config_);
-  if (image.channels() == 3 && config_.esm.adapt_channel) fresh.channel_ = strongestChannel(image(box));
-  fresh.pyramid_.build(image, boundingBox(roi.corners(), 4.0 * (1 << config_.esm.levels)), config_.esm.levels, fresh.channel_);
-  fresh.esm_.setReference(fresh.pyramid_, roi);
-  image::warpNearest(image, fromPatch(roi), box.size(), fresh.patch_);
-  fresh.gates_.setReference(fresh.patch_);
-  fresh.esm_.setWeights(fresh.gates_.weights());
-  const double error = fresh.esm_.referenceCornerError(kTypicalNoise);
+  fresh.aligner_.setReference(image, roi);
+  const double error = fresh.aligner_.referenceCornerError(kTypicalNoise);
   if (!(error <= config_.min_texture)) {
     std::ostringstream message;
     message.precision(3);
@@ -201,18 +128,18 @@ TrackResult RegionTracker::Implementation::select(const cv::Mat& image, double s
             << error << " px, expected at most " << config_.min_texture;
     throw std::invalid_argument(message.str());
   }
-  fresh.keyframes_.setReference(image, roi, fresh.gates_.weights());
+  fresh.keyframes_.setReference(image, roi, fresh.aligner_.weights());
+  fresh.filter_.start(roi, fresh.aligner_.esm().normalisation(), stamp);
   fresh.state_ = State::kTracking;
   fresh.image_size_ = image.size();
-  fresh.reference_stamp_ = fresh.last_stamp_ = fresh.last_good_stamp_ = stamp;
-  fresh.n_ = fresh.esm_.normalisation();
+  fresh.reference_stamp_ = fresh.last_stamp_ = stamp;
   *this = std::move(fresh);
 
   Attempt attempt;
   attempt.evidence.roi = roi;
   attempt.evidence.esm.status = EsmStatus::kConverged;
   attempt.evidence.esm.corner_error = error;
-  attempt.evidence.visible_fraction = cv::sum(gates_.weights())[0] / roi.width / roi.height;
+  attempt.evidence.visible_fraction = cv::sum(aligner_.weights())[0] / roi.width / roi.height;
   attempt.evidence.zncc = 1.0;
   TrackResult result = report(attempt, stamp);
   result.selected_now = true;
@@ -234,80 +161,40 @@ TrackResult RegionTracker::Implementation::track(const cv::Mat& image, double st
     reset();
     return idle(stamp, why.str());
   }
+  const MotionPrior prior = filter_.predict(stamp);
   Attempt best;
   if (state_ == State::kTracking) {
     EsmState start = last_;
-    start.g = predict(stamp);
-    best = attempt(image, start, true);
+    start.g = prior.predicted;
+    best = attempt(image, start, &prior);
   } else {
     best = search(image);
   }
-  decide(best, stamp);
+  decide(best, prior, stamp);
   keepView(image, best);
-  gates_.advance();
+  aligner_.advance();
   last_stamp_ = stamp;
   return report(best, stamp);
 }
 
-Eigen::Matrix3d RegionTracker::Implementation::predict(double stamp) const {
-  const double dt = stamp - last_good_stamp_;
-  if (!has_velocity_ || !(dt > 0.0)) return last_.g;
-  const Eigen::Matrix3d motion = geometry::sl3Exp(config_.velocity_damping * dt * velocity_);
-  const Eigen::Matrix3d g = last_.g * n_.inverse() * motion * n_;
-  return geometry::isConvex(geometry::apply(g, esm_.roi().corners())) ? g : last_.g;
-}
-
-// The gates' view of the image where the ROI is taken to be.
-void RegionTracker::Implementation::look(const cv::Mat& image, const Eigen::Matrix3d& g) {
-  const geometry::Rectangle& roi = esm_.roi();
-  image::warpNearest(image, g * fromPatch(roi), cv::Size(gates_.grid().width(), gates_.grid().height()), patch_);
-  gates_.observeColour(patch_);
-  esm_.setWeights(gates_.weights());
-  shown_ = g;
-}
-
+// With a prior when the ROI was tracked until the image before; without when it is searched for.
 RegionTracker::Implementation::Attempt RegionTracker::Implementation::attempt(const cv::Mat& image, const EsmState& start,
-                                                                              bool from_track) {
-  const geometry::Rectangle& roi = esm_.roi();
+                                                                              const MotionPrior* prior) {
+  const geometry::Rectangle& roi = aligner_.roi();
+  const double reach = prior != nullptr ? std::max(kLeastReach, kReach * record_.innovation())
+                                        : std::max(32.0, kSearchReach * std::max(roi.width, roi.height));
+  const Alignment found = aligner_.align(image, start, prior, reach);
   Attempt result;
   Evidence& e = result.evidence;
   e.roi = roi;
   e.predicted = start.g;
-  e.from_track = from_track;
+  e.from_track = prior != nullptr;
   e.last_gain = last_.gain;
   e.record = record_;
-  e.esm.state = start;
-  e.esm.status = EsmStatus::kOutOfView;
-  const cv::Rect box = boundingBox(geometry::apply(start.g, roi.corners()), std::max(32.0, 0.25 * std::max(roi.width, roi.height)));
-  if ((box & cv::Rect(cv::Point(0, 0), image.size())).empty()) {
-    result.doubt = "the ROI is outside the image";
-    return result;
-  }
-  pyramid_.build(image, box, config_.esm.levels, channel_);
-  look(image, start.g);
-  e.esm = esm_.align(pyramid_, start);
-  int iterations = e.esm.iterations;
-  const auto refine = [&] {
-    e.esm = esm_.align(pyramid_, e.esm.state, 0, 0);
-    iterations += e.esm.iterations;
-  };
-  const auto usable = [&] { return e.esm.status == EsmStatus::kConverged || e.esm.status == EsmStatus::kMaxIterations; };
-  if (usable() && farthestCorner(shown_, e.esm.state.g, roi) > kGateShift) {
-    look(image, e.esm.state.g);
-    refine();
-  }
-  for (int round = 0; round < kMaxStructureRounds && usable(); ++round) {
-    const EsmLevel& level = esm_.level(0);
-    if (gates_.observeStructure(level.warped, level.value, level.valid, e.esm.state.gain, e.esm.sigma) == 0) break;
-    esm_.setWeights(gates_.weights());
-    refine();
-  }
-  e.esm.iterations = iterations;
-  if (usable()) {
-    e.visible_fraction = gates_.visibleFraction();
-    e.zncc = gates_.correlation();
-  }
-  result.doubt = doubt(e, config_.quality);
+  e.esm = found.esm;
+  e.visible_fraction = found.visible_fraction;
+  e.zncc = found.zncc;
+  result.doubt = found.in_image ? doubt(e, config_.quality) : "the ROI is outside the image";
   return result;
 }
 
@@ -316,9 +203,8 @@ RegionTracker::Implementation::Attempt RegionTracker::Implementation::attempt(co
 RegionTracker::Implementation::Attempt RegionTracker::Implementation::search(const cv::Mat& image) {
   Attempt best;
   const auto tryAt = [&](const EsmState& start) {
-    gates_.forget();
-    esm_.forgetLight();  // of an alignment elsewhere
-    best = attempt(image, start, false);
+    aligner_.startAfresh();
+    best = attempt(image, start, nullptr);
     if (best.doubt.empty()) best.doubt = doubtWhatWasFound(best);
     return best.doubt.empty();
   };
@@ -337,7 +223,7 @@ RegionTracker::Implementation::Attempt RegionTracker::Implementation::search(con
   ++search_turn_;
   if (features) {
     std::vector<Eigen::Matrix3d> places;
-    for (const FeatureCandidate& candidate : feature_search_.find(image, channel_, keyframes_)) {
+    for (const FeatureCandidate& candidate : feature_search_.find(image, aligner_.channels().weights[0], keyframes_)) {
       if (static_cast<int>(places.size()) < kSearchCandidates) places.push_back(candidate.g);
     }
     tryEach(places);
@@ -349,8 +235,7 @@ RegionTracker::Implementation::Attempt RegionTracker::Implementation::search(con
 
 // A search asks at many places, so that one of them may pass by chance what a tracked region passes by right: more is asked.
 std::string RegionTracker::Implementation::doubtWhatWasFound(const Attempt& found) {
-  const EsmLevel& level = esm_.level(0);
-  const double detail = detailCorrelation(level.warped.view(), level.value.view(), level.weight.view().mul(level.valid.view()));
+  const double detail = aligner_.detail();
   std::ostringstream why;
   why.precision(3);
   if (found.evidence.esm.status != EsmStatus::kConverged) {
@@ -362,13 +247,13 @@ std::string RegionTracker::Implementation::doubtWhatWasFound(const Attempt& foun
 }
 
 std::vector<Eigen::Matrix3d> RegionTracker::Implementation::searchCoarsely(const cv::Mat& image) {
-  const int l = esm_.levels() - 1;
+  const int l = aligner_.esm().levels() - 1;
   image::RegionPyramid whole;
-  whole.build(image, cv::Rect(0, 0, image.cols, image.rows), l + 1, channel_);
-  const EsmLevel& level = esm_.level(l);
+  whole.build(image, cv::Rect(0, 0, image.cols, image.rows), l + 1, aligner_.channels().weights[0]);
+  const EsmLevel& level = aligner_.esm().level(l);
   std::vector<Eigen::Matrix3d> places;
-  for (const Candidate& candidate : searchByCorrelation(level.value.view(), level.image_T_patch, whole.level(l), level.scale,
-                                                        esm_.roi(), last_.g, kSearchCandidates)) {
+  for (const Candidate& candidate : searchByCorrelation(level.planes[0].value.view(), level.image_T_patch, whole.level(l), level.scale,
+                                                        aligner_.roi(), last_.g, kSearchCandidates)) {
     places.push_back(candidate.g);
   }
   return places;
@@ -377,45 +262,38 @@ std::vector<Eigen::Matrix3d> RegionTracker::Implementation::searchCoarsely(const
 void RegionTracker::Implementation::keepView(const cv::Mat& image, const Attempt& seen) {
   const Evidence& e = seen.evidence;
   if (state_ != State::kTracking || !(e.visible_fraction >= kKeyframeVisible) || !(e.zncc >= kKeyframeZncc)) return;
-  if (config_.search.features && keyframes_.wants(last_.g)) keyframes_.add(image, last_.g, gates_.weights());
+  if (config_.search.features && keyframes_.wants(last_.g)) keyframes_.add(image, last_.g, aligner_.weights());
 }
 
-void RegionTracker::Implementation::decide(const Attempt& best, double stamp) {
+void RegionTracker::Implementation::decide(const Attempt& best, const MotionPrior& prior, double stamp) {
   const QualityConfig& quality = config_.quality;
+  const Evidence& e = best.evidence;
   if (!best.doubt.empty()) {
     confirmations_ = 0;
-    has_velocity_ = false;
+    filter_.stop();
     if (state_ == State::kTracking) {
       state_ = State::kSearching;
       search_turn_ = 0;
       feature_search_.restart();
     }
-    if (stamp - last_good_stamp_ > quality.max_search_time) state_ = State::kLost;
+    if (stamp - filter_.lastStamp() > quality.max_search_time) state_ = State::kLost;
     return;
   }
-  const EsmState& now = best.evidence.esm.state;
   if (state_ != State::kTracking) {
     // False fits do not come back to the same place.
-    const double apart = confirmations_ == 0 ? 0.0 : farthestCorner(candidate_.g, now.g, esm_.roi());
-    const bool agrees = apart <= allowedJump(record_, quality, esm_.roi(), 0.0, best.evidence.esm.corner_error);
+    const double apart = confirmations_ == 0 ? 0.0 : farthestCorner(candidate_.g, e.esm.state.g, aligner_.roi());
+    const bool agrees = apart <= allowedJump(record_, quality, aligner_.roi(), 0.0, e.esm.corner_error);
     confirmations_ = agrees ? confirmations_ + 1 : 1;
-    candidate_ = now;
+    candidate_ = e.esm.state;
     if (confirmations_ < quality.confirmations) return;
     state_ = State::kTracking;
-    has_velocity_ = false;
+    filter_.restart(e.esm, stamp);
   } else {
-    record_.add(best.evidence.zncc, best.evidence.esm.sigma, farthestCorner(best.evidence.predicted, now.g, esm_.roi()),
-                best.evidence.visible_fraction);
-    const double dt = stamp - last_good_stamp_;
-    has_velocity_ = dt > 0.0;
-    if (has_velocity_) {
-      velocity_ = geometry::sl3Log(geometry::normaliseDeterminant(n_ * last_.g.inverse() * now.g * n_.inverse())) / dt;
-      has_velocity_ = velocity_.allFinite();
-    }
+    record_.add(e.zncc, e.esm.sigma, farthestCorner(e.predicted, e.esm.state.g, aligner_.roi()), e.visible_fraction);
+    filter_.update(prior, e.esm, stamp, e.visible_fraction >= kRecordVisible);
   }
   confirmations_ = 0;
-  last_ = now;
-  last_good_stamp_ = stamp;
+  last_ = e.esm.state;
 }
 
 TrackResult RegionTracker::Implementation::report(const Attempt& attempt, double stamp) const {
@@ -423,7 +301,7 @@ TrackResult RegionTracker::Implementation::report(const Attempt& attempt, double
   result.state = state_;
   if (state_ != State::kTracking && attempt.doubt.empty()) result.reason = "found, waits for confirmation";
   result.g = state_ == State::kTracking ? last_.g : (confirmations_ > 0 ? candidate_.g : last_.g);
-  result.roi = esm_.roi();
+  result.roi = aligner_.roi();
   result.reference_stamp = reference_stamp_;
   result.visible_fraction = attempt.evidence.visible_fraction;
   result.zncc = attempt.evidence.zncc;
@@ -432,10 +310,11 @@ TrackResult RegionTracker::Implementation::report(const Attempt& attempt, double
   result.sigma = attempt.evidence.esm.sigma;
   result.gain = attempt.evidence.esm.state.gain;
   result.bias = attempt.evidence.esm.state.bias;
-  result.colour_used = gates_.colourUsed();
-  const image::AreaGrid& grid = gates_.grid();
-  result.areas = {grid.rows(), grid.columns(), gates_.distances(), std::vector<bool>(grid.count())};
-  for (int area = 0; area < grid.count(); ++area) result.areas.occluded[area] = gates_.occluded(area);
+  const OcclusionGates& gates = aligner_.gates();
+  result.colour_used = gates.colourUsed();
+  const image::AreaGrid& grid = gates.grid();
+  result.areas = {grid.rows(), grid.columns(), gates.distances(), std::vector<bool>(grid.count())};
+  for (int area = 0; area < grid.count(); ++area) result.areas.occluded[area] = gates.occluded(area);
   return result;
 }
 
@@ -450,13 +329,14 @@ void RegionTracker::Implementation::reset() { *this = Implementation(config_); }
 
 cv::Mat RegionTracker::Implementation::occlusionMask() const {
   if (state_ == State::kIdle) return {};
-  const image::AreaGrid& grid = gates_.grid();
+  const OcclusionGates& gates = aligner_.gates();
+  const image::AreaGrid& grid = gates.grid();
   cv::Mat1b areas(grid.height(), grid.width());
   for (int j = 0; j < grid.height(); ++j) {
-    for (int i = 0; i < grid.width(); ++i) areas(j, i) = gates_.occluded(grid.areaOf(i, j)) ? 255 : 0;
+    for (int i = 0; i < grid.width(); ++i) areas(j, i) = gates.occluded(grid.areaOf(i, j)) ? 255 : 0;
   }
   const Eigen::Matrix3d g =
-      (state_ == State::kTracking || confirmations_ == 0 ? last_.g : candidate_.g) * fromPatch(esm_.roi());
+      (state_ == State::kTracking || confirmations_ == 0 ? last_.g : candidate_.g) * imageFromPatch(aligner_.roi());
   cv::Matx33d warp;
   for (int r = 0; r < 3; ++r) {
     for (int c = 0; c < 3; ++c) warp(r, c) = g(r, c);
