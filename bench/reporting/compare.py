@@ -37,12 +37,27 @@ def ratio(a, b):
     return None if a is None or not b else a / b
 
 
+def write_summary(report, sequences):
+    """This tracker, which comes first, and how much longer each of its peers takes."""
+    rows = []
+    for sequence in sequences:
+        ours, *peers = sequence["trackers"]
+        rows.append([sequence["sequence"], number(ours["error_mean"]), number(ours["error_p95"]), f"{ours['kept']:.0f} of {sequence['frames']:.0f}",
+                     f"{ours['lies']:.0f}", number(ours["ms_median"]), number(ratio(ours["ms_p99"], ours["ms_median"]), 1),
+                     *[f"{number(p['time_ratio'], 1)} ({p['kept']:.0f} kept, {p['lies']:.0f} lies)" for p in peers]])
+    names = [t["name"] for t in sequences[0]["trackers"]]
+    report.table(["sequence", f"{names[0]}: error mean [px]", "p95 [px]", "kept", "lies", "median [ms]", "p99 / median",
+                  *[f"{name}: its time over ours" for name in names[1:]]], rows)
+
+
 def write(report, a):
     report.text("## Beside its peers", "All trackers get each image in turn, on one thread, in one run. Error: the worst corner, mean "
                 f"over the frames kept. Kept: said to be tracked, and wrong by less than {LOST:.0f} px. Lies: said to be tracked, and wrong by "
                 "more. Peers that have no test of their own claim every frame unless they give up. Median, p99: wall time per image while it goes on; "
                 "the ratio is of processor times.")
-    for sequence in json.loads(jobs(a)[0].result.read_text()):
+    sequences = json.loads(jobs(a)[0].result.read_text())
+    write_summary(report, sequences)
+    for sequence in sequences:
         report.text(f"### {sequence['sequence']}, {sequence['frames']:.0f} frames")
         report.table(["tracker", "error mean [px]", "p95 [px]", "kept", "lies", "given up", "median [ms]", "p99 [ms]", "p99 / median",
                       "time over ours"],
