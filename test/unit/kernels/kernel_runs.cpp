@@ -127,7 +127,8 @@ void compareStructure(const Inputs& inputs, Outputs& outputs) {
                      weight = patchOf(inputs.weight);
   const image::AreaGrid grid(inputs.size.width, inputs.size.height, kAreas, kAreas);
   tracking::StructureStatistics statistics;
-  statistics.compute(seen, reference, weight, grid);
+  const tracking::PatchPair pair = {&seen, &reference};
+  statistics.compute(&pair, 1, weight, grid);
   for (int area = 0; area < statistics.count(); ++area) {
     const tracking::AreaMoments& m = statistics.area(area);
     outputs.moments.insert(outputs.moments.end(), {m.image, m.reference, m.both});
