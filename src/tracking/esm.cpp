@@ -26,6 +26,11 @@ constexpr int kBins = 1024;
 constexpr double kContraction = 0.3;
 constexpr double kSlowest = 0.9;         // steps that shrink by less do not converge
 constexpr double kCoarseAccuracy = 0.1;  // px of the level, enough for the next finer one
+constexpr int kPatience = 10;            // iterations on levels that are reached from a coarser one, for the steps to become short
+constexpr double kFar = 0.5;             // px of the level, a step after which the region may still be elsewhere
+constexpr int kShifts = 4;               // first steps on a coarse level, if far
+constexpr double kSameLight = 0.5;       // of the residual's scale, for its mean
+constexpr int kTrials = 8;               // iterations with the light of the start, if far
 
 // Surprise, chi squared with 8 degrees of freedom, at which a prior begins to count less: Student's t with as many of its own.
 constexpr double kFreedom = 8.0;
@@ -116,24 +121,40 @@ void Esm::warp(const image::RegionPyramid& current, EsmLevel& level, int l, cons
 
 void Esm::forgetLight() { light_known_ = false; }
 
+// That of the last image, where it is known. Else one bias for all, so that what the blocks differ by still pulls at the motion.
 void Esm::startLight(EsmLevel& level, const EsmState& state) {
-  const image::Patch& weight = level.usedWeight();
   for (EsmPlane& plane : level.planes) {
-    std::vector<double> sums(plane.bias.size(), 0.0), weights(plane.bias.size(), 0.0);
-    for (std::size_t block_row = 0; block_row + 1 < level.block_row_begin.size(); ++block_row) {
-      for (int j = level.block_row_begin[block_row]; j < level.block_row_begin[block_row + 1]; ++j) {
+    if (light_known_ && config_.light == Light::kLocal) {
+      plane.bias = plane.before;
+      continue;
+    }
+    for (std::size_t block = 0; block < plane.bias.size(); ++block) {
+      plane.bias[block] = state.bias - (1.0 - state.gain) * plane.mean[block];
+    }
+  }
+}
+
+// One more bias for all, which leaves no mean residual; gain and blocks stay. Returns the bias.
+double Esm::matchMean(EsmLevel& level, EsmState& state) {
+  const image::Patch& weight = level.usedWeight();
+  double common = 0.0;
+  for (EsmPlane& plane : level.planes) {
+    double sum = 0.0, weights = 0.0;
+    for (int row = 0; row + 1 < static_cast<int>(level.block_row_begin.size()); ++row) {
+      for (int j = level.block_row_begin[row]; j < level.block_row_begin[row + 1]; ++j) {
         for (int i = 0; i < level.width; ++i) {
-          const std::size_t block = block_row * level.block_columns + level.block_of_strip[i / image::Patch::kStrip];
-          const double centred = state.gain * (plane.warped(j, i) - plane.mean[block]) + plane.mean[block];
-          sums[block] += weight(j, i) * (plane.value(j, i) - centred);
-          weights[block] += weight(j, i);
+          const double bias = plane.biasOf(row * level.block_columns + level.block_of_strip[i / image::Patch::kStrip], state.gain);
+          sum += weight(j, i) * (plane.value(j, i) - state.gain * plane.warped(j, i) - bias);
+          weights += weight(j, i);
         }
       }
     }
-    for (std::size_t block = 0; block < sums.size(); ++block) {
-      plane.bias[block] = weights[block] > 0.0 && config_.light == Light::kLocal ? sums[block] / weights[block] : state.bias;
-    }
+    const double missing = weights > 0.0 ? sum / weights : 0.0;
+    for (double& bias : plane.bias) bias += missing;
+    common += missing / static_cast<double>(level.planes.size());
   }
+  state.bias += common;
+  return common;
 }
 
 double Esm::residualScale(const EsmLevel& level, const EsmState& state) {
@@ -178,7 +199,7 @@ void Esm::accumulate(const EsmLevel& level, const EsmState& state, double sigma)
   input.gain = static_cast<float>(state.gain);
   input.inverse_rejection = config_.robust ? static_cast<float>(1.0 / (kTukey * sigma)) : 0.0f;
   // The kernel adds both gradients; J takes their mean, per normalised unit.
-  equations_.reset(config_.light, 0.5 * half_size_ / level.scale);
+  equations_.reset(light_, 0.5 * half_size_ / level.scale);
   block_sums_.clear();
   for (const EsmPlane& plane : level.planes) {
     input.image = &plane.warped;
@@ -227,13 +248,19 @@ void Esm::accumulateBlocks(const EsmLevel& level, const CellInput& input, const 
   }
 }
 
-bool Esm::solve(EsmLevel& level, const MotionPrior* prior, EsmState& state, double& step) {
+bool Esm::solve(EsmLevel& level, const MotionPrior* prior, bool shift_only, EsmState& state, double& step) {
   Matrix10d a = equations_.matrix();
   Vector10d b = equations_.vector();
   if (prior != nullptr) {
     const double unit = prior->noise * credibility(*prior, deviation_);
     a.topLeftCorner<8, 8>() += unit * prior->information;
     b.head<8>() += unit * (prior->information * deviation_);
+  }
+  if (shift_only) {
+    a.block<6, 10>(2, 0).setZero();
+    a.block<10, 6>(0, 2).setZero();
+    a.diagonal().segment<6>(2).setOnes();
+    b.segment<6>(2).setZero();
   }
   const Factors<10> factors(a);
   if (!(factors.conditioning() > 1e-9)) return false;
@@ -260,7 +287,7 @@ void Esm::takeStep(EsmLevel& level, const Vector10d& x, EsmState& state) {
     for (std::size_t block = 0; block < plane.bias.size(); ++block, ++sums) {
       if (config_.light != Light::kLocal) {
         plane.bias[block] = state.bias;
-      } else if (sums->weight > 0.0) {
+      } else if (light_ == Light::kLocal && sums->weight > 0.0) {
         // The step is one of gain * image + bias; part of it is what the gain's does to the mean.
         plane.bias[block] += x[8] * plane.mean[block] - (sums->residual + sums->jacobian.dot(x)) / sums->weight;
         bias += sums->weight * plane.biasOf(block, state.gain);
@@ -326,24 +353,79 @@ double Esm::referenceCornerError(double sigma) {
   return cornerError(Eigen::Matrix3d::Identity(), 2.0 * sigma * sigma * inverse.topLeftCorner<8, 8>());
 }
 
-// From the second step on the ratio of two steps tells how fast they shrink, and so how far there is still to go.
-EsmStatus Esm::alignLevel(const image::RegionPyramid& current, int l, const MotionPrior* prior, EsmResult& result) {
+EsmStatus Esm::iterate(const image::RegionPyramid& current, int l, const MotionPrior* prior, const Iteration& how, EsmResult& result) {
   EsmLevel& level = levels_[l];
-  const double accuracy = l == 0 ? config_.min_step : std::max(config_.min_step, kCoarseAccuracy * level.scale);
+  if (!geometry::isConvex(geometry::apply(result.state.g, roi_.corners()))) return EsmStatus::kOutOfView;
+  warp(current, level, l, result.state.g);
+  if (how.match_mean) matchMean(level, result.state);
+  light_ = how.light;
+  result.sigma = residualScale(level, result.state);
+  accumulate(level, result.state, result.sigma);
+  ++result.iterations;
+  if (!solve(level, prior, how.shift_only, result.state, result.last_step)) return EsmStatus::kIllConditioned;
+  return EsmStatus::kMaxIterations;
+}
+
+// Far from where the region belongs, the image says little of the light: a fit to what does not correspond would lower the gain, and
+// blocks with a bias each would take up the very differences that pull at the motion. So the light is that of the start, and the first
+// steps on a coarse level are shifts. If that leads nowhere, once more with the mean matched at each step.
+EsmStatus Esm::approach(const image::RegionPyramid& current, int l, const MotionPrior* prior, EsmResult& result) {
+  EsmLevel& level = levels_[l];
+  const EsmState start = result.state;
+  const geometry::Vector8d start_deviation = deviation_;
+  EsmStatus status = EsmStatus::kMaxIterations;
+  for (const bool match : {false, true}) {
+    result.state = start;
+    deviation_ = start_deviation;
+    startLight(level, start);
+    const int most = match ? config_.max_iterations : std::min(config_.max_iterations, kTrials);
+    for (int k = 0; k < most; ++k) {
+      status = iterate(current, l, prior, {Light::kConstant, l > 0 && k < kShifts, match}, result);
+      if (status != EsmStatus::kMaxIterations) break;
+      if (result.last_step > kFar * level.scale) continue;
+      // Near, the mean is that of the reference; where it is not, the light has changed.
+      if (match || std::abs(matchMean(level, result.state)) < kSameLight * result.sigma) return EsmStatus::kConverged;
+      break;
+    }
+  }
+  return status;
+}
+
+// From the second step on the ratio of two steps tells how fast they shrink, and how far there is still to go.
+EsmStatus Esm::settle(const image::RegionPyramid& current, int l, int patience, const MotionPrior* prior, EsmResult& result) {
+  const double scale = levels_[l].scale;
+  const double accuracy = l == 0 ? config_.min_step : std::max(config_.min_step, kCoarseAccuracy * scale);
   double contraction = kContraction;
   for (int k = 0; k < config_.max_iterations; ++k) {
-    if (!geometry::isConvex(geometry::apply(result.state.g, roi_.corners()))) return EsmStatus::kOutOfView;
-    warp(current, level, l, result.state.g);
-    if (k == 0 && !(light_known_ && config_.light == Light::kLocal)) startLight(level, result.state);
-    result.sigma = residualScale(level, result.state);
-    accumulate(level, result.state, result.sigma);
-    ++result.iterations;
-    const double last_step = result.last_step;
-    if (!solve(level, prior, result.state, result.last_step)) return EsmStatus::kIllConditioned;
-    if (k > 0) contraction = std::min(result.last_step / std::max(last_step, 1e-9), kSlowest);
+    const double before = result.last_step;
+    const EsmStatus status = iterate(current, l, prior, {config_.light, false, false}, result);
+    if (status != EsmStatus::kMaxIterations) return status;
+    if (k > 0) contraction = std::min(result.last_step / std::max(before, 1e-9), kSlowest);
     if (result.last_step * contraction / (1.0 - contraction) < accuracy) return EsmStatus::kConverged;
+    if (k >= patience && result.last_step > kFar * scale) break;
   }
   return EsmStatus::kMaxIterations;
+}
+
+// Whether the way is far, where the light is not known, a first iteration with one gain and one bias tells.
+EsmStatus Esm::alignLevel(const image::RegionPyramid& current, int l, bool first, const MotionPrior* prior, EsmResult& result) {
+  if (!(light_known_ && config_.light == Light::kLocal)) startLight(levels_[l], result.state);
+  const bool may_be_far = first && l + 1 == levels() && config_.light != Light::kConstant;
+  if (!may_be_far) return settle(current, l, kPatience, prior, result);
+  const EsmResult start = result;
+  const geometry::Vector8d start_deviation = deviation_;
+  if (!light_known_) {
+    const EsmStatus status = iterate(current, l, prior, {Light::kGlobal, false, false}, result);
+    if (status != EsmStatus::kMaxIterations) return status;
+  }
+  if (light_known_ || result.last_step <= kFar * levels_[l].scale) {
+    const EsmStatus status = settle(current, l, 0, prior, result);
+    if (status != EsmStatus::kMaxIterations) return status;
+  }
+  result.state = start.state;
+  deviation_ = start_deviation;
+  const EsmStatus status = approach(current, l, prior, result);
+  return status == EsmStatus::kConverged ? settle(current, l, config_.max_iterations, prior, result) : status;
 }
 
 EsmResult Esm::align(const image::RegionPyramid& current, const EsmState& start, const MotionPrior* prior, int coarsest) {
@@ -359,8 +441,10 @@ EsmResult Esm::align(const image::RegionPyramid& current, const EsmState& start,
   for (int l = first; l >= 0; --l) {
     for (EsmPlane& plane : levels_[l].planes) plane.before = plane.bias;
     if (l < first && light_known_ && config_.light == Light::kLocal) inheritLight(levels_[l + 1], levels_[l]);
-    result.status = alignLevel(current, l, prior, result);
+    result.status = alignLevel(current, l, l == first, prior, result);
     if (result.status == EsmStatus::kOutOfView || result.status == EsmStatus::kIllConditioned) return result;
+    // What does not settle on a coarse level is not there.
+    if (result.status == EsmStatus::kMaxIterations && result.last_step > kFar * levels_[l].scale) return result;
   }
   light_known_ = true;
   judge(prior, result);

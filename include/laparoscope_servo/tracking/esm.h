@@ -90,12 +90,22 @@ class Esm {
  private:
   void warp(const image::RegionPyramid& current, EsmLevel& level, int l, const Eigen::Matrix3d& g);
   void startLight(EsmLevel& level, const EsmState& state);
+  double matchMean(EsmLevel& level, EsmState& state);
   double residualScale(const EsmLevel& level, const EsmState& state);
   void accumulate(const EsmLevel& level, const EsmState& state, double sigma);
   void accumulateBlocks(const EsmLevel& level, const CellInput& input, const EsmPlane& plane, int block_row);
-  bool solve(EsmLevel& level, const MotionPrior* prior, EsmState& state, double& step);
+  bool solve(EsmLevel& level, const MotionPrior* prior, bool shift_only, EsmState& state, double& step);
   void takeStep(EsmLevel& level, const Vector10d& x, EsmState& state);
-  EsmStatus alignLevel(const image::RegionPyramid& current, int l, const MotionPrior* prior, EsmResult& result);
+  struct Iteration {
+    Light light;      // that the equations have
+    bool shift_only;  // or all eight parameters
+    bool match_mean;  // of the residual, first
+  };
+  // kMaxIterations when there is nothing to say against it.
+  EsmStatus iterate(const image::RegionPyramid& current, int l, const MotionPrior* prior, const Iteration& how, EsmResult& result);
+  EsmStatus approach(const image::RegionPyramid& current, int l, const MotionPrior* prior, EsmResult& result);
+  EsmStatus settle(const image::RegionPyramid& current, int l, int patience, const MotionPrior* prior, EsmResult& result);
+  EsmStatus alignLevel(const image::RegionPyramid& current, int l, bool first, const MotionPrior* prior, EsmResult& result);
   void judge(const MotionPrior* prior, EsmResult& result);
   double cornerError(const Eigen::Matrix3d& g, const Matrix8d& covariance) const;
 
@@ -117,6 +127,7 @@ class Esm {
   };
   std::vector<BlockSums> block_sums_;  // plane by plane
   bool light_known_ = false;
+  Light light_ = Light::kConstant;  // that the equations have at this iteration
   geometry::Vector8d deviation_ = geometry::Vector8d::Zero();  // from the prior's prediction
 };
 

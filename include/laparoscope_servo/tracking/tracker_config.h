@@ -39,7 +39,7 @@ struct OcclusionConfig {
 
 struct EsmConfig {
   int levels = 3;            // 1 to 6, of the pyramid; a level twice as coarse each
-  int max_iterations = 10;   // 1 to 100, per level
+  int max_iterations = 50;   // 1 to 100, per level
   double min_step = 0.02;    // px, 0.0001 to 1: converged when no corner of the ROI is expected to move by more
   Light light = Light::kLocal;
   bool robust = true;        // Tukey's weights on the residuals
