@@ -38,7 +38,7 @@ struct TrackResult {
   double visible_fraction = 0.0;                    // 0 to 1, share of the ROI's pixels that the estimate used
   double zncc = 0.0;                                // -1 to 1, over those pixels, the mean of each area taken out
   int iterations = 0;                               // of ESM, all levels
-  double corner_error = 0.0;                        // px, standard deviation of the worst corner that the residuals predict
+  double corner_error = 0.0;                        // px, standard deviation expected of the worst corner, by residuals and motion
   double sigma = 0.0;                               // grey levels, robust standard deviation of the residual
   double gain = 1.0;                                // gain * image + bias has the light of the reference
   double bias = 0.0;                                // grey levels
