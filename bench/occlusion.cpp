@@ -44,7 +44,8 @@ void writeLine(std::ostream& out, int frame, const tracking::TrackResult& result
   out << '\n';
 }
 
-// The paper's tracker: every image starts where the last one ended, with nothing else known from it, and what comes out is the estimate.
+// The paper's tracker: every image starts where the last one ended, with nothing else known from it, and what comes out
+// is the estimate.
 class PapersTracker {
  public:
   PapersTracker(const tracking::TrackerConfig& config, const cv::Mat& image, const geometry::Rectangle& roi)

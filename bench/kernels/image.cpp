@@ -19,8 +19,8 @@ void pyramid(State& state) {
     benchmark::ClobberMemory();
     return 1;
   });
-  // Colour in, one channel out; two levels in again, each a quarter of that out. The channels' weights, three pixels along and across;
-  // for each level 1 4 6 4 1 across every second row, and along that for every second pixel.
+  // Colour in, one channel out; two levels in again, each a quarter of that out. The channels' weights, three pixels
+  // along and across; for each level 1 4 6 4 1 across every second row, and along that for every second pixel.
   roofline(state, 3 + 4 + (1 + 0.25) * (4 + 1), 5 + 2 * 4 + (1 + 0.25) * (7.0 / 2 + 6.0 / 4));
 }
 

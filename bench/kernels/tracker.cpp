@@ -44,8 +44,8 @@ void colourGate(State& state) {
     benchmark::DoNotOptimize(g.gates.weights().row(0));
     return 1;
   });
-  // Of each sample image, patch, validity and mask; of each pixel what is usable, and its weight. The sample's point, its feature with a
-  // root and three divisions and the bin of that; the pixel's weight.
+  // Of each sample image, patch, validity and mask; of each pixel what is usable, and its weight. The sample's point,
+  // its feature with a root and three divisions and the bin of that; the pixel's weight.
   const double samples = 1.0 / (g.step * g.step);
   roofline(state, samples * (3 + 3 + 1 + 1) + 4 + 4, samples * (11 + 24) + 1);
 }

@@ -119,19 +119,21 @@ void Esm::forgetLight() { light_known_ = false; }
 void Esm::startLight(EsmLevel& level, const EsmState& state) {
   const image::Patch& weight = level.usedWeight();
   for (EsmPlane& plane : level.planes) {
-    std::vector<double> sums(plane.bias.size(), 0.0), weights(plane.bias.size(), 0.0);
+    light_sums_.assign(plane.bias.size(), 0.0);
+    light_weights_.assign(plane.bias.size(), 0.0);
     for (std::size_t block_row = 0; block_row + 1 < level.block_row_begin.size(); ++block_row) {
       for (int j = level.block_row_begin[block_row]; j < level.block_row_begin[block_row + 1]; ++j) {
         for (int i = 0; i < level.width; ++i) {
           const std::size_t block = block_row * level.block_columns + level.block_of_strip[i / image::Patch::kStrip];
           const double centred = state.gain * (plane.warped(j, i) - plane.mean[block]) + plane.mean[block];
-          sums[block] += weight(j, i) * (plane.value(j, i) - centred);
-          weights[block] += weight(j, i);
+          light_sums_[block] += weight(j, i) * (plane.value(j, i) - centred);
+          light_weights_[block] += weight(j, i);
         }
       }
     }
-    for (std::size_t block = 0; block < sums.size(); ++block) {
-      plane.bias[block] = weights[block] > 0.0 && config_.light == Light::kLocal ? sums[block] / weights[block] : state.bias;
+    for (std::size_t block = 0; block < plane.bias.size(); ++block) {
+      const bool own = light_weights_[block] > 0.0 && config_.light == Light::kLocal;
+      plane.bias[block] = own ? light_sums_[block] / light_weights_[block] : state.bias;
     }
   }
 }

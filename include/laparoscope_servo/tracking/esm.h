@@ -108,6 +108,7 @@ class Esm {
   NormalEquations equations_;
   std::vector<int> histogram_;  // of the residuals' magnitudes
   std::vector<float> scratch_, strip_bias_;
+  std::vector<double> light_sums_, light_weights_;  // per block, while the light is started
   std::vector<CellSums> cells_;  // of a block row: cell rows times strips
   struct BlockSums {
     double weight;

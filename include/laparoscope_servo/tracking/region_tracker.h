@@ -61,8 +61,9 @@ class RegionTracker {
 
   // Processes the next image. A stamp before the last one, or an image of another size than the reference, resets to IDLE,
   // with the reason. Throws std::invalid_argument for an image that is empty or of another type than those above; the
-  // tracker then goes on as if the image had not come.
-  TrackResult track(const cv::Mat& image, double stamp);
+  // tracker then goes on as if the image had not come. Asks for no memory while it tracks, but for a view that it stores now and then.
+  // The result is the tracker's own: it lasts until the next call of select(), track() or reset(), or until the tracker is moved from.
+  const TrackResult& track(const cv::Mat& image, double stamp);
 
   // Forgets the ROI.
   void reset();
