@@ -164,7 +164,8 @@ int program(int argc, char** argv) {
   options.add_options()("help", "this text")                                                           //
       ("sequence", po::value(&folders)->composing(), "folder with frames/, truth.csv and scene.json")  //
       ("tracker", po::value(&trackers)->composing(),
-       "only this one, may be repeated; the first is the reference of the ratios")           //
+       "only this one, may be repeated; the first is the reference of the ratios; ours_luma, ours_strongest and "
+       "ours_colour take part only so")                                                      //
       ("passes", po::value(&passes)->default_value(1), "over each sequence, for the times")  //
       ("json", po::value(&file), "write everything there");
   po::positional_options_description positions;
