@@ -168,20 +168,9 @@ int program(int argc, char** argv) {
        "ours_colour take part only so")                                                      //
       ("passes", po::value(&passes)->default_value(1), "over each sequence, for the times")  //
       ("json", po::value(&file), "write everything there");
-  po::positional_options_description positions;
-  positions.add("sequence", -1);
-  po::variables_map given;
-  po::store(po::command_line_parser(argc, argv).options(options).positional(positions).run(), given);
-  po::notify(given);
-  if (given.count("help") > 0 || folders.empty() || passes < 1) {
-    std::cout << options;
-    return given.count("help") > 0 ? 0 : 2;
-  }
-  std::ofstream stream;
-  if (!file.empty()) {
-    stream.open(file);
-    if (!stream) throw std::runtime_error(file + ": cannot be written");
-  }
+  const auto complete = [&] { return !folders.empty() && passes >= 1; };
+  if (const auto status = parse(argc, argv, options, "sequence", -1, complete)) return *status;
+  std::ofstream stream = create(file);
   JsonWriter json(stream);
   json.beginArray();
   for (const std::string& folder : folders) {

@@ -89,26 +89,15 @@ int program(int argc, char** argv) {
       ("roi", po::value(&roi_text), "x,y,width,height in the first image; by default the sequence's")  //
       ("config", po::value(&configuration)->default_value("default"), "none, published or default")    //
       ("csv", po::value(&file), "write there instead of to the standard output");
-  po::positional_options_description positions;
-  positions.add("input", 1);
-  po::variables_map given;
-  po::store(po::command_line_parser(argc, argv).options(options).positional(positions).run(), given);
-  po::notify(given);
-  if (given.count("help") > 0 || input.empty()) {
-    std::cout << options;
-    return given.count("help") > 0 ? 0 : 2;
-  }
+  const auto complete = [&] { return !input.empty(); };
+  if (const auto status = parse(argc, argv, options, "input", 1, complete)) return *status;
   Sequence sequence(input);
   if (roi_text.empty() && !sequence.hasRoi())
     throw std::invalid_argument("no scene.json beside the images: --roi is needed");
   const geometry::Rectangle roi = roi_text.empty() ? sequence.roi() : parseRoi(roi_text);
   tracking::RegionTracker tracker(configurationNamed(configuration));
 
-  std::ofstream stream;
-  if (!file.empty()) {
-    stream.open(file);
-    if (!stream) throw std::runtime_error(file + ": cannot be written");
-  }
+  std::ofstream stream = create(file);
   std::ostream& out = file.empty() ? std::cout : stream;
   out.precision(12);
   std::unique_ptr<PapersTracker> papers;
