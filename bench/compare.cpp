@@ -164,23 +164,13 @@ int program(int argc, char** argv) {
   options.add_options()("help", "this text")                                                           //
       ("sequence", po::value(&folders)->composing(), "folder with frames/, truth.csv and scene.json")  //
       ("tracker", po::value(&trackers)->composing(),
-       "only this one, may be repeated; the first is the reference of the ratios")           //
+       "only this one, may be repeated; the first is the reference of the ratios; ours_luma, ours_strongest and "
+       "ours_colour take part only so")                                                      //
       ("passes", po::value(&passes)->default_value(1), "over each sequence, for the times")  //
       ("json", po::value(&file), "write everything there");
-  po::positional_options_description positions;
-  positions.add("sequence", -1);
-  po::variables_map given;
-  po::store(po::command_line_parser(argc, argv).options(options).positional(positions).run(), given);
-  po::notify(given);
-  if (given.count("help") > 0 || folders.empty() || passes < 1) {
-    std::cout << options;
-    return given.count("help") > 0 ? 0 : 2;
-  }
-  std::ofstream stream;
-  if (!file.empty()) {
-    stream.open(file);
-    if (!stream) throw std::runtime_error(file + ": cannot be written");
-  }
+  const auto complete = [&] { return !folders.empty() && passes >= 1; };
+  if (const auto status = parse(argc, argv, options, "sequence", -1, complete)) return *status;
+  std::ofstream stream = create(file);
   JsonWriter json(stream);
   json.beginArray();
   for (const std::string& folder : folders) {

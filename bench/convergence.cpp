@@ -143,15 +143,8 @@ int program(int argc, char** argv) {
        "all; own: without peers; parts: ESM with each model of light, with weights and without")  //
       ("seed", po::value(&seed)->default_value(1), "of the noise")                                //
       ("json", po::value(&file), "write everything there");
-  po::positional_options_description positions;
-  positions.add("sequence", 1);
-  po::variables_map given;
-  po::store(po::command_line_parser(argc, argv).options(options).positional(positions).run(), given);
-  po::notify(given);
-  if (given.count("help") > 0 || trials < 1) {
-    std::cout << options;
-    return given.count("help") > 0 ? 0 : 2;
-  }
+  const auto complete = [&] { return trials >= 1; };
+  if (const auto status = parse(argc, argv, options, "sequence", 1, complete)) return *status;
   const Setting setting = settingOf(image, input);
   geometry::Rectangle roi = roi_text.empty() ? setting.roi : parseRoi(roi_text);
   roi = middle(roi, side);
@@ -164,8 +157,7 @@ int program(int argc, char** argv) {
   }
 
   if (file.empty()) return 0;
-  std::ofstream stream(file);
-  if (!stream) throw std::runtime_error(file + ": cannot be written");
+  std::ofstream stream = create(file);
   write(stream, setting, roi.width, trials, curves);
   return 0;
 }

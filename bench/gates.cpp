@@ -113,20 +113,9 @@ int program(int argc, char** argv) {
       ("sequence", po::value(&folders)->composing(),
        "folder with frames/, truth.csv, areas.csv and scene.json")  //
       ("csv", po::value(&file), "write there instead of to the standard output");
-  po::positional_options_description positions;
-  positions.add("sequence", -1);
-  po::variables_map given;
-  po::store(po::command_line_parser(argc, argv).options(options).positional(positions).run(), given);
-  po::notify(given);
-  if (given.count("help") > 0 || folders.empty()) {
-    std::cout << options;
-    return given.count("help") > 0 ? 0 : 2;
-  }
-  std::ofstream stream;
-  if (!file.empty()) {
-    stream.open(file);
-    if (!stream) throw std::runtime_error(file + ": cannot be written");
-  }
+  const auto complete = [&] { return !folders.empty(); };
+  if (const auto status = parse(argc, argv, options, "sequence", -1, complete)) return *status;
+  std::ofstream stream = create(file);
   std::ostream& out = file.empty() ? std::cout : stream;
   out << "sequence,gates,frames,kept,lies,error_mean,error_worst,claimed_worst,covered,covered_rejected,clean,"
          "clean_rejected,darker,darker_rejected,brighter,brighter_rejected\n";

@@ -170,20 +170,9 @@ int program(int argc, char** argv) {
        "px, largest displacement's sigma; shifts go to twice that")         //
       ("seed", po::value(&seed)->default_value(1), "of the displacements")  //
       ("csv", po::value(&file), "write there instead of to the standard output");
-  po::positional_options_description positions;
-  positions.add("sequence", -1);
-  po::variables_map given;
-  po::store(po::command_line_parser(argc, argv).options(options).positional(positions).run(), given);
-  po::notify(given);
-  if (given.count("help") > 0 || folders.empty() || trials.every < 1) {
-    std::cout << options;
-    return given.count("help") > 0 ? 0 : 2;
-  }
-  std::ofstream stream;
-  if (!file.empty()) {
-    stream.open(file);
-    if (!stream) throw std::runtime_error(file + ": cannot be written");
-  }
+  const auto complete = [&] { return !folders.empty() && trials.every >= 1; };
+  if (const auto status = parse(argc, argv, options, "sequence", -1, complete)) return *status;
+  std::ofstream stream = create(file);
   std::ostream& out = file.empty() ? std::cout : stream;
   writeHeader(out);
   for (const std::string& folder : folders) {

@@ -4,6 +4,7 @@
 // Configurations: `none` is ESM as it was before Bourger et al. (2007); `published` adds the detection of occlusions as
 // they published it (eq. (1) to (5), 32 bins, tau_b = 0.5). Both follow every estimate, since the paper has no test of
 // it. `default` is this package's.
+#include <algorithm>
 #include <boost/program_options.hpp>
 #include <fstream>
 #include <iostream>
@@ -12,8 +13,8 @@
 
 #include "bench/support/arguments.h"
 #include "bench/support/configurations.h"
-#include "bench/support/gated_esm.h"
 #include "bench/support/sequence.h"
+#include "laparoscope_servo/tracking/region_aligner.h"
 #include "laparoscope_servo/tracking/region_tracker.h"
 
 namespace laparoscope_servo::bench {
@@ -43,34 +44,39 @@ void writeLine(std::ostream& out, int frame, const tracking::TrackResult& result
   out << '\n';
 }
 
-// The paper's tracker: every image starts where the last one ended, and what comes out is the estimate.
+// The paper's tracker: every image starts where the last one ended, with nothing else known from it, and what comes out
+// is the estimate.
 class PapersTracker {
  public:
   PapersTracker(const tracking::TrackerConfig& config, const cv::Mat& image, const geometry::Rectangle& roi)
-      : gated_(config, image, roi) {}
+      : aligner_(config) {
+    aligner_.setReference(image, roi);
+  }
 
   tracking::TrackResult track(const cv::Mat& image) {
-    const tracking::EsmResult found = gated_.align(image, g_);
-    const bool usable = GatedEsm::usable(found) && found.state.g.allFinite();
-    if (usable) g_ = found.state.g;
+    tracking::EsmState start;
+    start.g = g_;
+    aligner_.startAfresh();
+    const tracking::Alignment found = aligner_.align(image, start, nullptr, std::max(image.cols, image.rows));
+    const bool usable = (found.esm.status == tracking::EsmStatus::kConverged ||
+                         found.esm.status == tracking::EsmStatus::kMaxIterations) &&
+                        found.esm.state.g.allFinite();
+    if (usable) g_ = found.esm.state.g;
     tracking::TrackResult result;
     result.state = usable ? tracking::State::kTracking : tracking::State::kLost;
     result.g = g_;
-    result.corner_error = found.corner_error;
-    result.iterations = found.iterations;
-    const tracking::OcclusionGates& gates = gated_.gates();
+    result.corner_error = found.esm.corner_error;
+    result.iterations = found.esm.iterations;
+    result.visible_fraction = found.visible_fraction;
+    result.zncc = found.zncc;
+    const tracking::OcclusionGates& gates = aligner_.gates();
     result.areas = {gates.grid().rows(), gates.grid().columns(), gates.distances(), {}};
-    int kept = 0;
-    for (int k = 0; k < gates.grid().count(); ++k) {
-      result.areas.occluded.push_back(gates.occluded(k));
-      kept += gates.occluded(k) ? 0 : 1;
-    }
-    result.visible_fraction = static_cast<double>(kept) / gates.grid().count();
+    for (int k = 0; k < gates.grid().count(); ++k) result.areas.occluded.push_back(gates.occluded(k));
     return result;
   }
 
  private:
-  GatedEsm gated_;
+  tracking::RegionAligner aligner_;
   Eigen::Matrix3d g_ = Eigen::Matrix3d::Identity();
 };
 
@@ -83,26 +89,15 @@ int program(int argc, char** argv) {
       ("roi", po::value(&roi_text), "x,y,width,height in the first image; by default the sequence's")  //
       ("config", po::value(&configuration)->default_value("default"), "none, published or default")    //
       ("csv", po::value(&file), "write there instead of to the standard output");
-  po::positional_options_description positions;
-  positions.add("input", 1);
-  po::variables_map given;
-  po::store(po::command_line_parser(argc, argv).options(options).positional(positions).run(), given);
-  po::notify(given);
-  if (given.count("help") > 0 || input.empty()) {
-    std::cout << options;
-    return given.count("help") > 0 ? 0 : 2;
-  }
+  const auto complete = [&] { return !input.empty(); };
+  if (const auto status = parse(argc, argv, options, "input", 1, complete)) return *status;
   Sequence sequence(input);
   if (roi_text.empty() && !sequence.hasRoi())
     throw std::invalid_argument("no scene.json beside the images: --roi is needed");
   const geometry::Rectangle roi = roi_text.empty() ? sequence.roi() : parseRoi(roi_text);
   tracking::RegionTracker tracker(configurationNamed(configuration));
 
-  std::ofstream stream;
-  if (!file.empty()) {
-    stream.open(file);
-    if (!stream) throw std::runtime_error(file + ": cannot be written");
-  }
+  std::ofstream stream = create(file);
   std::ostream& out = file.empty() ? std::cout : stream;
   out.precision(12);
   std::unique_ptr<PapersTracker> papers;

@@ -12,10 +12,10 @@ import os
 import pathlib
 
 import make_sequences  # beside this file, as is reporting/
-from reporting import compare, convergence, gates, honesty, kernels, measuring, occlusion
+from reporting import channels, compare, convergence, gates, honesty, kernels, measuring, occlusion
 from reporting.document import Report
 
-PARTS = {"kernels": kernels, "compare": compare, "convergence": convergence, "honesty": honesty, "gates": gates, "occlusion": occlusion}
+PARTS = {"kernels": kernels, "compare": compare, "channels": channels, "convergence": convergence, "honesty": honesty, "gates": gates, "occlusion": occlusion}
 
 
 def arguments():

@@ -1,4 +1,4 @@
-// The image part: pyramid, warp, gradients.
+// The image part: pyramid and warp.
 #include "bench/kernels/kernel_bench.h"
 #include "laparoscope_servo/image/warp.h"
 
@@ -19,8 +19,9 @@ void pyramid(State& state) {
     benchmark::ClobberMemory();
     return 1;
   });
-  // Colour in, grey out and in again, coarser levels; the weights, and a 5 x 5 filter, separable, on a quarter.
-  roofline(state, 3 + 4 + 1.25 * 4 + 1.3, 5 + 1.3 * 0.75 * 10);
+  // Colour in, one channel out; two levels in again, each a quarter of that out. The channels' weights, three pixels
+  // along and across; for each level 1 4 6 4 1 across every second row, and along that for every second pixel.
+  roofline(state, 3 + 4 + (1 + 0.25) * (4 + 1), 5 + 2 * 4 + (1 + 0.25) * (7.0 / 2 + 6.0 / 4));
 }
 
 void warp(State& state) {
@@ -31,23 +32,12 @@ void warp(State& state) {
     benchmark::DoNotOptimize(image::warpBilinear(scene.current.level(0), g, patches.warped, patches.valid));
     return 1;
   });
-  roofline(state, 4 + 4 + 4, 8 + 9);  // image, patch, validity; the point with two divisions, three interpolations
-}
-
-void gradients(State& state) {
-  const Scene scene(state);
-  Patches patches(scene);
-  measure(state, scene.pixels(), [&] {
-    image::gradients(patches.reference, patches.reference_gx, patches.reference_gy);
-    benchmark::ClobberMemory();
-    return 1;
-  });
-  roofline(state, 3 * 4, 4);
+  // Image, patch, validity; the point with one division, its place between pixels, three interpolations.
+  roofline(state, 4 + 4 + 4, 9 + 2 + 9);
 }
 
 BENCHMARK(pyramid)->Name("kernel/pyramid")->Apply(sides);
 BENCHMARK(warp)->Name("kernel/warp")->Apply(sides);
-BENCHMARK(gradients)->Name("kernel/gradients")->Apply(sides);
 
 }  // namespace
 

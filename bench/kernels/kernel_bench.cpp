@@ -24,7 +24,7 @@ Scene::Scene(const benchmark::State& state)
 Patches::Patches(const Scene& scene) {
   for (image::Patch* patch : {&reference, &warped, &valid}) patch->resize(scene.side, scene.side);
   image::warpBilinear(scene.reference.level(0), scene.image_T_patch, reference, valid);
-  image::gradients(reference, reference_gx, reference_gy);
+  reference.extrapolate();
   image::warpBilinear(scene.current.level(0), scene.moved * scene.image_T_patch, warped, valid);
   warped.extrapolate();
 }

@@ -51,10 +51,10 @@ struct Scene {
   image::RegionPyramid reference, current;
 };
 
-// The ROI's patches, aligned but for the noise.
+// The ROI's patches, aligned but for the noise; reference and warped image have their margins.
 struct Patches {
   explicit Patches(const Scene& scene);
-  image::Patch reference, reference_gx, reference_gy, warped, valid;
+  image::Patch reference, warped, valid;
 };
 
 }  // namespace laparoscope_servo::bench

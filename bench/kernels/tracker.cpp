@@ -18,10 +18,19 @@ using benchmark::State;
 constexpr double kPi = 3.14159265358979;
 
 struct Gates {
-  explicit Gates(const Scene& scene) : gates(tracking::OcclusionConfig(), tracking::EsmConfig().saturation) {
-    image::warpNearest(scene.image, scene.image_T_patch, scene.size(), patch);
-    gates.setReference(patch);
+  explicit Gates(const Scene& scene)
+      : step(tracking::samplingStep(scene.size(), tracking::OcclusionConfig())),
+        gates(tracking::OcclusionConfig(), tracking::EsmConfig().saturation) {
+    sample(scene.image, scene.image_T_patch, scene.size());
+    gates.setReference(patch, scene.size());
   }
+  void sample(const cv::Mat& image, const Eigen::Matrix3d& image_T_patch, const cv::Size& size) {
+    Eigen::Matrix3d image_T_sample = image_T_patch;
+    image_T_sample.leftCols<2>() *= step;
+    const cv::Size samples((size.width + step - 1) / step, (size.height + step - 1) / step);
+    image::warpNearest(image, image_T_sample, samples, patch);
+  }
+  int step;
   tracking::OcclusionGates gates;
   image::ColourPatch patch;
 };
@@ -30,25 +39,29 @@ void colourGate(State& state) {
   const Scene scene(state);
   Gates g(scene);
   measure(state, scene.pixels(), [&] {
-    image::warpNearest(scene.seen, scene.moved * scene.image_T_patch, scene.size(), g.patch);
+    g.sample(scene.seen, scene.moved * scene.image_T_patch, scene.size());
     g.gates.observeColour(g.patch);
-    benchmark::DoNotOptimize(g.gates.weights().data);
+    benchmark::DoNotOptimize(g.gates.weights().row(0));
     return 1;
   });
-  // Image, patch, mask, weights; the point, and the feature with a root and a division.
-  roofline(state, 3 + 3 + 1 + 4, 8 + 20);
+  // Of each sample image, patch, validity and mask; of each pixel what is usable, and its weight. The sample's point,
+  // its feature with a root and three divisions and the bin of that; the pixel's weight.
+  const double samples = 1.0 / (g.step * g.step);
+  roofline(state, samples * (3 + 3 + 1 + 1) + 4 + 4, samples * (11 + 24) + 1);
 }
 
 void structureGate(State& state) {
   const Scene scene(state);
   const Patches patches(scene);
+  const tracking::PatchPair pair = {&patches.warped, &patches.reference};
   Gates g(scene);
   measure(state, scene.pixels(), [&] {
-    const int found = g.gates.observeStructure(patches.warped, patches.reference, patches.valid, 1.0, 2.0);
+    const int found = g.gates.observeStructure(&pair, 1, patches.valid, 1.0, 2.0);
     benchmark::DoNotOptimize(found);
     return 1;
   });
-  roofline(state, 4 * 4 + 1, 14);  // image, reference, what is valid, what is used, what is saturated
+  // Image, reference, what is valid, what is usable, what is both; that product, two weighted values, six sums.
+  roofline(state, 5 * 4, 1 + 2 + 9);
 }
 
 // Image by image, over a motion there and back.

@@ -55,7 +55,8 @@ def write_scores(report, rows):
                 f"{len(thrown)} times. {len(trials)} estimates came out, {(~right).sum()} of them wrong, a far greater share than in any video. "
                 "Precision: share of what passes the threshold that is right. Kept: share of the right ones that pass. `all three` is the "
                 "greatest of zncc, residual and predicted error, each over the limit that the tracker has for it: it accepts up to 1, and tests "
-                "more than that (visibility, shape, how far the estimate is from the prediction).")
+                "more than that (visibility, shape, how far the estimate is from the prediction). The predicted error "
+                "holds the residuals and the tracker's first guess of how things move: it has seen nothing move yet.")
     figure, axes = plt.subplots(1, 4, figsize=(17, 3.6))
     lines = []
     for axis, (name, (values, sign)) in zip(axes, scores(trials).items()):
@@ -92,8 +93,9 @@ def bins_of(predicted, error, ratio=1.6, fewest=8):
 
 def write_reliability(report, rows):
     report.text("### The error that is predicted", "`corner_error` says what standard deviation the worst corner has, in px, as root of the mean square of "
-                "its distance. Frames that are TRACKING, in bins of what was predicted: where the points lie on the line, the prediction is right; "
-                "above it, the tracker is too sure. The true error is that of whichever corner is worst in that frame, so that it is greater than that of a "
+                "its distance: by the residuals, of which those of a block of the ROI err together, and, but for what a search has found, by "
+                "what was expected of the motion. Frames that are TRACKING, in bins of what was predicted: where the points lie on the line, the "
+                "prediction is right; above it, the tracker is too sure. The true error is that of whichever corner is worst in that frame, so that it is greater than that of a "
                 "given one: for four corners as uncertain as each other by about 1.3.")
     figure, axis = plt.subplots(figsize=(5.4, 4.6))
     lines = []

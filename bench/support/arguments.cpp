@@ -1,5 +1,6 @@
 #include "bench/support/arguments.h"
 
+#include <boost/program_options.hpp>
 #include <iostream>
 #include <opencv2/core.hpp>
 #include <sstream>
@@ -45,6 +46,28 @@ std::vector<double> parseRange(const std::string& text) {
   std::vector<double> result;
   for (int k = 0; n[0] + k * step <= last + 1e-9 * step; ++k) result.push_back(n[0] + k * step);
   return result;
+}
+
+std::optional<int> parse(int argc, char** argv, const boost::program_options::options_description& options,
+                         const char* positional, int most, const std::function<bool()>& complete) {
+  namespace po = boost::program_options;
+  po::positional_options_description positions;
+  positions.add(positional, most);
+  po::variables_map given;
+  po::store(po::command_line_parser(argc, argv).options(options).positional(positions).run(), given);
+  po::notify(given);
+  const bool help = given.count("help") > 0;
+  if (!help && complete()) return {};
+  std::cout << options;
+  return help ? 0 : 2;
+}
+
+std::ofstream create(const std::string& file) {
+  std::ofstream stream;
+  if (file.empty()) return stream;
+  stream.open(file);
+  if (!stream) throw std::runtime_error(file + ": cannot be written");
+  return stream;
 }
 
 int run(const char* program, const std::function<int()>& body) {

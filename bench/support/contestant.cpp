@@ -13,21 +13,30 @@ constexpr double kPeriod = 0.04;  // s, between images
 
 class Ours : public Contestant {
  public:
-  std::string name() const override { return "ours"; }
+  explicit Ours(std::string name = "ours", const tracking::TrackerConfig& config = {})
+      : name_(std::move(name)), tracker_(config) {}
+  std::string name() const override { return name_; }
   void select(const cv::Mat& image, const geometry::Rectangle& roi) override {
     frame_ = 0;
     tracker_.reset();
     tracker_.select(image, 0.0, roi);
   }
   Verdict track(const cv::Mat& image) override {
-    const tracking::TrackResult result = tracker_.track(image, kPeriod * ++frame_);
+    const tracking::TrackResult& result = tracker_.track(image, kPeriod * ++frame_);
     return {result.g, result.state == tracking::State::kTracking};
   }
 
  private:
-  tracking::RegionTracker tracker_{tracking::TrackerConfig()};
+  std::string name_;
+  tracking::RegionTracker tracker_;
   int frame_ = 0;
 };
+
+std::unique_ptr<Contestant> oursIn(const char* name, tracking::TrackedChannels channels) {
+  tracking::TrackerConfig config;
+  config.esm.channels = channels;
+  return std::make_unique<Ours>(name, config);
+}
 
 }  // namespace
 
@@ -45,6 +54,10 @@ std::vector<std::unique_ptr<Contestant>> makeContestants(const std::vector<std::
   all.push_back(makeEcc());
   all.push_back(makeKlt());
   if (names.empty()) return all;
+  using tracking::TrackedChannels;
+  all.push_back(oursIn("ours_luma", TrackedChannels::kLuma));
+  all.push_back(oursIn("ours_strongest", TrackedChannels::kStrongest));
+  all.push_back(oursIn("ours_colour", TrackedChannels::kColour));
   std::vector<std::unique_ptr<Contestant>> chosen;
   for (const std::string& name : names) {
     const auto found = std::find_if(all.begin(), all.end(), [&](const auto& c) { return c && c->name() == name; });

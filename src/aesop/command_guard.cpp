@@ -4,28 +4,19 @@
 #include <cmath>
 #include <sstream>
 
+#include "laparoscope_servo/validation/range_checker.h"
+
 namespace laparoscope_servo::aesop {
 
-namespace {
-
-void check(const char* field, double value, double minimum, double maximum, std::vector<std::string>& errors) {
-  if (value >= minimum && value <= maximum) return;
-  std::ostringstream text;
-  text << field << " = " << value << ", expected a number from " << minimum << " to " << maximum;
-  errors.push_back(text.str());
-}
-
-}  // namespace
-
 std::vector<std::string> validate(const CommandConfig& config) {
-  std::vector<std::string> errors;
-  check("timeout", config.timeout, 0.02, 2.0, errors);
-  check("max_stamp_age", config.max_stamp_age, 0.02, 10.0, errors);
-  check("max_pan", config.max_pan, 1e-4, 1.0, errors);
-  check("max_tilt", config.max_tilt, 1e-4, 1.0, errors);
-  check("max_spin", config.max_spin, 1e-4, 1.0, errors);
-  check("max_insertion", config.max_insertion, 1e-5, 0.2, errors);
-  return errors;
+  validation::RangeChecker check;
+  check.range("timeout", config.timeout, 0.02, 2.0);
+  check.range("max_stamp_age", config.max_stamp_age, 0.02, 10.0);
+  check.range("max_pan", config.max_pan, 1e-4, 1.0);
+  check.range("max_tilt", config.max_tilt, 1e-4, 1.0);
+  check.range("max_spin", config.max_spin, 1e-4, 1.0);
+  check.range("max_insertion", config.max_insertion, 1e-5, 0.2);
+  return check.errors();
 }
 
 std::string CommandGuard::accept(const ScopeVelocity& velocity, double stamp, double stamp_now, double now) {

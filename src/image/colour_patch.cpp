@@ -1,7 +1,6 @@
 #include "laparoscope_servo/image/colour_patch.h"
 
 #include <algorithm>
-#include <opencv2/imgproc.hpp>
 #include <stdexcept>
 #include <string>
 
@@ -12,6 +11,7 @@ namespace laparoscope_servo::image {
 namespace {
 
 constexpr int kChunk = 256;  // pixels that a row is worked in
+constexpr int kMaxGrow = kChunk / 4;
 
 struct Row {
   float u0, u1;
@@ -57,6 +57,48 @@ int markBright(const unsigned char* __restrict b, const unsigned char* __restric
   return any;
 }
 
+LAPAROSCOPE_SERVO_CLONES
+void add(const unsigned char* __restrict from, int count, unsigned char* __restrict to) {
+#pragma omp simd
+  for (int i = 0; i < count; ++i) to[i] = static_cast<unsigned char>(to[i] | from[i]);
+}
+
+// Marks what is bright and grows it along the row. False when nothing is.
+bool markBrightRow(const unsigned char* b, const unsigned char* g, const unsigned char* r, int width, int threshold,
+                   int grow, unsigned char* mask) {
+  unsigned char bright[kChunk];
+  bool any = false;
+  const int inner = kChunk - 2 * grow;
+  std::fill_n(mask, width, static_cast<unsigned char>(0));
+  for (int first = 0; first < width; first += inner) {
+    const int count = std::min(inner, width - first);
+    const int begin = std::max(first - grow, 0);
+    const int end = std::min(first + count + grow, width);
+    if (markBright(b + begin, g + begin, r + begin, end - begin, threshold, bright) == 0) continue;
+    any = true;
+    for (int shift = -grow; shift <= grow; ++shift) {
+      const int low = std::max(first, begin - shift);
+      const int high = std::min(first + count, end - shift);
+      if (low < high) add(bright + (low + shift - begin), high - low, mask + low);
+    }
+  }
+  return any;
+}
+
+// In place: first from what lies below and still is as it was, then from what lies above and has not grown down yet.
+void growAcross(int grow, cv::Mat1b& mask) {
+  for (int j = 0; j < mask.rows; ++j) {
+    for (int k = 1; k <= std::min(grow, mask.rows - 1 - j); ++k) {
+      add(mask.ptr<unsigned char>(j + k), mask.cols, mask.ptr<unsigned char>(j));
+    }
+  }
+  for (int j = mask.rows - 1; j > 0; --j) {
+    for (int k = 1; k <= std::min(grow, j); ++k) {
+      add(mask.ptr<unsigned char>(j - k), mask.cols, mask.ptr<unsigned char>(j));
+    }
+  }
+}
+
 }  // namespace
 
 void warpNearest(const cv::Mat& image, const Eigen::Matrix3d& g, const cv::Size& size, ColourPatch& patch) {
@@ -99,17 +141,18 @@ void warpNearest(const cv::Mat& image, const Eigen::Matrix3d& g, const cv::Size&
 }
 
 void saturatedPixels(const ColourPatch& patch, int threshold, int grow, cv::Mat1b& mask) {
+  if (grow < 0 || grow > kMaxGrow) {
+    throw std::invalid_argument("growth of " + std::to_string(grow) + " px, expected 0 to " + std::to_string(kMaxGrow));
+  }
   mask.create(patch.size());
-  int any = 0;
+  bool any = false;
   for (int j = 0; j < mask.rows; ++j) {
     const unsigned char* blue = patch.blue.ptr<unsigned char>(j);
     const unsigned char* green = patch.has_colour ? patch.green.ptr<unsigned char>(j) : blue;
     const unsigned char* red = patch.has_colour ? patch.red.ptr<unsigned char>(j) : blue;
-    any |= markBright(blue, green, red, mask.cols, threshold, mask.ptr<unsigned char>(j));
+    any |= markBrightRow(blue, green, red, mask.cols, threshold, grow, mask.ptr<unsigned char>(j));
   }
-  if (any != 0 && grow > 0) {
-    cv::dilate(mask, mask, cv::getStructuringElement(cv::MORPH_RECT, cv::Size(2 * grow + 1, 2 * grow + 1)));
-  }
+  if (any) growAcross(grow, mask);
 }
 
 }  // namespace laparoscope_servo::image

@@ -67,12 +67,15 @@ int mirrored(int k, int size) {
   return std::clamp(k, 0, size - 1);
 }
 
+cv::Size halved(const cv::Size& size) { return {(size.width + 1) / 2, (size.height + 1) / 2}; }
+
 }  // namespace
 
-void RegionPyramid::Plane::resize(int width, int height) {
-  if (view.cols == width && view.rows == height) return;
-  data.resize(std::max(data.size(), static_cast<std::size_t>(width) * height));
-  view = cv::Mat1f(height, width, data.data());
+void RegionPyramid::Plane::resize(const cv::Size& size, const cv::Size& most) {
+  if (view.size() == size) return;
+  data.reserve(most.area());
+  data.resize(std::max(data.size(), static_cast<std::size_t>(size.area())));
+  view = cv::Mat1f(size.height, size.width, data.data());
 }
 
 // Rows are weighed and smoothed along, three at a time, and then across. Beyond the region they go on linearly, which leaves its
@@ -133,12 +136,15 @@ void RegionPyramid::build(const cv::Mat& image, const cv::Rect& region, int leve
   levels_ = levels;
   channels_ = image.channels() == 1 ? 1 : channels.count;
   planes_.resize(static_cast<std::size_t>(channels_) * levels_);
+  rows_.reserve(4 * (static_cast<std::size_t>(image.cols) + 2 * kPadding));
   for (int c = 0; c < channels_; ++c) {
     Plane* plane = planes_.data() + static_cast<std::size_t>(c) * levels_;
-    plane[0].resize(region_.width, region_.height);
+    cv::Size most = image.size();
+    plane[0].resize(region_.size(), most);
     smooth(image(region_), channels.weights[c], plane[0].view);
     for (int l = 1; l < levels_; ++l) {
-      plane[l].resize((plane[l - 1].view.cols + 1) / 2, (plane[l - 1].view.rows + 1) / 2);
+      most = halved(most);
+      plane[l].resize(halved(plane[l - 1].view.size()), most);
       halve(plane[l - 1].view, plane[l].view);
     }
   }

@@ -103,16 +103,6 @@ bool warpRows(const cv::Mat1f& image, const Eigen::Matrix3d& g, int width, int h
   return inside == width * height;
 }
 
-LAPAROSCOPE_SERVO_CLONES
-void differences(const float* __restrict row, const float* __restrict above, const float* __restrict below, int count,
-                 float* __restrict gx, float* __restrict gy) {
-#pragma omp simd
-  for (int i = 0; i < count; ++i) {
-    gx[i] = 0.5f * (row[i + 1] - row[i - 1]);
-    gy[i] = 0.5f * (below[i] - above[i]);
-  }
-}
-
 }  // namespace
 
 bool warpBilinear(const cv::Mat1f& image, const Eigen::Matrix3d& g, Patch& patch, Patch& valid) {
@@ -123,15 +113,6 @@ bool warpBilinear(const cv::Mat1f& image, const Eigen::Matrix3d& g, Patch& patch
 bool warpBilinear(const cv::Mat1f& image, const Eigen::Matrix3d& g, cv::Mat1f& patch, cv::Mat1f& valid) {
   return warpRows(image, g, patch.cols, patch.rows, [&](int j) { return patch.ptr<float>(j); },
                   [&](int j) { return valid.ptr<float>(j); });
-}
-
-void gradients(Patch& patch, Patch& gx, Patch& gy) {
-  patch.extrapolate();
-  gx.resize(patch.width(), patch.height());
-  gy.resize(patch.width(), patch.height());
-  for (int j = 0; j < patch.height(); ++j) {
-    differences(patch.row(j), patch.row(j - 1), patch.row(j + 1), patch.width(), gx.row(j), gy.row(j));
-  }
 }
 
 }  // namespace laparoscope_servo::image

@@ -4,42 +4,37 @@
 #include <limits>
 #include <sstream>
 
+#include "laparoscope_servo/validation/range_checker.h"
+
 namespace laparoscope_servo::servo {
 
 namespace {
 
-class Checker {
+class Checker : public validation::RangeChecker {
  public:
-  void inRange(const std::string& name, double value, double minimum, double maximum, const std::string& unit) {
-    if (value >= minimum && value <= maximum) return;  // false for NaN
-    std::ostringstream error;
-    error << name << " = " << value << ", expected a number from " << minimum << " to " << maximum << ' ' << unit;
-    errors.push_back(error.str());
-  }
+  using RangeChecker::range;
 
   // `angular` bounds pan, tilt and spin, `linear` bounds insertion.
-  void inRange(const std::string& group, const ScopeVelocity& value, double minimum, double angular, double linear,
-               const std::string& derivative) {
-    inRange(group + "/pan", value.pan, minimum, angular, "rad/" + derivative);
-    inRange(group + "/tilt", value.tilt, minimum, angular, "rad/" + derivative);
-    inRange(group + "/spin", value.spin, minimum, angular, "rad/" + derivative);
-    inRange(group + "/insertion", value.insertion, minimum, linear, "m/" + derivative);
+  void range(const std::string& group, const ScopeVelocity& value, double minimum, double angular, double linear,
+             const std::string& derivative) {
+    range(group + "/pan", value.pan, minimum, angular, "rad/" + derivative);
+    range(group + "/tilt", value.tilt, minimum, angular, "rad/" + derivative);
+    range(group + "/spin", value.spin, minimum, angular, "rad/" + derivative);
+    range(group + "/insertion", value.insertion, minimum, linear, "m/" + derivative);
   }
 
   void atLeast(const std::string& name, double value, const std::string& other_name, double other) {
     if (!(value < other)) return;
     std::ostringstream error;
     error << name << " = " << value << ", expected at least " << other_name << " = " << other;
-    errors.push_back(error.str());
+    add(error.str());
   }
-
-  std::vector<std::string> errors;
 };
 
 void checkDeadZone(const DeadZoneConfig& config, Checker& check) {
-  check.inRange("dead_zone/width", config.width, 0.0, 0.1, 0.02, "s");
-  check.inRange("dead_zone/stop", config.stop, 0.0, 0.1, 0.02, "s");
-  check.inRange("dead_zone/start", config.start, 0.0, 0.1, 0.02, "s");
+  check.range("dead_zone/width", config.width, 0.0, 0.1, 0.02, "s");
+  check.range("dead_zone/stop", config.stop, 0.0, 0.1, 0.02, "s");
+  check.range("dead_zone/start", config.start, 0.0, 0.1, 0.02, "s");
   check.atLeast("dead_zone/start/pan", config.start.pan, "dead_zone/stop/pan", config.stop.pan);
   check.atLeast("dead_zone/start/tilt", config.start.tilt, "dead_zone/stop/tilt", config.stop.tilt);
   check.atLeast("dead_zone/start/spin", config.start.spin, "dead_zone/stop/spin", config.stop.spin);
@@ -47,14 +42,14 @@ void checkDeadZone(const DeadZoneConfig& config, Checker& check) {
 }
 
 void checkSafety(const SafetyConfig& config, Checker& check) {
-  check.inRange("safety/max_task_error_age", config.max_task_error_age, 0.01, 1.0, "s");
-  check.inRange("safety/max_depth_age", config.max_depth_age, 0.01, 1.0, "s");
-  check.inRange("safety/min_depth", config.min_depth, 0.005, 0.5, "m");
-  check.inRange("safety/max_depth", config.max_depth, 0.005, 0.5, "m");
+  check.range("safety/max_task_error_age", config.max_task_error_age, 0.01, 1.0, "s");
+  check.range("safety/max_depth_age", config.max_depth_age, 0.01, 1.0, "s");
+  check.range("safety/min_depth", config.min_depth, 0.005, 0.5, "m");
+  check.range("safety/max_depth", config.max_depth, 0.005, 0.5, "m");
   check.atLeast("safety/max_depth", config.max_depth, "safety/min_depth", config.min_depth);
-  check.inRange("safety/max_lateral_offset", config.max_lateral_offset, 0.0, 0.1, "m");
-  check.inRange("safety/resume_time", config.resume_time, 0.0, 10.0, "s");
-  check.inRange("safety/max_period", config.max_period, 0.001, 1.0, "s");
+  check.range("safety/max_lateral_offset", config.max_lateral_offset, 0.0, 0.1, "m");
+  check.range("safety/resume_time", config.resume_time, 0.0, 10.0, "s");
+  check.range("safety/max_period", config.max_period, 0.001, 1.0, "s");
 }
 
 }  // namespace
@@ -62,16 +57,16 @@ void checkSafety(const SafetyConfig& config, Checker& check) {
 std::vector<std::string> validate(const ControllerConfig& config) {
   Checker check;
   // No negative gain: it would drive the arm away from the target.
-  check.inRange("gains/pan", config.gains.pan, 0.0, 5.0, "1/s");
-  check.inRange("gains/tilt", config.gains.tilt, 0.0, 5.0, "1/s");
-  check.inRange("gains/spin", config.gains.spin, 0.0, 5.0, "1/s");
-  check.inRange("gains/insertion", config.gains.insertion, 0.0, 0.5, "m/s");
+  check.range("gains/pan", config.gains.pan, 0.0, 5.0, "1/s");
+  check.range("gains/tilt", config.gains.tilt, 0.0, 5.0, "1/s");
+  check.range("gains/spin", config.gains.spin, 0.0, 5.0, "1/s");
+  check.range("gains/insertion", config.gains.insertion, 0.0, 0.5, "m/s");
   checkDeadZone(config.dead_zone, check);
   // Not zero: since all components are scaled together, it would stop the others too. A gain of zero keeps one still.
-  check.inRange("limits/velocity", config.limits.velocity, 1e-6, 1.0, 0.1, "s");
-  check.inRange("limits/acceleration", config.limits.acceleration, 1e-6, 100.0, 10.0, "s^2");
+  check.range("limits/velocity", config.limits.velocity, 1e-6, 1.0, 0.1, "s");
+  check.range("limits/acceleration", config.limits.acceleration, 1e-6, 100.0, 10.0, "s^2");
   checkSafety(config.safety, check);
-  return check.errors;
+  return check.errors();
 }
 
 }  // namespace laparoscope_servo::servo

@@ -5,6 +5,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "laparoscope_servo/validation/range_checker.h"
+
 namespace laparoscope_servo::sim {
 
 namespace {
@@ -19,29 +21,22 @@ constexpr double kAtRest =
 constexpr double kLongest = 60.0;  // s of one hand movement
 constexpr double kEpsilon = 1e-9;  // s
 
-void check(const std::string& field, double value, double minimum, double maximum, std::vector<std::string>& errors) {
-  if (value >= minimum && value <= maximum) return;
-  std::ostringstream text;
-  text << field << " = " << value << ", expected a number from " << minimum << " to " << maximum;
-  errors.push_back(text.str());
-}
-
 }  // namespace
 
 std::vector<std::string> validate(const ArmConfig& config) {
-  std::vector<std::string> errors;
+  validation::RangeChecker check;
   for (int k = 0; k < kJoints; ++k) {
     const std::string joint = "[" + std::to_string(k) + "]";
-    check("start" + joint, config.start[k], -100.0, 100.0, errors);
-    check("dead_zone" + joint, config.dead_zone[k], 0.0, 1.0, errors);
+    check.range("start" + joint, config.start[k], -100.0, 100.0);
+    check.range("dead_zone" + joint, config.dead_zone[k], 0.0, 1.0);
   }
   for (int k = 0; k < 3; ++k) {
-    check("insertion_point[" + std::to_string(k) + "]", config.insertion_point[k], -10.0, 10.0, errors);
+    check.range("insertion_point[" + std::to_string(k) + "]", config.insertion_point[k], -10.0, 10.0);
   }
-  check("delay", config.delay, 0.0, 2.0, errors);
-  check("breakaway", config.breakaway, 1.0, 10.0, errors);
-  check("time_constant", config.time_constant, 0.0, 1.0, errors);
-  return errors;
+  check.range("delay", config.delay, 0.0, 2.0);
+  check.range("breakaway", config.breakaway, 1.0, 10.0);
+  check.range("time_constant", config.time_constant, 0.0, 1.0);
+  return check.errors();
 }
 
 Arm::Arm(const aesop::Kinematics& kinematics, const ArmConfig& config) : kinematics_(kinematics), config_(config) {

@@ -60,7 +60,7 @@ class RegionTracker::Implementation {
         feature_search_(config.search) {}
 
   TrackResult select(const cv::Mat& image, double stamp, const geometry::Rectangle& roi);
-  TrackResult track(const cv::Mat& image, double stamp);
+  const TrackResult& track(const cv::Mat& image, double stamp);
   void reset();
   cv::Mat occlusionMask() const;
   bool hasRoi() const { return state_ != State::kIdle; }
@@ -79,8 +79,8 @@ class RegionTracker::Implementation {
   std::string doubtWhatWasFound(const Attempt& found);
   void keepView(const cv::Mat& image, const Attempt& seen);
   void decide(const Attempt& best, const MotionPrior& prior, double stamp);
-  TrackResult report(const Attempt& attempt, double stamp) const;
-  TrackResult idle(double stamp, const std::string& reason) const;
+  const TrackResult& report(const Attempt& attempt);
+  const TrackResult& idle(double stamp, const std::string& reason);
 
   TrackerConfig config_;
   RegionAligner aligner_;
@@ -97,6 +97,7 @@ class RegionTracker::Implementation {
   int confirmations_ = 0;
   EsmState candidate_;                 // while searching: what is being confirmed
   unsigned search_turn_ = 0;           // images searched since the ROI was lost
+  TrackResult result_;                 // of the last image
 };
 
 geometry::Rectangle RegionTracker::Implementation::checkedRoi(const cv::Mat& image, const geometry::Rectangle& roi) const {
@@ -141,12 +142,12 @@ TrackResult RegionTracker::Implementation::select(const cv::Mat& image, double s
   attempt.evidence.esm.corner_error = error;
   attempt.evidence.visible_fraction = cv::sum(aligner_.weights())[0] / roi.width / roi.height;
   attempt.evidence.zncc = 1.0;
-  TrackResult result = report(attempt, stamp);
+  TrackResult result = report(attempt);
   result.selected_now = true;
   return result;
 }
 
-TrackResult RegionTracker::Implementation::track(const cv::Mat& image, double stamp) {
+const TrackResult& RegionTracker::Implementation::track(const cv::Mat& image, double stamp) {
   checkImage(image);
   if (state_ == State::kIdle) return idle(stamp, "no region of interest selected");
   if (!std::isfinite(stamp)) throw std::invalid_argument("image stamp is not finite");
@@ -174,7 +175,7 @@ TrackResult RegionTracker::Implementation::track(const cv::Mat& image, double st
   keepView(image, best);
   aligner_.advance();
   last_stamp_ = stamp;
-  return report(best, stamp);
+  return report(best);
 }
 
 // With a prior when the ROI was tracked until the image before; without when it is searched for.
@@ -296,8 +297,10 @@ void RegionTracker::Implementation::decide(const Attempt& best, const MotionPrio
   last_ = e.esm.state;
 }
 
-TrackResult RegionTracker::Implementation::report(const Attempt& attempt, double stamp) const {
-  TrackResult result = idle(stamp, attempt.doubt);
+// Keeps the memory of the result before.
+const TrackResult& RegionTracker::Implementation::report(const Attempt& attempt) {
+  TrackResult& result = result_;
+  result.reason = attempt.doubt;
   result.state = state_;
   if (state_ != State::kTracking && attempt.doubt.empty()) result.reason = "found, waits for confirmation";
   result.g = state_ == State::kTracking ? last_.g : (confirmations_ > 0 ? candidate_.g : last_.g);
@@ -313,16 +316,19 @@ TrackResult RegionTracker::Implementation::report(const Attempt& attempt, double
   const OcclusionGates& gates = aligner_.gates();
   result.colour_used = gates.colourUsed();
   const image::AreaGrid& grid = gates.grid();
-  result.areas = {grid.rows(), grid.columns(), gates.distances(), std::vector<bool>(grid.count())};
+  result.areas.rows = grid.rows();
+  result.areas.columns = grid.columns();
+  result.areas.distance = gates.distances();
+  result.areas.occluded.resize(grid.count());
   for (int area = 0; area < grid.count(); ++area) result.areas.occluded[area] = gates.occluded(area);
   return result;
 }
 
-TrackResult RegionTracker::Implementation::idle(double stamp, const std::string& reason) const {
-  TrackResult result;
-  result.reason = reason;
-  result.reference_stamp = stamp;
-  return result;
+const TrackResult& RegionTracker::Implementation::idle(double stamp, const std::string& reason) {
+  result_ = TrackResult();
+  result_.reason = reason;
+  result_.reference_stamp = stamp;
+  return result_;
 }
 
 void RegionTracker::Implementation::reset() { *this = Implementation(config_); }
@@ -363,7 +369,7 @@ RegionTracker& RegionTracker::operator=(RegionTracker&&) noexcept = default;
 TrackResult RegionTracker::select(const cv::Mat& image, double stamp, const geometry::Rectangle& roi) {
   return implementation_->select(image, stamp, roi);
 }
-TrackResult RegionTracker::track(const cv::Mat& image, double stamp) { return implementation_->track(image, stamp); }
+const TrackResult& RegionTracker::track(const cv::Mat& image, double stamp) { return implementation_->track(image, stamp); }
 void RegionTracker::reset() { implementation_->reset(); }
 cv::Mat RegionTracker::occlusionMask() const { return implementation_->occlusionMask(); }
 bool RegionTracker::hasRoi() const { return implementation_->hasRoi(); }

@@ -1,27 +1,11 @@
 #include "laparoscope_servo/tracking/tracker_config.h"
 
-#include <sstream>
+#include "laparoscope_servo/validation/range_checker.h"
 
 namespace laparoscope_servo::tracking {
 
-namespace {
-
-class Checker {
- public:
-  template <typename T>
-  void range(const char* name, T value, T minimum, T maximum) {
-    if (value >= minimum && value <= maximum) return;  // false for NaN
-    std::ostringstream error;
-    error << name << " = " << value << ", expected " << minimum << " to " << maximum;
-    errors.push_back(error.str());
-  }
-  std::vector<std::string> errors;
-};
-
-}  // namespace
-
 std::vector<std::string> validate(const TrackerConfig& c) {
-  Checker check;
+  validation::RangeChecker check;
   check.range("occlusion/rows", c.occlusion.rows, 2, 64);
   check.range("occlusion/columns", c.occlusion.columns, 2, 64);
   check.range("occlusion/bins", c.occlusion.bins, 4, 256);
@@ -48,7 +32,7 @@ std::vector<std::string> validate(const TrackerConfig& c) {
   check.range("velocity_damping", c.velocity_damping, 0.0, 1.0);
   check.range("min_roi_side", c.min_roi_side, 8, 1000);
   check.range("min_texture", c.min_texture, 0.01, 10.0);
-  return check.errors;
+  return check.errors();
 }
 
 }  // namespace laparoscope_servo::tracking

@@ -21,7 +21,8 @@ Vector8d sl3Vee(const Eigen::Matrix3d& a);
 // exp(A(x)), determinant 1 to rounding. Finite for finite x; not finite otherwise.
 Eigen::Matrix3d sl3Exp(const Vector8d& x);
 
-// The principal logarithm's coordinates. Defined for G with determinant 1 and no eigenvalue on the closed negative real axis.
+// The principal logarithm's coordinates. Defined for G with determinant 1 and no eigenvalue on the closed negative real axis; not
+// finite for another.
 Vector8d sl3Log(const Eigen::Matrix3d& g);
 
 // g / cbrt(det g): the same homography with determinant 1. Throws std::invalid_argument when g is not finite or its

@@ -19,7 +19,8 @@ struct ColourPatch {
 // type throws std::invalid_argument. Where the denominator of g is not positive, nothing is valid.
 void warpNearest(const cv::Mat& image, const Eigen::Matrix3d& g, const cv::Size& size, ColourPatch& patch);
 
-// 255 where any channel is at least `threshold` (grey levels), grown by `grow` px in every direction; 0 elsewhere. Highlights move
+// 255 where any channel is at least `threshold` (grey levels), grown by `grow` px (0 to 64, else std::invalid_argument) in every direction; 0
+// elsewhere. Highlights move
 // with the lamp rather than with the tissue, and their rims are bleached.
 void saturatedPixels(const ColourPatch& patch, int threshold, int grow, cv::Mat1b& mask);
 

@@ -44,11 +44,12 @@ class RegionPyramid {
   const cv::Rect& region() const { return region_; }
 
  private:
-  // Regions change in size by a pixel or two from image to image; the memory stays.
+  // Regions change in size from image to image; the memory stays. Enough is asked for to hold the whole image, and what is not used
+  // of it is not touched either.
   struct Plane {
     cv::Mat1f view;
     std::vector<float> data;
-    void resize(int width, int height);
+    void resize(const cv::Size& size, const cv::Size& most);
   };
   void smooth(const cv::Mat& image, const ChannelWeights& weights, cv::Mat1f& level);
   void halve(const cv::Mat1f& fine, cv::Mat1f& coarse);

@@ -1,4 +1,4 @@
-// Samples an image through a homography, and differentiates the result.
+// Samples an image through a homography.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,8 +15,5 @@ bool warpBilinear(const cv::Mat1f& image, const Eigen::Matrix3d& g, Patch& patch
 
 // The same for patches without a margin.
 bool warpBilinear(const cv::Mat1f& image, const Eigen::Matrix3d& g, cv::Mat1f& patch, cv::Mat1f& valid);
-
-// Central differences, per pixel of the patch; one-sided at its border. Writes the patch's margin.
-void gradients(Patch& patch, Patch& gx, Patch& gy);
 
 }  // namespace laparoscope_servo::image

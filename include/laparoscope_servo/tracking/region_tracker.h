@@ -38,7 +38,7 @@ struct TrackResult {
   double visible_fraction = 0.0;                    // 0 to 1, share of the ROI's pixels that the estimate used
   double zncc = 0.0;                                // -1 to 1, over those pixels, the mean of each area taken out
   int iterations = 0;                               // of ESM, all levels
-  double corner_error = 0.0;                        // px, standard deviation of the worst corner that the residuals predict
+  double corner_error = 0.0;                        // px, standard deviation expected of the worst corner, by residuals and motion
   double sigma = 0.0;                               // grey levels, robust standard deviation of the residual
   double gain = 1.0;                                // gain * image + bias has the light of the reference
   double bias = 0.0;                                // grey levels
@@ -61,8 +61,9 @@ class RegionTracker {
 
   // Processes the next image. A stamp before the last one, or an image of another size than the reference, resets to IDLE,
   // with the reason. Throws std::invalid_argument for an image that is empty or of another type than those above; the
-  // tracker then goes on as if the image had not come.
-  TrackResult track(const cv::Mat& image, double stamp);
+  // tracker then goes on as if the image had not come. Asks for no memory while it tracks, but for a view that it stores now and then.
+  // The result is the tracker's own: it lasts until the next call of select(), track() or reset(), or until the tracker is moved from.
+  const TrackResult& track(const cv::Mat& image, double stamp);
 
   // Forgets the ROI.
   void reset();

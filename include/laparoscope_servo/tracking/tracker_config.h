@@ -52,7 +52,7 @@ struct QualityConfig {
   double min_zncc = 0.5;              // 0 to 1, over the pixels used; the tracker asks for more of a ROI that was better
   double min_visible_fraction = 0.1;  // 0 to 1, share of the ROI's pixels used
   double min_return_fraction = 0.3;   // 0 to 1, the same to be believed again after a loss
-  double max_corner_error = 1.5;      // px, 0.01 to 100: standard deviation of the worst corner that the residuals predict
+  double max_corner_error = 1.5;      // px, 0.01 to 100: standard deviation expected of the worst corner, by residuals and motion
   double max_area_ratio = 6.0;        // 1.01 to 1000: area of the ROI in the image over that in the reference, or its inverse
   double max_jump = 0.35;             // 0.01 to 10 of the ROI's diagonal: how far a corner may be from its prediction; less when
                                       // little of the ROI is visible

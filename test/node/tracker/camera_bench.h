@@ -4,6 +4,7 @@
 #include <cv_bridge/cv_bridge.h>
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <geometry_msgs/PolygonStamped.h>
+#include <gtest/gtest.h>
 #include <laparoscope_servo/AreaSelection.h>
 #include <laparoscope_servo/Homography.h>
 #include <laparoscope_servo/SelectRoi.h>
@@ -166,5 +167,17 @@ class DiagnosticsListener {
   diagnostic_msgs::DiagnosticStatus last_;
   ros::Subscriber subscriber_;
 };
+
+// The body of main(): tests wait for messages that other threads take in.
+inline int runTests(int argc, char** argv, const std::string& node) {
+  testing::InitGoogleTest(&argc, argv);
+  ros::init(argc, argv, node);
+  const ros::NodeHandle keep_alive;
+  ros::AsyncSpinner spinner(2);
+  spinner.start();
+  const int result = RUN_ALL_TESTS();
+  ros::shutdown();
+  return result;
+}
 
 }  // namespace laparoscope_servo::test_support

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <functional>
 #include <iostream>
 #include <limits>
 
@@ -30,6 +31,23 @@ void report(const std::string& cause, std::vector<double> times) {
 // Turns the other way round in every run, so that the arm stays in the middle of its range.
 double direction(int run) {
   return run % 2 == 0 ? kPan : -kPan;
+}
+
+using Step = std::function<void(int run)>;
+
+// `cause` befalls the moving arm; what follows leaves things as they were before.
+void measure(AesopBench& bench, const std::string& name, const Step& cause, const Step& afterwards) {
+  std::vector<double> times;
+  for (int run = 0; run < runs(); ++run) {
+    ASSERT_TRUE(bench.waitFor([&] { return bench.isUp(); }));
+    ASSERT_TRUE(bench.enable());
+    ASSERT_TRUE(bench.commandUntil([&] { return bench.jointsMove(); }, direction(run)));
+    cause(run);
+    times.push_back(bench.timeToStandStill());
+    afterwards(run);
+    if (testing::Test::HasFatalFailure()) return;
+  }
+  report(name, times);
 }
 
 TEST(AesopStop, controllerKilled) {
@@ -68,52 +86,38 @@ TEST(AesopStop, nodeKilled) {
 
 TEST(AesopStop, nodeStopped) {
   AesopBench bench;
-  std::vector<double> times;
-  for (int run = 0; run < runs(); ++run) {
-    ASSERT_TRUE(bench.enable());
-    ASSERT_TRUE(bench.commandUntil([&] { return bench.jointsMove(); }, direction(run)));
-    bench.node().kill(SIGSTOP);
-    times.push_back(bench.timeToStandStill());
-    EXPECT_EQ(bench.motionWithin(0.5), 0.0);
-    bench.node().kill(SIGCONT);
-    EXPECT_EQ(bench.motionWithin(0.5, [&] { bench.send(0.0, 0.0, ros::Time::now()); }), 0.0)
-        << "old commands, after it woke up";
-    EXPECT_TRUE(bench.waitFor([&] { return bench.call("disable").success; }));
-  }
-  report("aesop node stopped (SIGSTOP)", times);
+  measure(
+      bench, "aesop node stopped (SIGSTOP)", [&](int) { bench.node().kill(SIGSTOP); },
+      [&](int) {
+        EXPECT_EQ(bench.motionWithin(0.5), 0.0);
+        bench.node().kill(SIGCONT);
+        EXPECT_EQ(bench.motionWithin(0.5, [&] { bench.send(0.0, 0.0, ros::Time::now()); }), 0.0)
+            << "old commands, after it woke up";
+        EXPECT_TRUE(bench.waitFor([&] { return bench.call("disable").success; }));
+      });
 }
 
 TEST(AesopStop, lineCut) {
   AesopBench bench;
-  std::vector<double> times;
-  for (int run = 0; run < runs(); ++run) {
-    ASSERT_TRUE(bench.waitFor([&] { return bench.isUp(); }));
-    ASSERT_TRUE(bench.enable());
-    ASSERT_TRUE(bench.commandUntil([&] { return bench.jointsMove(); }, direction(run)));
-    bench.truth().fault("hangup");
-    times.push_back(bench.timeToStandStill());
-    ASSERT_TRUE(bench.waitFor([&] { return bench.stateIs("DISABLED"); }));
-    bench.truth().fault("return");
-  }
-  report("line cut", times);
+  measure(
+      bench, "line cut", [&](int) { bench.truth().fault("hangup"); },
+      [&](int) {
+        ASSERT_TRUE(bench.waitFor([&] { return bench.stateIs("DISABLED"); }));
+        bench.truth().fault("return");
+      });
 }
 
 TEST(AesopStop, commandNotFinite) {
+  using Limits = std::numeric_limits<double>;
   AesopBench bench;
-  std::vector<double> times;
-  for (int run = 0; run < runs(); ++run) {
-    ASSERT_TRUE(bench.enable());
-    ASSERT_TRUE(bench.commandUntil([&] { return bench.jointsMove(); }, direction(run)));
-    bench.send(std::numeric_limits<double>::quiet_NaN(), 0.0, ros::Time::now());
-    times.push_back(bench.timeToStandStill());
-    EXPECT_TRUE(bench.waitFor([&] { return bench.state_->reason.find("not finite") != std::string::npos; }))
-        << bench.state_->reason;
-    EXPECT_EQ(
-        bench.motionWithin(0.3, [&] { bench.send(0.0, std::numeric_limits<double>::infinity(), ros::Time::now()); }),
-        0.0);
-    EXPECT_TRUE(bench.call("disable").success);
-  }
-  report("command not finite", times);
+  measure(
+      bench, "command not finite", [&](int) { bench.send(Limits::quiet_NaN(), 0.0, ros::Time::now()); },
+      [&](int) {
+        EXPECT_TRUE(bench.waitFor([&] { return bench.state_->reason.find("not finite") != std::string::npos; }))
+            << bench.state_->reason;
+        EXPECT_EQ(bench.motionWithin(0.3, [&] { bench.send(0.0, Limits::infinity(), ros::Time::now()); }), 0.0);
+        EXPECT_TRUE(bench.call("disable").success);
+      });
 }
 
 TEST(AesopStop, everyByteCorrupted) {
@@ -136,17 +140,13 @@ TEST(AesopStop, everyByteCorrupted) {
 
 TEST(AesopStop, faultOfTheRobot) {
   AesopBench bench;
-  std::vector<double> times;
-  for (int run = 0; run < runs(); ++run) {
-    ASSERT_TRUE(bench.enable());
-    ASSERT_TRUE(bench.commandUntil([&] { return bench.jointsMove(); }, direction(run)));
-    bench.truth().fault("bits", 1);
-    times.push_back(bench.timeToStandStill());
-    ASSERT_TRUE(bench.waitFor([&] { return bench.stateIs("FAULT"); }));
-    bench.truth().fault("bits", 0);
-    ASSERT_TRUE(bench.call("clear_fault").success);
-  }
-  report("fault of the robot", times);
+  measure(
+      bench, "fault of the robot", [&](int) { bench.truth().fault("bits", 1); },
+      [&](int) {
+        ASSERT_TRUE(bench.waitFor([&] { return bench.stateIs("FAULT"); }));
+        bench.truth().fault("bits", 0);
+        ASSERT_TRUE(bench.call("clear_fault").success);
+      });
 }
 
 // Stands in for a controller: commands a pan of ~pan rad/s at 25 Hz until it is killed.

@@ -96,6 +96,23 @@ TEST(Sl3, LogarithmUndoesTheExponentialNearTheIdentity) {
   EXPECT_EQ(sl3Log(Eigen::Matrix3d::Identity()), Vector8d::Zero());
 }
 
+TEST(Sl3, ExponentialUndoesTheLogarithmFarFromTheIdentity) {
+  int far = 0;
+  for (const Vector8d& x : elements()) {
+    const Eigen::Matrix3d g = sl3Exp(x);
+    if ((g - Eigen::Matrix3d::Identity()).norm() > 1.0) ++far;
+    EXPECT_NEAR((sl3Exp(sl3Log(g)) - g).norm(), 0.0, 1e-11 * g.norm()) << x.transpose();
+  }
+  EXPECT_GT(far, 10);
+}
+
+TEST(Sl3, LogarithmOfWhatHasNoneIsNotFinite) {
+  EXPECT_FALSE(sl3Log(Eigen::Vector3d(-1.0, -2.0, 0.5).asDiagonal()).allFinite());
+  EXPECT_FALSE(sl3Log(Eigen::Matrix3d::Zero()).allFinite());
+  EXPECT_FALSE(sl3Log(Eigen::Matrix3d::Constant(std::numeric_limits<double>::quiet_NaN())).allFinite());
+  EXPECT_FALSE(sl3Log(Eigen::Matrix3d::Constant(std::numeric_limits<double>::infinity())).allFinite());
+}
+
 // x[0] and x[1] shift along u and v: what the order of the generators means in an image.
 TEST(Sl3, FirstTwoCoordinatesAreTranslations) {
   Vector8d x = Vector8d::Zero();

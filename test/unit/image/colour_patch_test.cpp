@@ -17,7 +17,9 @@ Eigen::Matrix3d shift(double x, double y) {
   return g;
 }
 
-bool equal(const cv::Mat& a, const cv::Mat& b) { return a.type() == b.type() && cv::norm(a, b, cv::NORM_INF) == 0.0; }
+bool equal(const cv::Mat& a, const cv::Mat& b) {
+  return a.type() == b.type() && cv::norm(a, b, cv::NORM_INF) == 0.0;
+}
 
 ColourPatch warped(const cv::Mat& image, const Eigen::Matrix3d& g, const cv::Size& size) {
   ColourPatch patch;
@@ -86,6 +88,30 @@ TEST(SaturatedPixels, AnyChannelCountsAndTheMaskGrows) {
   EXPECT_EQ(mask(7, 10), 0);
   saturatedPixels(patch, 256, 2, mask);
   EXPECT_EQ(cv::countNonZero(mask), 0);
+}
+
+// OpenCV's dilation is another implementation of the same. Narrower than the growth, and wider than the chunks of a
+// row.
+TEST(SaturatedPixels, GrowAsADilationWithASquare) {
+  cv::RNG rng(5);
+  for (const cv::Size& size : {cv::Size(1, 1), cv::Size(3, 40), cv::Size(40, 2), cv::Size(700, 50)}) {
+    for (const int grow : {0, 1, 2, 5, 64}) {
+      cv::Mat1b image(size);
+      rng.fill(image, cv::RNG::UNIFORM, 0, 255);
+      image.setTo(0, image < 252);
+      cv::Mat1b mask, expected = image >= 253;
+      if (grow > 0) cv::dilate(expected, expected, cv::Mat1b::ones(2 * grow + 1, 2 * grow + 1));
+      saturatedPixels(warped(image, shift(0, 0), size), 253, grow, mask);
+      EXPECT_EQ(cv::norm(mask, expected, cv::NORM_INF), 0.0) << size << " by " << grow;
+    }
+  }
+}
+
+TEST(SaturatedPixels, RefuseAGrowthOutOfRange) {
+  const ColourPatch patch = warped(cv::Mat(5, 5, CV_8UC1, cv::Scalar(1)), shift(0, 0), cv::Size(5, 5));
+  cv::Mat1b mask;
+  EXPECT_THROW(saturatedPixels(patch, 250, -1, mask), std::invalid_argument);
+  EXPECT_THROW(saturatedPixels(patch, 250, 65, mask), std::invalid_argument);
 }
 
 TEST(SaturatedPixels, TakesGreyImages) {

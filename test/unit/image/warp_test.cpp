@@ -86,13 +86,6 @@ TEST(WarpBilinear, TakesAnImageOfOnePixel) {
   EXPECT_EQ(valid(1, 1), 0.0f);
 }
 
-Patch patchOf(const cv::Mat1f& image) {
-  Patch patch;
-  patch.resize(image.cols, image.rows);
-  image.copyTo(patch.view());
-  return patch;
-}
-
 TEST(WarpBilinear, GivesTheSameWithAndWithoutAMargin) {
   const cv::Mat1f image = bilinearImage(80, 60);
   Eigen::Matrix3d g;
@@ -105,39 +98,6 @@ TEST(WarpBilinear, GivesTheSameWithAndWithoutAMargin) {
   EXPECT_FALSE(warpBilinear(image, g, plain, plain_valid));
   EXPECT_EQ(cv::norm(patch.view(), plain, cv::NORM_INF), 0.0);
   EXPECT_EQ(cv::norm(valid.view(), plain_valid, cv::NORM_INF), 0.0);
-}
-
-TEST(Gradients, AreTheSlopesOfAPlaneEverywhere) {
-  Patch patch = patchOf(bilinearImage(12, 9)), gx, gy;
-  gradients(patch, gx, gy);
-  for (int j = 0; j < 9; ++j) {
-    for (int i = 0; i < 12; ++i) {
-      EXPECT_FLOAT_EQ(gx(j, i), 0.5f);
-      EXPECT_FLOAT_EQ(gy(j, i), -0.25f);
-    }
-  }
-}
-
-TEST(Gradients, AreCentralDifferencesWithinThePatchAndOneSidedAtItsBorder) {
-  cv::Mat1f image(9, 12);
-  for (int j = 0; j < 9; ++j) {
-    for (int i = 0; i < 12; ++i) image(j, i) = static_cast<float>(i * i - 2 * j * j);  // whose central differences are exact
-  }
-  Patch patch = patchOf(image), gx, gy;
-  gradients(patch, gx, gy);
-  EXPECT_FLOAT_EQ(gx(4, 5), 10.0f);
-  EXPECT_FLOAT_EQ(gy(4, 5), -16.0f);
-  EXPECT_FLOAT_EQ(gx(4, 0), image(4, 1) - image(4, 0));
-  EXPECT_FLOAT_EQ(gx(4, 11), image(4, 11) - image(4, 10));
-  EXPECT_FLOAT_EQ(gy(0, 5), image(1, 5) - image(0, 5));
-  EXPECT_FLOAT_EQ(gy(8, 5), image(8, 5) - image(7, 5));
-}
-
-TEST(Gradients, AreZeroForASinglePixel) {
-  Patch patch = patchOf(cv::Mat1f(1, 1, 5.0f)), gx, gy;
-  gradients(patch, gx, gy);
-  EXPECT_EQ(gx(0, 0), 0.0f);
-  EXPECT_EQ(gy(0, 0), 0.0f);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "laparoscope_servo/image/pyramid.h"
 #include "laparoscope_servo/image/warp.h"
 #include "laparoscope_servo/tracking/colour_gate.h"
+#include "laparoscope_servo/tracking/esm_level.h"
 #include "laparoscope_servo/tracking/occlusion_gates.h"
 #include "laparoscope_servo/tracking/structure_gate.h"
 
@@ -58,13 +59,6 @@ void warp(const Inputs& inputs, Outputs& outputs) {
     append(plane, outputs.colours);
 }
 
-void differentiate(const Inputs& inputs, Outputs& outputs) {
-  image::Patch patch = patchOf(inputs.seen), gx, gy;
-  image::gradients(patch, gx, gy);
-  append(gx.view(), outputs.gradient);
-  append(gy.view(), outputs.gradient);
-}
-
 void buildPyramid(const Inputs& inputs, Outputs& outputs) {
   image::RegionPyramid pyramid;
   pyramid.build(inputs.image, cv::Rect(cv::Point(0, 0), inputs.image.size()), 3, image::kLuma);
@@ -72,15 +66,13 @@ void buildPyramid(const Inputs& inputs, Outputs& outputs) {
 }
 
 void sum(const Inputs& inputs, Outputs& outputs) {
-  image::Patch seen = patchOf(inputs.seen), reference = patchOf(inputs.reference), gx, gy, unused;
-  image::gradients(reference, gx, gy);
+  image::Patch seen = patchOf(inputs.seen), reference = patchOf(inputs.reference);
   const image::Patch weight = patchOf(inputs.weight);
   seen.extrapolate();
+  reference.extrapolate();
   tracking::CellInput input;
   input.image = &seen;
   input.reference = &reference;
-  input.reference_gx = &gx;
-  input.reference_gy = &gy;
   input.weight = &weight;
   input.gain = 1.1f;
   input.inverse_rejection = 1.0f / 40.0f;
@@ -96,6 +88,22 @@ void sum(const Inputs& inputs, Outputs& outputs) {
       }
     }
   }
+}
+
+void weigh(const Inputs& inputs, Outputs& outputs) {
+  image::RegionPyramid pyramid;
+  pyramid.build(inputs.image, cv::Rect(cv::Point(0, 0), inputs.image.size()), 2, image::kLuma);
+  const laparoscope_servo::geometry::Rectangle roi = {10.0, 7.0, static_cast<double>(inputs.size.width),
+                                                      static_cast<double>(inputs.size.height)};
+  tracking::EsmLevel fine(pyramid, roi, 0), coarse(pyramid, roi, 1);
+  cv::Mat1f(inputs.reference * 0.01f).copyTo(fine.weight.view());
+  inputs.weight.copyTo(fine.valid.view());
+  fine.useValid();
+  append(fine.used.view(), outputs.level_weights);
+  if (coarse.planes.empty()) return;
+  std::vector<float> scratch;
+  tracking::coarsenWeights(fine, scratch, coarse);
+  append(coarse.weight.view(), outputs.level_weights);
 }
 
 void gate(const Inputs& inputs, Outputs& outputs) {
@@ -117,9 +125,13 @@ void gate(const Inputs& inputs, Outputs& outputs) {
   tracking::OcclusionConfig config;
   config.rows = config.columns = kAreas;
   tracking::OcclusionGates gates(config, kBright);
-  gates.setReference(patch);
-  gates.observeColour(patch);
-  append(gates.weights(), outputs.weights);
+  const int step = tracking::samplingStep(inputs.size, config);
+  image::ColourPatch samples;
+  image::warpNearest(inputs.colours, Eigen::Vector3d(step, step, 1.0).asDiagonal(),
+                     cv::Size((inputs.size.width + step - 1) / step, (inputs.size.height + step - 1) / step), samples);
+  gates.setReference(samples, inputs.size);
+  gates.observeColour(samples);
+  append(gates.weights().view(), outputs.weights);
 }
 
 void compareStructure(const Inputs& inputs, Outputs& outputs) {
@@ -140,9 +152,9 @@ void compareStructure(const Inputs& inputs, Outputs& outputs) {
 Outputs KERNEL_RUN(const Inputs& inputs) {
   Outputs outputs;
   warp(inputs, outputs);
-  differentiate(inputs, outputs);
   buildPyramid(inputs, outputs);
   sum(inputs, outputs);
+  weigh(inputs, outputs);
   gate(inputs, outputs);
   compareStructure(inputs, outputs);
   return outputs;

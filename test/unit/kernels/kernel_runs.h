@@ -21,11 +21,11 @@ struct Inputs {
 
 struct Outputs {
   std::vector<float> warped, valid;  // bilinear
-  std::vector<float> gradient;       // x, then y
   std::vector<float> pyramid;        // of the image, all levels
   std::vector<float> colours;        // nearest neighbours, with their validity
   std::vector<float> saturated;      // mask of `colours`
   std::vector<float> sums;           // kSums for each cell
+  std::vector<float> level_weights;  // of ESM, where all is valid around; of the next level
   std::vector<float> histograms;     // of `colours`, both features
   std::vector<float> moments;        // three for each area
   std::vector<float> weights;        // of the gates
