@@ -152,7 +152,7 @@ void Tracker::publish(const skin::Processed& processed) {
   }
   if (overlay_publisher_.getNumSubscribers() > 0) {
     overlay_publisher_.publish(
-        skin::imageMessage(processed.header, skin::drawOverlay(processed.image, processed.result)));
+        skin::imageMessage(processed.header, skin::drawOverlay(processed.image, processed.result, processed.lens.get())));
   }
 }
 

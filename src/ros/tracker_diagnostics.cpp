@@ -45,6 +45,7 @@ void TrackerDiagnostics::processed(double now, const Processed& processed, bool 
   camera_error_ = processed.camera_error;
   has_colour_ = processed.image.channels() == 3;
   ignores_distortion_ = ignores_distortion;
+  rectifies_ = processed.lens != nullptr;
 }
 
 void TrackerDiagnostics::refused(double now, const std::string& error) {
@@ -91,9 +92,9 @@ void TrackerDiagnostics::fill(double now, diagnostic_updater::DiagnosticStatusWr
   status.addf("corner error [px]", "%.3f", result_.corner_error);
   status.add("ROI [px]", result_.state == State::kIdle ? "none" : roiText(result_.roi));
   status.add("intrinsics", has_camera_ ? "from camera_info" : camera_error_.empty() ? "unknown" : camera_error_);
-  status.add("lens distortion", ignores_distortion_
-                                    ? "not corrected: camera_info has some; let image_proc rectify the images"
-                                    : "none, or corrected");
+  status.add("lens distortion", rectifies_            ? "corrected by the tracker"
+                                : ignores_distortion_ ? "not corrected: camera_info has some; see parameter rectify"
+                                                      : "none, or corrected");
   status.add("colour gate", colourGate());
   window_ = Window();
   window_.start = now;

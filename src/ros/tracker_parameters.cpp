@@ -112,7 +112,12 @@ TrackerParameters readTrackerParameters(const XmlRpc::XmlRpcValue& tree, const s
   readRoi(reader, name, parameters.roi);
   bool rectified = false;
   reader.read("rectified_images", rectified);
-  parameters.image_kind = rectified ? ImageKind::kRectified : ImageKind::kRaw;
+  bool rectify = false;
+  reader.read("rectify", rectify);
+  if (rectify && rectified) {
+    reader.addError(name + "/rectify: true beside rectified_images: true, expected one of them at most");
+  }
+  parameters.image_kind = rectify ? ImageKind::kToRectify : rectified ? ImageKind::kRectified : ImageKind::kRaw;
   reader.read("select_timeout", parameters.select_timeout, 0.1, 60.0);
   if (reader.errors().empty()) reader.addErrors(tracking::validate(parameters.tracking));
   errors.insert(errors.end(), reader.errors().begin(), reader.errors().end());

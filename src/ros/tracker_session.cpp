@@ -58,12 +58,29 @@ void TrackerSession::complete(Processed& processed, const std::optional<geometry
   intrinsics_.update(processed.image.size(), processed.result.selected_now || !tracker_.hasRoi());
   processed.camera = intrinsics_.camera();
   processed.camera_error = intrinsics_.error();
+  if (!lens_error_.empty()) {
+    processed.camera.reset();
+    processed.camera_error = lens_error_;
+  }
+  processed.lens = lens_;
+}
+
+void TrackerSession::updateLens(const cv::Size& size) {
+  if (parameters_.image_kind != ImageKind::kToRectify) return;
+  const std::shared_ptr<const image::Lens>& lens = lens_source_.lensFor(size);
+  lens_error_ = lens ? "" : "images cannot be rectified: " + lens_source_.error();
+  if (!lens || lens == lens_) return;
+  tracker_.setLens(*lens);
+  lens_ = lens;
 }
 
 tracking::TrackResult TrackerSession::track(Processed& processed, const std::optional<geometry::Rectangle>& request) {
   const double stamp = processed.header.stamp.toSec();
   const bool from_parameters = !request && start_roi_pending_;
-  if (request || from_parameters) {
+  updateLens(processed.image.size());
+  if (!lens_error_.empty()) {
+    if (request || from_parameters) processed.selection_error = lens_error_;
+  } else if (request || from_parameters) {
     try {
       const auto result = tracker_.select(processed.image, stamp, request ? *request : *parameters_.roi);
       start_roi_pending_ = false;
@@ -74,7 +91,9 @@ tracking::TrackResult TrackerSession::track(Processed& processed, const std::opt
       processed.selection_error = error.what();
     }
   }
+  const bool had_roi = tracker_.hasRoi();
   tracking::TrackResult result = tracker_.track(processed.image, stamp);
+  if (!lens_error_.empty() && !had_roi) result.reason = lens_error_;
   if (!processed.selection_error.empty() && result.state == tracking::State::kIdle) {
     result.reason = "the ROI could not be selected: " + processed.selection_error;
   }

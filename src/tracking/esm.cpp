@@ -88,8 +88,9 @@ void Esm::setReference(const image::RegionPyramid& reference, const geometry::Re
   n_inv_ = n_.inverse();
   levels_.clear();
   forgetLight();
-  const int x = static_cast<int>(roi.x) - reference.origin().x;
-  const int y = static_cast<int>(roi.y) - reference.origin().y;
+  // Without a lens the levels' pixels are taken as they are; with one they are sampled anyway, from the ROI's first on.
+  const int x = lens_ ? 0 : static_cast<int>(roi.x) - reference.origin().x;
+  const int y = lens_ ? 0 : static_cast<int>(roi.y) - reference.origin().y;
   const int right = x + static_cast<int>(roi.width) - 1;
   const int bottom = y + static_cast<int>(roi.height) - 1;
   for (int l = 0; l < std::min(config_.levels, reference.levels()); ++l) {
@@ -99,8 +100,6 @@ void Esm::setReference(const image::RegionPyramid& reference, const geometry::Re
     const cv::Rect patch(begin, cv::Size(end.x - begin.x + 1, end.y - begin.y + 1));
     if (l > 0 && std::min(patch.width, patch.height) < kMinLevelSide) break;
     EsmLevel level;
-    copy(reference.level(l)(patch), level.value);
-    image::gradients(level.value, level.gx, level.gy);
     level.weight.resize(patch.width, patch.height);
     level.weight.view().setTo(1.0f);
     level.used.resize(patch.width, patch.height);
@@ -109,12 +108,23 @@ void Esm::setReference(const image::RegionPyramid& reference, const geometry::Re
     level.scale = size;
     level.first = begin * size - cv::Point(x, y);
     level.image_T_patch = scaling(size, roi.x + level.first.x, roi.y + level.first.y);
+    takeReference(reference, l, patch, level);
+    image::gradients(level.value, level.gx, level.gy);
     // Cells of an eighth of the patch or less: the Jacobian's polynomials hardly change within.
     level.cells_per_strip = patch.width >= 128 ? 1 : patch.width >= 64 ? 2 : 4;
     level.cell_rows = patch.height >= 128 ? kMaxCellRows : patch.height >= 64 ? kMaxCellRows / 2 : kMaxCellRows / 4;
     planLight(level);
     levels_.push_back(std::move(level));
   }
+}
+
+void Esm::takeReference(const image::RegionPyramid& reference, int l, const cv::Rect& patch, EsmLevel& level) const {
+  if (!lens_) {
+    copy(reference.level(l)(patch), level.value);
+    return;
+  }
+  copy(image::rectify(reference.level(l), level.image_T_patch, *lens_, {reference.origin(), level.scale}, patch.size()),
+       level.value);
 }
 
 void Esm::planLight(EsmLevel& level) const {
@@ -139,9 +149,14 @@ void Esm::setWeights(const cv::Mat1f& weights) {
 
 void Esm::warp(const image::RegionPyramid& current, EsmLevel& level, int l, const Eigen::Matrix3d& g) {
   const double size = level.scale;
-  const Eigen::Matrix3d level_T_image = scaling(1.0 / size, -current.origin().x / size, -current.origin().y / size);
-  level.all_valid =
-      image::warpBilinear(current.level(l), level_T_image * g * level.image_T_patch, level.warped, level.valid);
+  if (lens_) {
+    level.all_valid = image::warpBilinear(current.level(l), g * level.image_T_patch, *lens_, {current.origin(), size},
+                                          level.warped, level.valid);
+  } else {
+    const Eigen::Matrix3d level_T_image = scaling(1.0 / size, -current.origin().x / size, -current.origin().y / size);
+    level.all_valid =
+        image::warpBilinear(current.level(l), level_T_image * g * level.image_T_patch, level.warped, level.valid);
+  }
   level.warped.extrapolate();
   if (level.all_valid) return;
   // A pixel beside one that is not valid has no gradient.

@@ -10,6 +10,7 @@
 #include "laparoscope_servo/geometry/sl3.h"
 #include "laparoscope_servo/image/colour_patch.h"
 #include "laparoscope_servo/image/pyramid.h"
+#include "laparoscope_servo/image/warp.h"
 #include "laparoscope_servo/tracking/detail.h"
 #include "laparoscope_servo/tracking/esm.h"
 #include "laparoscope_servo/tracking/feature_search.h"
@@ -29,21 +30,6 @@ constexpr double kKeyframeVisible = 0.7;
 constexpr double kKeyframeZncc = 0.85;
 constexpr int kMaxStructureRounds = 3;
 constexpr double kGateShift = 2.0;       // px: masks drawn further from the estimate than this are drawn again
-
-cv::Rect boundingBox(const geometry::Quadrilateral& q, double margin) {
-  double left = q[0].x(), right = q[0].x(), top = q[0].y(), bottom = q[0].y();
-  for (const Eigen::Vector2d& corner : q) {
-    left = std::min(left, corner.x());
-    right = std::max(right, corner.x());
-    top = std::min(top, corner.y());
-    bottom = std::max(bottom, corner.y());
-  }
-  // Far outside any image; keeps the conversion to int defined.
-  const auto bounded = [](double x) { return static_cast<int>(std::clamp(x, -1e6, 1e6)); };
-  const cv::Point first(bounded(std::floor(left - margin)), bounded(std::floor(top - margin)));
-  const cv::Point last(bounded(std::ceil(right + margin)), bounded(std::ceil(bottom + margin)));
-  return {first, last + cv::Point(1, 1)};
-}
 
 // Pixels of the ROI to those of the image.
 Eigen::Matrix3d fromPatch(const geometry::Rectangle& roi) {
@@ -112,9 +98,11 @@ const char* stateName(State state) {
 
 class RegionTracker::Implementation {
  public:
-  explicit Implementation(const TrackerConfig& config)
-      : config_(config), esm_(config.esm), gates_(config.occlusion, config.esm.saturation), keyframes_(config.search.keyframes),
-        feature_search_(config.search) {}
+  explicit Implementation(const TrackerConfig& config, std::shared_ptr<const image::Lens> lens = nullptr)
+      : config_(config), lens_(lens), esm_(config.esm, lens), gates_(config.occlusion, config.esm.saturation),
+        keyframes_(config.search.keyframes, lens), feature_search_(config.search, lens) {}
+
+  void setLens(const std::optional<image::Lens>& lens);
 
   TrackResult select(const cv::Mat& image, double stamp, const geometry::Rectangle& roi);
   TrackResult track(const cv::Mat& image, double stamp);
@@ -130,6 +118,11 @@ class RegionTracker::Implementation {
   };
 
   geometry::Rectangle checkedRoi(const cv::Mat& image, const geometry::Rectangle& roi) const;
+  bool shows(const cv::Mat& image, const geometry::Rectangle& roi) const;
+  cv::Rect seenBox(const geometry::Quadrilateral& corners, double margin) const {
+    return image::seenBox(lens_.get(), corners, margin);
+  }
+  void drawPatch(const cv::Mat& image, const Eigen::Matrix3d& g, const geometry::Rectangle& roi);
   Eigen::Matrix3d predict(double stamp) const;
   Attempt attempt(const cv::Mat& image, const EsmState& start, bool from_track);
   Attempt search(const cv::Mat& image);
@@ -142,6 +135,8 @@ class RegionTracker::Implementation {
   TrackResult idle(double stamp, const std::string& reason) const;
 
   TrackerConfig config_;
+  std::shared_ptr<const image::Lens> lens_;  // null: none
+  std::string reset_reason_;                 // for the next image
   Esm esm_;
   OcclusionGates gates_;
   image::RegionPyramid pyramid_;
@@ -173,24 +168,62 @@ geometry::Rectangle RegionTracker::Implementation::checkedRoi(const cv::Mat& ima
     throw std::invalid_argument(name + " is too small, expected at least " + std::to_string(config_.min_roi_side) +
                                 " px in width and height");
   }
-  const bool inside = roi.x >= 0.0 && roi.y >= 0.0 && roi.x + roi.width <= image.cols && roi.y + roi.height <= image.rows;
-  if (!inside) {  // also for NaN
-    throw std::invalid_argument(name + " is not inside the image of " + size + " px");
+  const geometry::Rectangle whole{std::floor(roi.x), std::floor(roi.y), std::floor(roi.width), std::floor(roi.height)};
+  if (!shows(image, whole)) {
+    throw std::invalid_argument(name + " is not inside the image of " + size + " px" +
+                                (lens_ ? ", as its lens shows it: the ROI is in rectified pixels" : ""));
   }
-  return {std::floor(roi.x), std::floor(roi.y), std::floor(roi.width), std::floor(roi.height)};
+  return whole;
+}
+
+// False for NaN.
+bool RegionTracker::Implementation::shows(const cv::Mat& image, const geometry::Rectangle& roi) const {
+  if (!lens_) return roi.x >= 0.0 && roi.y >= 0.0 && roi.x + roi.width <= image.cols && roi.y + roi.height <= image.rows;
+  const double longest_side = 65536.0;
+  if (!(roi.width <= longest_side && roi.height <= longest_side)) return false;
+  const auto seen = [&](double x, double y) {
+    const auto raw = lens_->toRaw(Eigen::Vector2d(x, y));
+    return raw && raw->x() >= 0.0 && raw->y() >= 0.0 && raw->x() <= image.cols - 1.0 && raw->y() <= image.rows - 1.0;
+  };
+  // What is one to one takes the inside of the border to the inside.
+  const double right = roi.x + roi.width - 1.0;
+  const double bottom = roi.y + roi.height - 1.0;
+  for (double x = roi.x; x <= right; x += 1.0) {
+    if (!seen(x, roi.y) || !seen(x, bottom)) return false;
+  }
+  for (double y = roi.y; y <= bottom; y += 1.0) {
+    if (!seen(roi.x, y) || !seen(right, y)) return false;
+  }
+  return std::isfinite(right) && std::isfinite(bottom);
+}
+
+void RegionTracker::Implementation::drawPatch(const cv::Mat& image, const Eigen::Matrix3d& g, const geometry::Rectangle& roi) {
+  const cv::Size size(static_cast<int>(roi.width), static_cast<int>(roi.height));
+  if (lens_) {
+    image::warpNearest(image, g * fromPatch(roi), *lens_, size, patch_);
+  } else {
+    image::warpNearest(image, g * fromPatch(roi), size, patch_);
+  }
+}
+
+void RegionTracker::Implementation::setLens(const std::optional<image::Lens>& lens) {
+  const bool same = lens ? lens_ && *lens_ == *lens : !lens_;
+  if (same) return;
+  const bool had_roi = hasRoi();
+  *this = Implementation(config_, lens ? std::make_shared<const image::Lens>(*lens) : nullptr);
+  if (had_roi) reset_reason_ = "the lens changed since the ROI was selected: select it again";
 }
 
 TrackResult RegionTracker::Implementation::select(const cv::Mat& image, double stamp, const geometry::Rectangle& wanted) {
   checkImage(image);
   const geometry::Rectangle roi = checkedRoi(image, wanted);
-  const cv::Rect box(static_cast<int>(roi.x), static_cast<int>(roi.y), static_cast<int>(roi.width), static_cast<int>(roi.height));
-
   // Everything is built aside, so that a ROI that is refused leaves the tracker as it was.
-  Implementation fresh(config_);
+  Implementation fresh(config_, lens_);
+  const cv::Rect box = seenBox(roi.corners(), 0.0) & cv::Rect(cv::Point(0, 0), image.size());
   if (image.channels() == 3 && config_.esm.adapt_channel) fresh.channel_ = strongestChannel(image(box));
-  fresh.pyramid_.build(image, boundingBox(roi.corners(), 4.0 * (1 << config_.esm.levels)), config_.esm.levels, fresh.channel_);
+  fresh.pyramid_.build(image, seenBox(roi.corners(), 4.0 * (1 << config_.esm.levels)), config_.esm.levels, fresh.channel_);
   fresh.esm_.setReference(fresh.pyramid_, roi);
-  image::warpNearest(image, fromPatch(roi), box.size(), fresh.patch_);
+  fresh.drawPatch(image, Eigen::Matrix3d::Identity(), roi);
   fresh.gates_.setReference(fresh.patch_);
   fresh.esm_.setWeights(fresh.gates_.weights());
   const double error = fresh.esm_.referenceCornerError(kTypicalNoise);
@@ -221,7 +254,11 @@ TrackResult RegionTracker::Implementation::select(const cv::Mat& image, double s
 
 TrackResult RegionTracker::Implementation::track(const cv::Mat& image, double stamp) {
   checkImage(image);
-  if (state_ == State::kIdle) return idle(stamp, "no region of interest selected");
+  if (state_ == State::kIdle) {
+    const TrackResult result = idle(stamp, reset_reason_.empty() ? "no region of interest selected" : reset_reason_);
+    reset_reason_.clear();
+    return result;
+  }
   if (!std::isfinite(stamp)) throw std::invalid_argument("image stamp is not finite");
   std::ostringstream why;
   if (stamp < last_stamp_) {
@@ -259,8 +296,7 @@ Eigen::Matrix3d RegionTracker::Implementation::predict(double stamp) const {
 
 // The gates' view of the image where the ROI is taken to be.
 void RegionTracker::Implementation::look(const cv::Mat& image, const Eigen::Matrix3d& g) {
-  const geometry::Rectangle& roi = esm_.roi();
-  image::warpNearest(image, g * fromPatch(roi), cv::Size(gates_.grid().width(), gates_.grid().height()), patch_);
+  drawPatch(image, g, esm_.roi());
   gates_.observeColour(patch_);
   esm_.setWeights(gates_.weights());
   shown_ = g;
@@ -278,7 +314,7 @@ RegionTracker::Implementation::Attempt RegionTracker::Implementation::attempt(co
   e.record = record_;
   e.esm.state = start;
   e.esm.status = EsmStatus::kOutOfView;
-  const cv::Rect box = boundingBox(geometry::apply(start.g, roi.corners()), std::max(32.0, 0.25 * std::max(roi.width, roi.height)));
+  const cv::Rect box = seenBox(geometry::apply(start.g, roi.corners()), std::max(32.0, 0.25 * std::max(roi.width, roi.height)));
   if ((box & cv::Rect(cv::Point(0, 0), image.size())).empty()) {
     result.doubt = "the ROI is outside the image";
     return result;
@@ -366,10 +402,23 @@ std::vector<Eigen::Matrix3d> RegionTracker::Implementation::searchCoarsely(const
   image::RegionPyramid whole;
   whole.build(image, cv::Rect(0, 0, image.cols, image.rows), l + 1, channel_);
   const EsmLevel& level = esm_.level(l);
+  cv::Mat1f coarse = whole.level(l);
+  Eigen::Matrix3d from_coarse = Eigen::Matrix3d::Identity();  // its first pixel to that of the image
+  if (lens_) {
+    const cv::Rect box = image::rectifiedBox(*lens_, image.size());
+    from_coarse.topRightCorner<2, 1>() << box.x, box.y;
+    Eigen::Matrix3d sampling = from_coarse;
+    sampling.topLeftCorner<2, 2>() *= level.scale;
+    const cv::Size size(static_cast<int>(box.width / level.scale) + 1, static_cast<int>(box.height / level.scale) + 1);
+    coarse = cv::Mat1f(size);
+    cv::Mat1f valid(size);
+    image::warpBilinear(whole.level(l), sampling, *lens_, {cv::Point(0, 0), level.scale}, coarse, valid);
+    coarse.setTo(0.0f, valid == 0.0f);
+  }
   std::vector<Eigen::Matrix3d> places;
-  for (const Candidate& candidate : searchByCorrelation(level.value.view(), level.image_T_patch, whole.level(l), level.scale,
-                                                        esm_.roi(), last_.g, kSearchCandidates)) {
-    places.push_back(candidate.g);
+  for (const Candidate& candidate : searchByCorrelation(level.value.view(), level.image_T_patch, coarse, level.scale, esm_.roi(),
+                                                        from_coarse.inverse() * last_.g, kSearchCandidates)) {
+    places.push_back(from_coarse * candidate.g);
   }
   return places;
 }
@@ -446,7 +495,7 @@ TrackResult RegionTracker::Implementation::idle(double stamp, const std::string&
   return result;
 }
 
-void RegionTracker::Implementation::reset() { *this = Implementation(config_); }
+void RegionTracker::Implementation::reset() { *this = Implementation(config_, lens_); }
 
 cv::Mat RegionTracker::Implementation::occlusionMask() const {
   if (state_ == State::kIdle) return {};
@@ -455,14 +504,12 @@ cv::Mat RegionTracker::Implementation::occlusionMask() const {
   for (int j = 0; j < grid.height(); ++j) {
     for (int i = 0; i < grid.width(); ++i) areas(j, i) = gates_.occluded(grid.areaOf(i, j)) ? 255 : 0;
   }
-  const Eigen::Matrix3d g =
-      (state_ == State::kTracking || confirmations_ == 0 ? last_.g : candidate_.g) * fromPatch(esm_.roi());
-  cv::Matx33d warp;
-  for (int r = 0; r < 3; ++r) {
-    for (int c = 0; c < 3; ++c) warp(r, c) = g(r, c);
-  }
-  cv::Mat mask;
-  cv::warpPerspective(areas, mask, warp, image_size_, cv::INTER_NEAREST, cv::BORDER_CONSTANT, cv::Scalar(0));
+  const Eigen::Matrix3d g = state_ == State::kTracking || confirmations_ == 0 ? last_.g : candidate_.g;
+  cv::Mat1b mask = cv::Mat1b::zeros(image_size_);
+  const cv::Rect box = seenBox(geometry::apply(g, esm_.roi().corners()), 1.0) & cv::Rect(cv::Point(0, 0), image_size_);
+  if (box.empty()) return mask;
+  cv::Mat1b part = mask(box);
+  image::drawMask(areas, g * fromPatch(esm_.roi()), lens_.get(), box, part);
   return mask;
 }
 
@@ -479,6 +526,8 @@ RegionTracker::RegionTracker(const TrackerConfig& config) {
 RegionTracker::~RegionTracker() = default;
 RegionTracker::RegionTracker(RegionTracker&&) noexcept = default;
 RegionTracker& RegionTracker::operator=(RegionTracker&&) noexcept = default;
+
+void RegionTracker::setLens(const std::optional<image::Lens>& lens) { implementation_->setLens(lens); }
 
 TrackResult RegionTracker::select(const cv::Mat& image, double stamp, const geometry::Rectangle& roi) {
   return implementation_->select(image, stamp, roi);

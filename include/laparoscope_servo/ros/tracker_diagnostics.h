@@ -49,6 +49,7 @@ class TrackerDiagnostics {
   bool has_camera_ = false;
   bool has_colour_ = true;
   bool ignores_distortion_ = false;
+  bool rectifies_ = false;
 };
 
 }  // namespace laparoscope_servo::skin

@@ -7,6 +7,7 @@
 #include <sensor_msgs/Image.h>
 #include <std_msgs/Header.h>
 
+#include <memory>
 #include <opencv2/core.hpp>
 #include <optional>
 #include <string>
@@ -27,6 +28,7 @@ struct Processed {
   ros::Time reference_stamp;
   std::optional<geometry::PinholeCamera> camera;  // empty when H cannot be given
   std::string camera_error;                       // why it cannot
+  std::shared_ptr<const image::Lens> lens;        // through which the image is seen; null: none
   std::string selection_error;                    // a ROI should have been selected in this image and was not: why
   double processing_time = 0.0;                   // s, from the decoded image to the result
 };
@@ -38,8 +40,12 @@ class TrackerSession {
   // selected or reset() is called.
   explicit TrackerSession(const TrackerParameters& parameters);
 
-  // Holds for the images that follow.
-  void setCameraInfo(const sensor_msgs::CameraInfo& info) { intrinsics_.set(info); }
+  // Holds for the images that follow. While the tracker rectifies, a lens that differs from the one before ends tracking;
+  // camera_info that cannot be used leaves the lens as it is, and takes H away.
+  void setCameraInfo(const sensor_msgs::CameraInfo& info) {
+    intrinsics_.set(info);
+    lens_source_.set(info);
+  }
 
   // Processes the next image; `request` is a ROI to select in it. Throws ImageError or std::invalid_argument when the
   // image cannot be used: the session then goes on as if it had not come. The message has to outlive the result's
@@ -61,11 +67,15 @@ class TrackerSession {
 
  private:
   tracking::TrackResult track(Processed& processed, const std::optional<geometry::Rectangle>& request);
+  void updateLens(const cv::Size& size);
   void complete(Processed& processed, const std::optional<geometry::Rectangle>& request);
 
   TrackerParameters parameters_;
   tracking::RegionTracker tracker_;
   Intrinsics intrinsics_;
+  LensSource lens_source_;
+  std::shared_ptr<const image::Lens> lens_;  // in force
+  std::string lens_error_;                   // why the newest camera_info gives none, and nothing can be selected
   bool start_roi_pending_ = false;   // the parameters' ROI waits for its image
   bool start_roi_in_force_ = false;  // nobody has chosen another one
   std::optional<ros::Time> last_stamp_;

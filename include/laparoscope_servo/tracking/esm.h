@@ -9,10 +9,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <opencv2/core.hpp>
 #include <vector>
 
 #include "laparoscope_servo/geometry/homography.h"
+#include "laparoscope_servo/image/lens.h"
 #include "laparoscope_servo/image/patch.h"
 #include "laparoscope_servo/image/pyramid.h"
 #include "laparoscope_servo/tracking/normal_equations.h"
@@ -68,7 +70,9 @@ struct EsmLevel {
 
 class Esm {
  public:
-  explicit Esm(const EsmConfig& config) : config_(config) {}
+  // With a lens the pyramids are of raw images, and every other pixel that is spoken of is a rectified one.
+  explicit Esm(const EsmConfig& config, std::shared_ptr<const image::Lens> lens = nullptr)
+      : config_(config), lens_(std::move(lens)) {}
 
   // Takes the ROI of the pyramid's image for the reference. The pyramid's region must hold the ROI; levels that would be
   // smaller than 8 px in the ROI's smaller side are not used. The ROI is in whole pixels.
@@ -96,6 +100,7 @@ class Esm {
 
  private:
   void planLight(EsmLevel& level) const;
+  void takeReference(const image::RegionPyramid& reference, int l, const cv::Rect& patch, EsmLevel& level) const;
   void warp(const image::RegionPyramid& current, EsmLevel& level, int l, const Eigen::Matrix3d& g);
   void startLight(EsmLevel& level, const EsmState& state);
   double residualScale(const EsmLevel& level, const EsmState& state);
@@ -104,6 +109,7 @@ class Esm {
   double predictedCornerError(double sigma) const;
 
   EsmConfig config_;
+  std::shared_ptr<const image::Lens> lens_;
   geometry::Rectangle roi_;
   Eigen::Matrix3d n_ = Eigen::Matrix3d::Identity();      // N: reference pixels to normalised template coordinates
   Eigen::Matrix3d n_inv_ = Eigen::Matrix3d::Identity();

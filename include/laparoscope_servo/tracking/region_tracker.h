@@ -8,10 +8,12 @@
 #include <Eigen/Core>
 #include <memory>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "laparoscope_servo/geometry/homography.h"
+#include "laparoscope_servo/image/lens.h"
 #include "laparoscope_servo/tracking/tracker_config.h"
 
 namespace laparoscope_servo::tracking {
@@ -55,6 +57,11 @@ class RegionTracker {
   RegionTracker(RegionTracker&&) noexcept;
   RegionTracker& operator=(RegionTracker&&) noexcept;
 
+  // From now on images are raw ones, seen through `lens`: the ROI and G are in rectified pixels, of a pinhole camera, and the lens is put
+  // between them and the image where pixels are read. Without one (the default) images are what a pinhole camera sees. A lens that differs
+  // from the one before resets to IDLE, and the next image says so.
+  void setLens(const std::optional<image::Lens>& lens);
+
   // Takes `image` for the reference. Throws std::invalid_argument, with the ROI and what was expected, when the ROI is empty,
   // too small, mostly outside the image or without texture; the tracker then goes on as before.
   TrackResult select(const cv::Mat& image, double stamp, const geometry::Rectangle& roi);
@@ -68,7 +75,7 @@ class RegionTracker {
   void reset();
 
   // 255 where a pixel of the ROI, as seen in the image that was processed last, is taken for occluded, 0 elsewhere; empty
-  // before the first image. Drawn only when asked for.
+  // before the first image. Of that image's size and pixels, also with a lens. Drawn only when asked for.
   cv::Mat occlusionMask() const;
 
   bool hasRoi() const;

@@ -65,7 +65,7 @@ TEST(DefaultFile, EqualsTheDefaultsOfTheStructs) {
 
 TEST(DefaultFile, NamesEveryParameter) {
   const ParameterReader file(parametersFromYaml(kDefaults), "/tracker");
-  for (const char* path : {"rectified_images",
+  for (const char* path : {"rectified_images", "rectify",
                            "select_timeout",
                            "tracking/velocity_damping",
                            "tracking/min_roi_side",
@@ -120,6 +120,16 @@ TEST(TrackerParametersTest, ReadEveryKindOfValue) {
   EXPECT_EQ(parameters.tracking.esm.levels, 2);
   EXPECT_FALSE(parameters.tracking.esm.robust);
   EXPECT_EQ(parameters.tracking.quality.min_zncc, 0.5);
+}
+
+TEST(TrackerParametersTest, RectifyRawImagesOnly) {
+  XmlRpc::XmlRpcValue tree;
+  tree["rectify"] = true;
+  std::vector<std::string> errors;
+  EXPECT_EQ(readTrackerParameters(tree, "/tracker", errors).image_kind, ImageKind::kToRectify);
+  EXPECT_TRUE(errors.empty()) << errorReport(errors);
+  tree["rectified_images"] = true;
+  EXPECT_TRUE(mentions(errorsOf(tree), "/tracker/rectify")) << errorReport(errorsOf(tree));
 }
 
 TEST(TrackerParametersTest, KnowEveryName) {
