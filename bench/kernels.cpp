@@ -8,7 +8,10 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <opencv2/calib3d.hpp>
+#include <opencv2/imgproc.hpp>
 #include <random>
 
 #include "bench/support/cpu_clock.h"
@@ -181,6 +184,48 @@ void warp(State& state) {
   roofline(state, 4 + 4 + 4, 8 + 9);  // image, patch, validity; the point with two divisions, three interpolations
 }
 
+image::Lens lensOf(image::Distortion distortion) {
+  image::LensParameters parameters;
+  const std::array<double, 8> coefficients[] = {{-0.38, 0.16, 0.0008, -0.0006, -0.02},
+                                                {0.35, -0.05, 0.0005, -0.0004, 0.004, 0.72, 0.06, 0.002},
+                                                {-0.02, 0.006, -0.003, 0.0005}};
+  parameters.distortion = distortion;
+  parameters.coefficients = coefficients[static_cast<int>(distortion)];
+  parameters.raw = parameters.rectified = {700.0, 700.0, 480.0, 360.0};
+  return image::Lens(parameters);
+}
+
+void warpThroughLens(State& state, image::Distortion distortion) {
+  const Scene scene(static_cast<int>(state.range(0)));
+  const image::Lens lens = lensOf(distortion);
+  image::Patch patch, valid;
+  patch.resize(scene.side, scene.side);
+  valid.resize(scene.side, scene.side);
+  const Eigen::Matrix3d g = scene.moved * scene.patch_T_reference;
+  measure(state, scene.pixels(), [&] {
+    benchmark::DoNotOptimize(image::warpBilinear(scene.pyramid.level(0), g, lens, {}, patch, valid));
+    return 1;
+  });
+  roofline(state, 4 + 4 + 4, 35 + 9);  // as above; the point with two divisions and the polynomials
+}
+
+// What taking the lens out of the whole image costs: image_proc's way, fixed-point maps that are made once. range(0),
+// range(1): px.
+void remapImage(State& state) {
+  const cv::Size size(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)));
+  const cv::Mat image = syntheticTissue(size, 1);
+  const double f = 0.73 * size.width;
+  const cv::Matx33d k(f, 0.0, 0.5 * size.width, 0.0, f, 0.5 * size.height, 0.0, 0.0, 1.0);
+  cv::Mat map, interpolation, rectified;
+  cv::initUndistortRectifyMap(k, std::vector<double>{-0.38, 0.16, 0.0008, -0.0006, -0.02}, cv::noArray(), k, size,
+                              CV_16SC2, map, interpolation);
+  measure(state, size.area(), [&] {
+    cv::remap(image, rectified, map, interpolation, cv::INTER_LINEAR, cv::BORDER_CONSTANT);
+    benchmark::ClobberMemory();
+    return 1;
+  });
+}
+
 void gradients(State& state) {
   const Scene scene(static_cast<int>(state.range(0)));
   image::Patch patch, valid, gx, gy;
@@ -291,7 +336,7 @@ void esmIteration(State& state) {
 }
 
 // Everything, image by image, over a motion there and back.
-void track(State& state) {
+void track(State& state, bool through_lens) {
   const Scene scene(static_cast<int>(state.range(0)));
   std::mt19937 random(2);
   std::vector<cv::Mat> images;
@@ -304,6 +349,13 @@ void track(State& state) {
     images.push_back(view(scene.image, g, 2.0, random));
   }
   tracking::RegionTracker tracker{tracking::TrackerConfig()};
+  if (through_lens) {
+    // The images are raw ones, and no plane any more: little enough that the tracker does not mind, and the work is the same.
+    image::LensParameters parameters;
+    parameters.coefficients = {-0.01, 0.001, 0.0, 0.0, 0.0};
+    parameters.raw = parameters.rectified = {700.0, 700.0, 480.0, 360.0};
+    tracker.setLens(image::Lens(parameters));
+  }
   tracker.select(images[0], 0.0, scene.roi);
   double iterations = 0.0, stamp = 0.0, tracked = 0.0;
   std::size_t k = 0;
@@ -324,13 +376,18 @@ BENCHMARK(machineCopy)->Name("machine/copy")->Arg(16)->Arg(200)->Arg(700)->Arg(6
 BENCHMARK(machineTriad)->Name("machine/triad")->Arg(16)->Arg(200)->Arg(700)->Arg(6000)->Arg(131072);
 BENCHMARK(machineMultiplyAdd)->Name("machine/multiply_add")->Arg(256)->Arg(512);
 BENCHMARK(warp)->Name("kernel/warp")->Arg(100)->Arg(196)->Arg(400);
+BENCHMARK_CAPTURE(warpThroughLens, plumb_bob, image::Distortion::kPlumbBob)->Name("kernel/warp_plumb_bob")->Arg(100)->Arg(196)->Arg(400);
+BENCHMARK_CAPTURE(warpThroughLens, rational, image::Distortion::kRationalPolynomial)->Name("kernel/warp_rational_polynomial")->Arg(196);
+BENCHMARK_CAPTURE(warpThroughLens, equidistant, image::Distortion::kEquidistant)->Name("kernel/warp_equidistant")->Arg(100)->Arg(196)->Arg(400);
 BENCHMARK(gradients)->Name("kernel/gradients")->Arg(100)->Arg(196)->Arg(400);
 BENCHMARK(sums)->Name("kernel/sums")->Arg(100)->Arg(196)->Arg(400);
 BENCHMARK(pyramid)->Name("kernel/pyramid")->Arg(100)->Arg(196)->Arg(400);
 BENCHMARK(colourGate)->Name("kernel/colour_gate")->Arg(100)->Arg(196)->Arg(400);
 BENCHMARK(structureGate)->Name("kernel/structure_gate")->Arg(100)->Arg(196)->Arg(400);
 BENCHMARK(esmIteration)->Name("kernel/esm_iteration")->Arg(100)->Arg(196)->Arg(400);
-BENCHMARK(track)->Name("kernel/track")->Arg(100)->Arg(196)->Arg(400)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(track, plain, false)->Name("kernel/track")->Arg(100)->Arg(196)->Arg(400)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(track, lens, true)->Name("kernel/track_through_lens")->Arg(100)->Arg(196)->Arg(400)->Unit(benchmark::kMicrosecond);
+BENCHMARK(remapImage)->Name("peer/remap_image")->Args({640, 480})->Args({1920, 1080})->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 

@@ -94,6 +94,9 @@ def kernels(report, file):
         [f"copy / triad on {kb} kB", f"{copy[kb] / 1e9:.0f} / {bandwidth[kb] / 1e9:.0f} GB/s"] for kb in sorted(bandwidth)])
     rows = []
     for name, b in runs.items():
+        if name.startswith("peer/remap_image/"):
+            rows.append(["cv::remap, whole image", "x".join(name.split("/")[2:4]), number(b["ns_per_px"], 2), "", "", "",
+                         number(b["cpu_time"] / 1e3, 2) + " ms"])
         if not name.startswith("kernel/"):
             continue
         _, kernel, side = name.split("/")
@@ -105,7 +108,7 @@ def kernels(report, file):
             row += [number(by_memory, 2), number(by_arithmetic, 2), f"{100 * max(by_memory, by_arithmetic) / b['ns_per_px']:.0f} %"]
         else:
             row += ["", "", ""]
-        rows.append(row + [number(b["cpu_time"] / 1e3, 2) + " ms" if kernel == "track" else ""])
+        rows.append(row + [number(b["cpu_time"] / 1e3, 2) + " ms" if kernel.startswith("track") else ""])
     report.table(["kernel", "ROI", "ns/px", "memory's limit", "arithmetic's limit", "of the limit", "per image"], rows)
 
 
