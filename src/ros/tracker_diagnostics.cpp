@@ -38,6 +38,12 @@ void TrackerDiagnostics::processed(double now, const Processed& processed, bool 
   ++window_.images;
   window_.total_time += processed.processing_time;
   window_.longest_time = std::max(window_.longest_time, processed.processing_time);
+  if (processed.motion_wanted) {
+    ++window_.motion_wanted;
+    if (processed.motion_error.empty()) ++window_.motion_given;
+    if (processed.result.motion_used) ++window_.motion_used;
+    if (!processed.motion_error.empty()) motion_error_ = processed.motion_error;
+  }
   last_image_ = now;
   refusal_.clear();
   selection_failed_ = !processed.selection_error.empty();
@@ -74,6 +80,13 @@ std::string TrackerDiagnostics::colourGate() const {
   return has_colour_ ? "on" : "stands aside: the images have no colour";
 }
 
+std::string TrackerDiagnostics::robotMotion() const {
+  if (!with_robot_motion_) return "not asked for";
+  const std::string text = "given for " + std::to_string(window_.motion_given) + " of " + std::to_string(window_.motion_wanted) +
+                           " images, used for " + std::to_string(window_.motion_used);
+  return window_.motion_given < window_.motion_wanted ? text + "; last missing: " + motion_error_ : text;
+}
+
 void TrackerDiagnostics::fill(double now, diagnostic_updater::DiagnosticStatusWrapper& status) {
   summarise(now, status);
   const double duration = now - window_.start;
@@ -96,6 +109,7 @@ void TrackerDiagnostics::fill(double now, diagnostic_updater::DiagnosticStatusWr
                                 : ignores_distortion_ ? "not corrected: camera_info has some; see parameter rectify"
                                                       : "none, or corrected");
   status.add("colour gate", colourGate());
+  status.add("robot motion", robotMotion());
   window_ = Window();
   window_.start = now;
 }

@@ -102,6 +102,17 @@ void readRoi(ParameterReader& reader, const std::string& name, std::optional<geo
   roi = rectangle;
 }
 
+void readRobotMotion(ParameterReader& reader, const std::string& name, RobotMotionConfig& config) {
+  reader.read("robot_motion/enabled", config.enabled);
+  reader.read("robot_motion/fixed_frame", config.fixed_frame);
+  reader.read("robot_motion/depth", config.depth, 0.005, 1.0);
+  reader.refuseUnknown("robot_motion");
+  if (config.fixed_frame.empty() || config.fixed_frame[0] == '/') {
+    reader.addError(name + "/robot_motion/fixed_frame is '" + config.fixed_frame +
+                    "', expected the name of a tf frame, without a leading slash");
+  }
+}
+
 }  // namespace
 
 TrackerParameters readTrackerParameters(const XmlRpc::XmlRpcValue& tree, const std::string& name,
@@ -110,6 +121,7 @@ TrackerParameters readTrackerParameters(const XmlRpc::XmlRpcValue& tree, const s
   ParameterReader reader(tree, name);
   readTracking(reader, parameters.tracking);
   readRoi(reader, name, parameters.roi);
+  readRobotMotion(reader, name, parameters.robot_motion);
   bool rectified = false;
   reader.read("rectified_images", rectified);
   bool rectify = false;

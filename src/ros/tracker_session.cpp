@@ -51,6 +51,8 @@ void TrackerSession::complete(Processed& processed, const std::optional<geometry
   const bool jumped_back = last_stamp_ && stamp < *last_stamp_;
   if (jumped_back && start_roi_in_force_) start_roi_pending_ = true;
   processed.result = track(processed, request);
+  if (processed.result.state == tracking::State::kTracking) believed_stamp_ = stamp;
+  if (!tracker_.hasRoi()) believed_stamp_.reset();
   last_stamp_ = stamp;
   image_size_ = processed.image.size();
   if (processed.result.selected_now) reference_stamp_ = stamp;
@@ -63,6 +65,31 @@ void TrackerSession::complete(Processed& processed, const std::optional<geometry
     processed.camera_error = lens_error_;
   }
   processed.lens = lens_;
+}
+
+// Pixels of the image that was believed last to those of this one, for a plane parallel to the image.
+std::optional<Eigen::Matrix3d> TrackerSession::motionBefore(Processed& processed) const {
+  const ros::Time& stamp = processed.header.stamp;
+  if (!camera_motion_ || !believed_stamp_ || !tracker_.hasRoi() || !(stamp > *believed_stamp_)) return std::nullopt;
+  processed.motion_wanted = true;
+  // That of the image before: when the camera changes, so does all that was tracked.
+  const std::optional<geometry::PinholeCamera>& camera = intrinsics_.camera();
+  if (!camera) {
+    processed.motion_error = "no intrinsics: " + intrinsics_.error();
+    return std::nullopt;
+  }
+  auto motion = camera_motion_(processed.header.frame_id, *believed_stamp_, stamp, processed.motion_error);
+  if (!motion) return std::nullopt;
+  if (lens_) {  // the rectified camera is turned against the one that tf knows
+    const Eigen::Isometry3d turn(lens_->parameters().rotation);
+    motion = turn * *motion * turn.inverse();
+  }
+  try {
+    return geometry::pixelsFromPlane(*motion, Eigen::Vector3d::UnitZ(), parameters_.robot_motion.depth, *camera);
+  } catch (const std::invalid_argument& error) {
+    processed.motion_error = error.what();
+    return std::nullopt;
+  }
 }
 
 void TrackerSession::updateLens(const cv::Size& size) {
@@ -92,7 +119,7 @@ tracking::TrackResult TrackerSession::track(Processed& processed, const std::opt
     }
   }
   const bool had_roi = tracker_.hasRoi();
-  tracking::TrackResult result = tracker_.track(processed.image, stamp);
+  tracking::TrackResult result = tracker_.track(processed.image, stamp, motionBefore(processed));
   if (!lens_error_.empty() && !had_roi) result.reason = lens_error_;
   if (!processed.selection_error.empty() && result.state == tracking::State::kIdle) {
     result.reason = "the ROI could not be selected: " + processed.selection_error;
@@ -107,6 +134,7 @@ cv::Mat TrackerSession::occlusionMask() const {
 
 void TrackerSession::reset() {
   tracker_.reset();
+  believed_stamp_.reset();
   start_roi_pending_ = start_roi_in_force_ = false;
 }
 

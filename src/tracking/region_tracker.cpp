@@ -105,7 +105,7 @@ class RegionTracker::Implementation {
   void setLens(const std::optional<image::Lens>& lens);
 
   TrackResult select(const cv::Mat& image, double stamp, const geometry::Rectangle& roi);
-  TrackResult track(const cv::Mat& image, double stamp);
+  TrackResult track(const cv::Mat& image, double stamp, const std::optional<Eigen::Matrix3d>& motion);
   void reset();
   cv::Mat occlusionMask() const;
   bool hasRoi() const { return state_ != State::kIdle; }
@@ -124,6 +124,7 @@ class RegionTracker::Implementation {
   }
   void drawPatch(const cv::Mat& image, const Eigen::Matrix3d& g, const geometry::Rectangle& roi);
   Eigen::Matrix3d predict(double stamp) const;
+  bool carry(const std::optional<Eigen::Matrix3d>& motion);
   Attempt attempt(const cv::Mat& image, const EsmState& start, bool from_track);
   Attempt search(const cv::Mat& image);
   std::vector<Eigen::Matrix3d> searchCoarsely(const cv::Mat& image);
@@ -150,6 +151,9 @@ class RegionTracker::Implementation {
   double reference_stamp_ = 0.0;
   double last_stamp_ = 0.0;
   EsmState last_;                      // last estimate that was believed
+  Eigen::Matrix3d carried_ = Eigen::Matrix3d::Identity();  // the same, moved by what the robot says
+  bool is_carried_ = false;
+  bool velocity_beside_motion_ = false;  // velocity_ is what remained beside it
   double last_good_stamp_ = 0.0;
   geometry::Vector8d velocity_ = geometry::Vector8d::Zero();  // 1/s, of the last motion, in normalised template coordinates
   bool has_velocity_ = false;
@@ -252,7 +256,8 @@ TrackResult RegionTracker::Implementation::select(const cv::Mat& image, double s
   return result;
 }
 
-TrackResult RegionTracker::Implementation::track(const cv::Mat& image, double stamp) {
+TrackResult RegionTracker::Implementation::track(const cv::Mat& image, double stamp,
+                                                 const std::optional<Eigen::Matrix3d>& motion) {
   checkImage(image);
   if (state_ == State::kIdle) {
     const TrackResult result = idle(stamp, reset_reason_.empty() ? "no region of interest selected" : reset_reason_);
@@ -272,10 +277,19 @@ TrackResult RegionTracker::Implementation::track(const cv::Mat& image, double st
     return idle(stamp, why.str());
   }
   Attempt best;
+  const bool moved = carry(motion);
   if (state_ == State::kTracking) {
     EsmState start = last_;
     start.g = predict(stamp);
     best = attempt(image, start, true);
+    if (moved && !best.doubt.empty()) {
+      // A robot that is wrong must not lose what is found without it; what was seen where it led says nothing.
+      carry(std::nullopt);
+      gates_.forget();
+      esm_.forgetLight();
+      start.g = predict(stamp);
+      best = attempt(image, start, true);
+    }
   } else {
     best = search(image);
   }
@@ -286,12 +300,26 @@ TrackResult RegionTracker::Implementation::track(const cv::Mat& image, double st
   return report(best, stamp);
 }
 
+// False when there is no motion that could be one.
+bool RegionTracker::Implementation::carry(const std::optional<Eigen::Matrix3d>& motion) {
+  carried_ = last_.g;
+  is_carried_ = false;
+  if (!motion || !motion->allFinite() || !(motion->determinant() > 1e-12)) return false;
+  const Eigen::Matrix3d g = geometry::normaliseDeterminant(*motion * last_.g);
+  const geometry::Quadrilateral corners = geometry::apply(g, esm_.roi().corners());
+  const double ratio = geometry::signedArea(corners) / geometry::signedArea(esm_.roi().corners());
+  if (!geometry::isConvex(corners) || !(std::max(ratio, 1.0 / ratio) <= config_.quality.max_area_ratio)) return false;
+  carried_ = g;
+  is_carried_ = true;
+  return true;
+}
+
 Eigen::Matrix3d RegionTracker::Implementation::predict(double stamp) const {
   const double dt = stamp - last_good_stamp_;
-  if (!has_velocity_ || !(dt > 0.0)) return last_.g;
+  if (!has_velocity_ || velocity_beside_motion_ != is_carried_ || !(dt > 0.0)) return carried_;
   const Eigen::Matrix3d motion = geometry::sl3Exp(config_.velocity_damping * dt * velocity_);
-  const Eigen::Matrix3d g = last_.g * n_.inverse() * motion * n_;
-  return geometry::isConvex(geometry::apply(g, esm_.roi().corners())) ? g : last_.g;
+  const Eigen::Matrix3d g = carried_ * n_.inverse() * motion * n_;
+  return geometry::isConvex(geometry::apply(g, esm_.roi().corners())) ? g : carried_;
 }
 
 // The gates' view of the image where the ROI is taken to be.
@@ -366,7 +394,14 @@ RegionTracker::Implementation::Attempt RegionTracker::Implementation::search(con
     }
     return false;
   };
+  const bool moved = is_carried_;
+  is_carried_ = false;
   if (confirmations_ > 0 && tryAt(candidate_)) return best;
+  if (moved) {
+    is_carried_ = true;
+    if (tryEach({carried_})) return best;
+    is_carried_ = false;
+  }
   if (tryAt(last_)) return best;
   const SearchConfig& stages = config_.search;
   const bool features = stages.features && (!stages.correlation || search_turn_ % 2 == 0);
@@ -458,7 +493,8 @@ void RegionTracker::Implementation::decide(const Attempt& best, double stamp) {
     const double dt = stamp - last_good_stamp_;
     has_velocity_ = dt > 0.0;
     if (has_velocity_) {
-      velocity_ = geometry::sl3Log(geometry::normaliseDeterminant(n_ * last_.g.inverse() * now.g * n_.inverse())) / dt;
+      velocity_ = geometry::sl3Log(geometry::normaliseDeterminant(n_ * carried_.inverse() * now.g * n_.inverse())) / dt;
+      velocity_beside_motion_ = is_carried_;
       has_velocity_ = velocity_.allFinite();
     }
   }
@@ -479,6 +515,7 @@ TrackResult RegionTracker::Implementation::report(const Attempt& attempt, double
   result.iterations = attempt.evidence.esm.iterations;
   result.corner_error = attempt.evidence.esm.corner_error;
   result.sigma = attempt.evidence.esm.sigma;
+  result.motion_used = is_carried_ && attempt.doubt.empty();
   result.gain = attempt.evidence.esm.state.gain;
   result.bias = attempt.evidence.esm.state.bias;
   result.colour_used = gates_.colourUsed();
@@ -532,7 +569,9 @@ void RegionTracker::setLens(const std::optional<image::Lens>& lens) { implementa
 TrackResult RegionTracker::select(const cv::Mat& image, double stamp, const geometry::Rectangle& roi) {
   return implementation_->select(image, stamp, roi);
 }
-TrackResult RegionTracker::track(const cv::Mat& image, double stamp) { return implementation_->track(image, stamp); }
+TrackResult RegionTracker::track(const cv::Mat& image, double stamp, const std::optional<Eigen::Matrix3d>& motion) {
+  return implementation_->track(image, stamp, motion);
+}
 void RegionTracker::reset() { implementation_->reset(); }
 cv::Mat RegionTracker::occlusionMask() const { return implementation_->occlusionMask(); }
 bool RegionTracker::hasRoi() const { return implementation_->hasRoi(); }

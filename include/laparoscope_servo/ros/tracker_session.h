@@ -7,6 +7,7 @@
 #include <sensor_msgs/Image.h>
 #include <std_msgs/Header.h>
 
+#include <functional>
 #include <memory>
 #include <opencv2/core.hpp>
 #include <optional>
@@ -20,6 +21,10 @@
 
 namespace laparoscope_servo::skin {
 
+// Where the camera was, for the tracker's prediction: the motion of `frame` from the image at `from` to that at `to`, or why not.
+using CameraMotion = std::function<std::optional<Eigen::Isometry3d>(const std::string& frame, const ros::Time& from,
+                                                                    const ros::Time& to, std::string& why)>;
+
 // What is known of one image.
 struct Processed {
   std_msgs::Header header;  // the image's
@@ -29,6 +34,8 @@ struct Processed {
   std::optional<geometry::PinholeCamera> camera;  // empty when H cannot be given
   std::string camera_error;                       // why it cannot
   std::shared_ptr<const image::Lens> lens;        // through which the image is seen; null: none
+  bool motion_wanted = false;                     // the camera's motion was asked for
+  std::string motion_error;                       // why it was not given
   std::string selection_error;                    // a ROI should have been selected in this image and was not: why
   double processing_time = 0.0;                   // s, from the decoded image to the result
 };
@@ -46,6 +53,9 @@ class TrackerSession {
     intrinsics_.set(info);
     lens_source_.set(info);
   }
+
+  // Asked while a ROI is tracked or searched for, at most once an image.
+  void setCameraMotion(const CameraMotion& motion) { camera_motion_ = motion; }
 
   // Processes the next image; `request` is a ROI to select in it. Throws ImageError or std::invalid_argument when the
   // image cannot be used: the session then goes on as if it had not come. The message has to outlive the result's
@@ -68,6 +78,7 @@ class TrackerSession {
  private:
   tracking::TrackResult track(Processed& processed, const std::optional<geometry::Rectangle>& request);
   void updateLens(const cv::Size& size);
+  std::optional<Eigen::Matrix3d> motionBefore(Processed& processed) const;
   void complete(Processed& processed, const std::optional<geometry::Rectangle>& request);
 
   TrackerParameters parameters_;
@@ -81,6 +92,8 @@ class TrackerSession {
   std::optional<ros::Time> last_stamp_;
   cv::Size image_size_;
   ros::Time reference_stamp_;
+  CameraMotion camera_motion_;
+  std::optional<ros::Time> believed_stamp_;  // of the last image that the state was TRACKING in
 };
 
 }  // namespace laparoscope_servo::skin

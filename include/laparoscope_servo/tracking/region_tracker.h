@@ -47,6 +47,7 @@ struct TrackResult {
   bool colour_used = false;                         // false: the image has no colour, the colour gate stands aside
   AreaReport areas;
   bool selected_now = false;                        // this image is the reference
+  bool motion_used = false;                         // the motion that was given led to this estimate
 };
 
 class RegionTracker {
@@ -69,7 +70,10 @@ class RegionTracker {
   // Processes the next image. A stamp before the last one, or an image of another size than the reference, resets to IDLE,
   // with the reason. Throws std::invalid_argument for an image that is empty or of another type than those above; the
   // tracker then goes on as if the image had not come.
-  TrackResult track(const cv::Mat& image, double stamp);
+  // `motion`: where something else than the images, a robot, says that the tissue has gone: takes pixels of the last image in which the
+  // state was TRACKING to pixels of this one, any scale. It gives a place to start from, beside which only what remains is expected to go
+  // on; one that is no homography, or that leads nowhere, does no harm.
+  TrackResult track(const cv::Mat& image, double stamp, const std::optional<Eigen::Matrix3d>& motion = std::nullopt);
 
   // Forgets the ROI.
   void reset();
