@@ -153,7 +153,8 @@ class RegionTracker::Implementation {
   EsmState last_;                      // last estimate that was believed
   Eigen::Matrix3d carried_ = Eigen::Matrix3d::Identity();  // the same, moved by what the robot says
   bool is_carried_ = false;
-  bool velocity_beside_motion_ = false;  // velocity_ is what remained beside it
+  geometry::Vector8d rest_velocity_ = geometry::Vector8d::Zero();  // as velocity_, of what remained beside the robot's motion
+  bool has_rest_velocity_ = false;
   double last_good_stamp_ = 0.0;
   geometry::Vector8d velocity_ = geometry::Vector8d::Zero();  // 1/s, of the last motion, in normalised template coordinates
   bool has_velocity_ = false;
@@ -316,8 +317,8 @@ bool RegionTracker::Implementation::carry(const std::optional<Eigen::Matrix3d>& 
 
 Eigen::Matrix3d RegionTracker::Implementation::predict(double stamp) const {
   const double dt = stamp - last_good_stamp_;
-  if (!has_velocity_ || velocity_beside_motion_ != is_carried_ || !(dt > 0.0)) return carried_;
-  const Eigen::Matrix3d motion = geometry::sl3Exp(config_.velocity_damping * dt * velocity_);
+  if (!(is_carried_ ? has_rest_velocity_ : has_velocity_) || !(dt > 0.0)) return carried_;
+  const Eigen::Matrix3d motion = geometry::sl3Exp(config_.velocity_damping * dt * (is_carried_ ? rest_velocity_ : velocity_));
   const Eigen::Matrix3d g = carried_ * n_.inverse() * motion * n_;
   return geometry::isConvex(geometry::apply(g, esm_.roi().corners())) ? g : carried_;
 }
@@ -468,7 +469,7 @@ void RegionTracker::Implementation::decide(const Attempt& best, double stamp) {
   const QualityConfig& quality = config_.quality;
   if (!best.doubt.empty()) {
     confirmations_ = 0;
-    has_velocity_ = false;
+    has_velocity_ = has_rest_velocity_ = false;
     if (state_ == State::kTracking) {
       state_ = State::kSearching;
       search_turn_ = 0;
@@ -486,16 +487,20 @@ void RegionTracker::Implementation::decide(const Attempt& best, double stamp) {
     candidate_ = now;
     if (confirmations_ < quality.confirmations) return;
     state_ = State::kTracking;
-    has_velocity_ = false;
+    has_velocity_ = has_rest_velocity_ = false;
   } else {
     record_.add(best.evidence.zncc, best.evidence.esm.sigma, farthestCorner(best.evidence.predicted, now.g, esm_.roi()),
                 best.evidence.visible_fraction);
     const double dt = stamp - last_good_stamp_;
     has_velocity_ = dt > 0.0;
     if (has_velocity_) {
-      velocity_ = geometry::sl3Log(geometry::normaliseDeterminant(n_ * carried_.inverse() * now.g * n_.inverse())) / dt;
-      velocity_beside_motion_ = is_carried_;
+      velocity_ = geometry::sl3Log(geometry::normaliseDeterminant(n_ * last_.g.inverse() * now.g * n_.inverse())) / dt;
       has_velocity_ = velocity_.allFinite();
+    }
+    has_rest_velocity_ = is_carried_ && dt > 0.0;
+    if (has_rest_velocity_) {
+      rest_velocity_ = geometry::sl3Log(geometry::normaliseDeterminant(n_ * carried_.inverse() * now.g * n_.inverse())) / dt;
+      has_rest_velocity_ = rest_velocity_.allFinite();
     }
   }
   confirmations_ = 0;

@@ -80,11 +80,12 @@ TEST_F(RegionTrackerMotion, AnyScaleWillDo) {
 }
 
 TEST_F(RegionTrackerMotion, GoesOnWhenItIsMissingForAWhile) {
-  // The camera stands still while the robot is silent, and jumps when it is not.
-  for (int frame = 1; frame <= 12; ++frame) {
-    const int at = frame / 3;
-    const std::optional<Eigen::Matrix3d> motion =
-        frame % 3 == 0 ? std::optional<Eigen::Matrix3d>(byRobot(at - 1, at)) : std::nullopt;
+  // The camera jumps, rests, and rests while the robot is silent.
+  for (int frame = 1; frame <= 16; ++frame) {
+    const int at = frame / 4;
+    std::optional<Eigen::Matrix3d> motion;
+    if (frame % 4 == 0) motion = byRobot(at - 1, at);
+    if (frame % 4 == 1) motion = Eigen::Matrix3d::Identity();
     const TrackResult r = tracker_.track(image(at), 0.04 * frame, motion);
     ASSERT_EQ(r.state, State::kTracking) << frame << ": " << r.reason;
     EXPECT_EQ(r.motion_used, motion.has_value());
