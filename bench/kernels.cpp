@@ -350,7 +350,8 @@ void track(State& state, bool through_lens) {
   }
   tracking::RegionTracker tracker{tracking::TrackerConfig()};
   if (through_lens) {
-    // The images are raw ones, and no plane any more: little enough that the tracker does not mind, and the work is the same.
+    // The images are raw ones, and no plane any more: little enough that the tracker does not mind, and the work is the
+    // same.
     image::LensParameters parameters;
     parameters.coefficients = {-0.01, 0.001, 0.0, 0.0, 0.0};
     parameters.raw = parameters.rectified = {700.0, 700.0, 480.0, 360.0};
@@ -376,17 +377,37 @@ BENCHMARK(machineCopy)->Name("machine/copy")->Arg(16)->Arg(200)->Arg(700)->Arg(6
 BENCHMARK(machineTriad)->Name("machine/triad")->Arg(16)->Arg(200)->Arg(700)->Arg(6000)->Arg(131072);
 BENCHMARK(machineMultiplyAdd)->Name("machine/multiply_add")->Arg(256)->Arg(512);
 BENCHMARK(warp)->Name("kernel/warp")->Arg(100)->Arg(196)->Arg(400);
-BENCHMARK_CAPTURE(warpThroughLens, plumb_bob, image::Distortion::kPlumbBob)->Name("kernel/warp_plumb_bob")->Arg(100)->Arg(196)->Arg(400);
-BENCHMARK_CAPTURE(warpThroughLens, rational, image::Distortion::kRationalPolynomial)->Name("kernel/warp_rational_polynomial")->Arg(196);
-BENCHMARK_CAPTURE(warpThroughLens, equidistant, image::Distortion::kEquidistant)->Name("kernel/warp_equidistant")->Arg(100)->Arg(196)->Arg(400);
+BENCHMARK_CAPTURE(warpThroughLens, plumb_bob, image::Distortion::kPlumbBob)
+    ->Name("kernel/warp_plumb_bob")
+    ->Arg(100)
+    ->Arg(196)
+    ->Arg(400);
+BENCHMARK_CAPTURE(warpThroughLens, rational, image::Distortion::kRationalPolynomial)
+    ->Name("kernel/warp_rational_polynomial")
+    ->Arg(196);
+BENCHMARK_CAPTURE(warpThroughLens, equidistant, image::Distortion::kEquidistant)
+    ->Name("kernel/warp_equidistant")
+    ->Arg(100)
+    ->Arg(196)
+    ->Arg(400);
 BENCHMARK(gradients)->Name("kernel/gradients")->Arg(100)->Arg(196)->Arg(400);
 BENCHMARK(sums)->Name("kernel/sums")->Arg(100)->Arg(196)->Arg(400);
 BENCHMARK(pyramid)->Name("kernel/pyramid")->Arg(100)->Arg(196)->Arg(400);
 BENCHMARK(colourGate)->Name("kernel/colour_gate")->Arg(100)->Arg(196)->Arg(400);
 BENCHMARK(structureGate)->Name("kernel/structure_gate")->Arg(100)->Arg(196)->Arg(400);
 BENCHMARK(esmIteration)->Name("kernel/esm_iteration")->Arg(100)->Arg(196)->Arg(400);
-BENCHMARK_CAPTURE(track, plain, false)->Name("kernel/track")->Arg(100)->Arg(196)->Arg(400)->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(track, lens, true)->Name("kernel/track_through_lens")->Arg(100)->Arg(196)->Arg(400)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(track, plain, false)
+    ->Name("kernel/track")
+    ->Arg(100)
+    ->Arg(196)
+    ->Arg(400)
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(track, lens, true)
+    ->Name("kernel/track_through_lens")
+    ->Arg(100)
+    ->Arg(196)
+    ->Arg(400)
+    ->Unit(benchmark::kMicrosecond);
 BENCHMARK(remapImage)->Name("peer/remap_image")->Args({640, 480})->Args({1920, 1080})->Unit(benchmark::kMicrosecond);
 
 }  // namespace

@@ -84,7 +84,8 @@ Eigen::Matrix3d fromPlane(const Eigen::Isometry3d& current_T_reference, const Ei
 
 Eigen::Matrix3d pixelsFromPlane(const Eigen::Isometry3d& current_T_reference, const Eigen::Vector3d& n, double d,
                                 const PinholeCamera& camera) {
-  if (!(d > 0.0)) throw std::invalid_argument("plane at the distance " + std::to_string(d) + " m, expected a positive one");
+  if (!(d > 0.0))
+    throw std::invalid_argument("plane at the distance " + std::to_string(d) + " m, expected a positive one");
   const Eigen::Matrix3d h = fromPlane(current_T_reference, n, d);
   if (!(h.determinant() > 0.0)) {  // also for NaN
     throw std::invalid_argument("motion is not finite, or takes the camera through the plane that it looks at");

@@ -40,8 +40,8 @@ void locate(const Row& row, int width, int height, int stride, int channels, int
 
 // The same for points that are there already, see locateRaw.
 LAPAROSCOPE_SERVO_CLONES
-void place(const float* __restrict us, const float* __restrict vs, int width, int height, int stride, int channels, int count,
-           int* __restrict offset, unsigned char* __restrict valid) {
+void place(const float* __restrict us, const float* __restrict vs, int width, int height, int stride, int channels,
+           int count, int* __restrict offset, unsigned char* __restrict valid) {
   const float right = static_cast<float>(width);
   const float bottom = static_cast<float>(height);
 #pragma omp simd
@@ -72,7 +72,8 @@ int markBright(const unsigned char* __restrict b, const unsigned char* __restric
 }
 
 // `lens`: null without one.
-void warpRows(const cv::Mat& image, const Eigen::Matrix3d& g, const LensLoop* lens, const cv::Size& size, ColourPatch& patch) {
+void warpRows(const cv::Mat& image, const Eigen::Matrix3d& g, const LensLoop* lens, const cv::Size& size,
+              ColourPatch& patch) {
   if (image.type() != CV_8UC1 && image.type() != CV_8UC3) {
     throw std::invalid_argument("image of OpenCV type " + std::to_string(image.type()) +
                                 ", expected 8 bit with one channel or three");
@@ -123,7 +124,8 @@ void warpNearest(const cv::Mat& image, const Eigen::Matrix3d& g, const cv::Size&
   warpRows(image, g, nullptr, size, patch);
 }
 
-void warpNearest(const cv::Mat& image, const Eigen::Matrix3d& g, const Lens& lens, const cv::Size& size, ColourPatch& patch) {
+void warpNearest(const cv::Mat& image, const Eigen::Matrix3d& g, const Lens& lens, const cv::Size& size,
+                 ColourPatch& patch) {
   const LensLoop loop = lens.loop({});
   warpRows(image, lens.raysFromRectified() * g, &loop, size, patch);
 }

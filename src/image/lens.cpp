@@ -16,9 +16,9 @@ constexpr double kLargestAngle = 88.0 * M_PI / 180.0;  // rad, from the axis; a 
 constexpr int kFieldSteps = 880;
 constexpr int kAzimuths = 8;
 constexpr int kIterations = 30;
-constexpr double kSolved = 1e-9;         // of the focal length
-constexpr int kMapStep = 8;              // px
-constexpr float kNowhere = -1e6f;        // px
+constexpr double kSolved = 1e-9;   // of the focal length
+constexpr int kMapStep = 8;        // px
+constexpr float kNowhere = -1e6f;  // px
 
 bool sameCamera(const geometry::PinholeCamera& a, const geometry::PinholeCamera& b) {
   return a.fx == b.fx && a.fy == b.fy && a.cx == b.cx && a.cy == b.cy;
@@ -68,7 +68,8 @@ Lens::Lens(const LensParameters& parameters) : parameters_(parameters) {
   rays_ = parameters.rotation.inverse() * parameters.rectified.inverseMatrix();
   rectified_from_rays_ = parameters.rectified.matrix() * parameters.rotation;
   field_ = findField();
-  if (!(field_ > 0.0)) throw std::invalid_argument("distortion model is not one to one on the axis, expected coefficients that are");
+  if (!(field_ > 0.0))
+    throw std::invalid_argument("distortion model is not one to one on the axis, expected coefficients that are");
 }
 
 // The factor on the distance from the axis, whose square is q.
@@ -167,7 +168,8 @@ LensLoop Lens::loop(const RawWindow& window) const {
   const std::array<double, 8>& c = parameters_.coefficients;
   LensLoop result;
   result.equidistant = parameters_.distortion == Distortion::kEquidistant;
-  const std::array<int, 6> order = result.equidistant ? std::array<int, 6>{0, 1, 2, 3, 4, 5} : std::array<int, 6>{0, 1, 4, 5, 6, 7};
+  const std::array<int, 6> order =
+      result.equidistant ? std::array<int, 6>{0, 1, 2, 3, 4, 5} : std::array<int, 6>{0, 1, 4, 5, 6, 7};
   for (int k = 0; k < 6; ++k) result.k[k] = static_cast<float>(c[order[k]]);
   if (!result.equidistant) {
     result.p1 = static_cast<float>(c[2]);
@@ -218,7 +220,8 @@ cv::Rect rectifiedBox(const Lens& lens, const cv::Size& size) {
   Bounds bounds;
   for (int j = 0; j <= kSteps; ++j) {
     for (int i = 0; i <= kSteps; ++i) {
-      const auto p = lens.toRectified(Eigen::Vector2d((size.width - 1.0) * i / kSteps, (size.height - 1.0) * j / kSteps));
+      const auto p =
+          lens.toRectified(Eigen::Vector2d((size.width - 1.0) * i / kSteps, (size.height - 1.0) * j / kSteps));
       if (p) bounds.add(p->array().max(-0.5 * extent).min(1.5 * extent).matrix());
     }
   }
@@ -253,7 +256,8 @@ cv::Mat2f rectifiedMap(const Lens& lens, const cv::Rect& box) {
   return map;
 }
 
-void drawMask(const cv::Mat1b& mask, const Eigen::Matrix3d& g, const Lens* lens, const cv::Rect& window, cv::Mat1b& result) {
+void drawMask(const cv::Mat1b& mask, const Eigen::Matrix3d& g, const Lens* lens, const cv::Rect& window,
+              cv::Mat1b& result) {
   if (lens == nullptr) {
     Eigen::Matrix3d to_window = Eigen::Matrix3d::Identity();
     to_window.topRightCorner<2, 1>() << -window.x, -window.y;

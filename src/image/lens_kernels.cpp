@@ -12,7 +12,8 @@ namespace {
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
 LAPAROSCOPE_SERVO_CLONES
-void locatePolynomial(const LensLoop& lens, const ProjectiveRow& row, int first, int count, float* __restrict u, float* __restrict v) {
+void locatePolynomial(const LensLoop& lens, const ProjectiveRow& row, int first, int count, float* __restrict u,
+                      float* __restrict v) {
   const LensLoop l = lens;
   const ProjectiveRow r = row;
 #pragma omp simd
@@ -23,7 +24,8 @@ void locatePolynomial(const LensLoop& lens, const ProjectiveRow& row, int first,
     const float x = (r.u0 + r.u1 * t) * per_w;
     const float y = (r.v0 + r.v1 * t) * per_w;
     const float q = x * x + y * y;
-    const float radial = (1.0f + q * (l.k[0] + q * (l.k[1] + q * l.k[2]))) / (1.0f + q * (l.k[3] + q * (l.k[4] + q * l.k[5])));
+    const float radial =
+        (1.0f + q * (l.k[0] + q * (l.k[1] + q * l.k[2]))) / (1.0f + q * (l.k[3] + q * (l.k[4] + q * l.k[5])));
     const float xy = 2.0f * x * y;
     const float xd = x * radial + l.p1 * xy + l.p2 * (q + 2.0f * x * x);
     const float yd = y * radial + l.p1 * (q + 2.0f * y * y) + l.p2 * xy;
@@ -49,7 +51,8 @@ inline float atanOver(float s) {
 }
 
 LAPAROSCOPE_SERVO_CLONES
-void locateEquidistant(const LensLoop& lens, const ProjectiveRow& row, int first, int count, float* __restrict u, float* __restrict v) {
+void locateEquidistant(const LensLoop& lens, const ProjectiveRow& row, int first, int count, float* __restrict u,
+                       float* __restrict v) {
   const LensLoop l = lens;
   const ProjectiveRow r = row;
 #pragma omp simd

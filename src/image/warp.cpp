@@ -92,7 +92,8 @@ void blend(const float* __restrict upper, const float* __restrict lower, const f
 }
 
 // Returns how many pixels are valid. `lens`: null without one.
-int warpRow(const cv::Mat1f& image, int width, const Row& row, const LensLoop* lens, int count, float* patch, float* valid) {
+int warpRow(const cv::Mat1f& image, int width, const Row& row, const LensLoop* lens, int count, float* patch,
+            float* valid) {
   const float* pixels = image.ptr<float>();
   const int stride = static_cast<int>(image.step1());
   const int step_down = image.rows > 1 ? stride : 0;
@@ -118,12 +119,13 @@ int warpRow(const cv::Mat1f& image, int width, const Row& row, const LensLoop* l
 
 Row rowOf(const Eigen::Matrix3d& g, int j) {
   const Eigen::Vector3d start = g.col(1) * j + g.col(2);
-  return {static_cast<float>(start[0]), static_cast<float>(g(0, 0)), static_cast<float>(start[1]),
-          static_cast<float>(g(1, 0)), static_cast<float>(start[2]), static_cast<float>(g(2, 0))};
+  return {static_cast<float>(start[0]), static_cast<float>(g(0, 0)),  static_cast<float>(start[1]),
+          static_cast<float>(g(1, 0)),  static_cast<float>(start[2]), static_cast<float>(g(2, 0))};
 }
 
 template <typename PatchRow, typename ValidRow>
-bool warpRows(const cv::Mat1f& image, const Eigen::Matrix3d& g, const LensLoop* lens, int width, int height, PatchRow patch, ValidRow valid) {
+bool warpRows(const cv::Mat1f& image, const Eigen::Matrix3d& g, const LensLoop* lens, int width, int height,
+              PatchRow patch, ValidRow valid) {
   // Pairs of neighbours are read; an image of one column is given a second one.
   cv::Mat1f widened;
   if (image.cols == 1) cv::hconcat(image, image, widened);
@@ -148,34 +150,40 @@ void differences(const float* __restrict row, const float* __restrict above, con
 }  // namespace
 
 bool warpBilinear(const cv::Mat1f& image, const Eigen::Matrix3d& g, Patch& patch, Patch& valid) {
-  return warpRows(image, g, nullptr, patch.width(), patch.height(), [&](int j) { return patch.row(j); },
-                  [&](int j) { return valid.row(j); });
+  return warpRows(
+      image, g, nullptr, patch.width(), patch.height(), [&](int j) { return patch.row(j); },
+      [&](int j) { return valid.row(j); });
 }
 
 bool warpBilinear(const cv::Mat1f& image, const Eigen::Matrix3d& g, cv::Mat1f& patch, cv::Mat1f& valid) {
-  return warpRows(image, g, nullptr, patch.cols, patch.rows, [&](int j) { return patch.ptr<float>(j); },
-                  [&](int j) { return valid.ptr<float>(j); });
+  return warpRows(
+      image, g, nullptr, patch.cols, patch.rows, [&](int j) { return patch.ptr<float>(j); },
+      [&](int j) { return valid.ptr<float>(j); });
 }
 
-bool warpBilinear(const cv::Mat1f& image, const Eigen::Matrix3d& g, const Lens& lens, const RawWindow& window, Patch& patch,
-                  Patch& valid) {
+bool warpBilinear(const cv::Mat1f& image, const Eigen::Matrix3d& g, const Lens& lens, const RawWindow& window,
+                  Patch& patch, Patch& valid) {
   const LensLoop loop = lens.loop(window);
-  return warpRows(image, lens.raysFromRectified() * g, &loop, patch.width(), patch.height(), [&](int j) { return patch.row(j); },
-                  [&](int j) { return valid.row(j); });
+  return warpRows(
+      image, lens.raysFromRectified() * g, &loop, patch.width(), patch.height(), [&](int j) { return patch.row(j); },
+      [&](int j) { return valid.row(j); });
 }
 
-bool warpBilinear(const cv::Mat1f& image, const Eigen::Matrix3d& g, const Lens& lens, const RawWindow& window, cv::Mat1f& patch,
-                  cv::Mat1f& valid) {
+bool warpBilinear(const cv::Mat1f& image, const Eigen::Matrix3d& g, const Lens& lens, const RawWindow& window,
+                  cv::Mat1f& patch, cv::Mat1f& valid) {
   const LensLoop loop = lens.loop(window);
-  return warpRows(image, lens.raysFromRectified() * g, &loop, patch.cols, patch.rows, [&](int j) { return patch.ptr<float>(j); },
-                  [&](int j) { return valid.ptr<float>(j); });
+  return warpRows(
+      image, lens.raysFromRectified() * g, &loop, patch.cols, patch.rows, [&](int j) { return patch.ptr<float>(j); },
+      [&](int j) { return valid.ptr<float>(j); });
 }
 
-cv::Mat1f rectify(const cv::Mat1f& image, const Eigen::Matrix3d& g, const Lens& lens, const RawWindow& window, const cv::Size& size) {
+cv::Mat1f rectify(const cv::Mat1f& image, const Eigen::Matrix3d& g, const Lens& lens, const RawWindow& window,
+                  const cv::Size& size) {
   const LensLoop loop = lens.loop(window);
   const Eigen::Matrix3d rays = lens.raysFromRectified() * g;
   cv::Mat1f u(size), v(size), result;
-  for (int j = 0; j < size.height; ++j) locateRaw(loop, rowOf(rays, j), 0, size.width, u.ptr<float>(j), v.ptr<float>(j));
+  for (int j = 0; j < size.height; ++j)
+    locateRaw(loop, rowOf(rays, j), 0, size.width, u.ptr<float>(j), v.ptr<float>(j));
   cv::patchNaNs(u, -1e4);
   cv::patchNaNs(v, -1e4);
   cv::remap(image, result, u, v, cv::INTER_CUBIC, cv::BORDER_REPLICATE);

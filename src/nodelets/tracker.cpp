@@ -114,7 +114,7 @@ void Tracker::followRobot(const skin::RobotMotionConfig& config) {
   tf_ = std::make_unique<tf2_ros::Buffer>();
   tf_listener_ = std::make_unique<tf2_ros::TransformListener>(*tf_);  // in a thread of its own
   session_->setCameraMotion([this, fixed_frame = config.fixed_frame](const std::string& frame, const ros::Time& from,
-                                                                    const ros::Time& to, std::string& why) {
+                                                                     const ros::Time& to, std::string& why) {
     return skin::cameraMotion(*tf_, fixed_frame, frame, from, to, why);
   });
 }
@@ -161,8 +161,8 @@ void Tracker::publish(const skin::Processed& processed) {
     mask_publisher_.publish(skin::imageMessage(processed.header, session_->occlusionMask()));
   }
   if (overlay_publisher_.getNumSubscribers() > 0) {
-    overlay_publisher_.publish(
-        skin::imageMessage(processed.header, skin::drawOverlay(processed.image, processed.result, processed.lens.get())));
+    overlay_publisher_.publish(skin::imageMessage(
+        processed.header, skin::drawOverlay(processed.image, processed.result, processed.lens.get())));
   }
 }
 

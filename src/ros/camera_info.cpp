@@ -99,7 +99,8 @@ image::Lens lensFromInfo(const sensor_msgs::CameraInfo& info, const cv::Size& si
   const bool uncalibrated = info.distortion_model.empty();  // D is all zero then, however long
   if (!uncalibrated && std::find(model.counts.begin(), model.counts.end(), info.D.size()) == model.counts.end()) {
     throw std::invalid_argument("camera_info cannot be used: D has " + std::to_string(info.D.size()) +
-                                " coefficients, expected " + std::to_string(model.counts.front()) + " for " + model.name);
+                                " coefficients, expected " + std::to_string(model.counts.front()) + " for " +
+                                model.name);
   }
   if (!uncalibrated) std::copy(info.D.begin(), info.D.end(), parameters.coefficients.begin());
   const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> rotation(info.R.data());

@@ -63,7 +63,8 @@ void drawOccludedAreas(cv::Mat& canvas, const tracking::TrackResult& result, con
     for (int column = 0; column < areas.columns; ++column) {
       const std::size_t index = static_cast<std::size_t>(row) * areas.columns + column;
       if (index >= areas.occluded.size() || !areas.occluded[index]) continue;
-      const std::vector<cv::Point> points = drawable(geometry::apply(result.g, areaCorners(result, row, column)), lens, 1);
+      const std::vector<cv::Point> points =
+          drawable(geometry::apply(result.g, areaCorners(result, row, column)), lens, 1);
       if (points.empty()) continue;
       if (mask.empty()) mask = cv::Mat::zeros(canvas.size(), CV_8UC1);
       cv::fillConvexPoly(mask, points, cv::Scalar(255), cv::LINE_8, kShift);

@@ -19,8 +19,9 @@ Eigen::Isometry3d toEigen(const geometry_msgs::Transform& transform) {
 
 }  // namespace
 
-std::optional<Eigen::Isometry3d> cameraMotion(const tf2::BufferCore& tf, const std::string& fixed_frame, const std::string& frame,
-                                              const ros::Time& from, const ros::Time& to, std::string& why) {
+std::optional<Eigen::Isometry3d> cameraMotion(const tf2::BufferCore& tf, const std::string& fixed_frame,
+                                              const std::string& frame, const ros::Time& from, const ros::Time& to,
+                                              std::string& why) {
   try {
     const Eigen::Isometry3d fixed_T_from = toEigen(tf.lookupTransform(fixed_frame, frame, from).transform);
     const Eigen::Isometry3d fixed_T_to = toEigen(tf.lookupTransform(fixed_frame, frame, to).transform);

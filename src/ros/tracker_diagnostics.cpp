@@ -82,8 +82,9 @@ std::string TrackerDiagnostics::colourGate() const {
 
 std::string TrackerDiagnostics::robotMotion() const {
   if (!with_robot_motion_) return "not asked for";
-  const std::string text = "given for " + std::to_string(window_.motion_given) + " of " + std::to_string(window_.motion_wanted) +
-                           " images, used for " + std::to_string(window_.motion_used);
+  const std::string text = "given for " + std::to_string(window_.motion_given) + " of " +
+                           std::to_string(window_.motion_wanted) + " images, used for " +
+                           std::to_string(window_.motion_used);
   return window_.motion_given < window_.motion_wanted ? text + "; last missing: " + motion_error_ : text;
 }
 

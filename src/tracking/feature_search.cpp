@@ -88,7 +88,8 @@ void rectify(const image::Lens& lens, Features& features) {
     const auto p = lens.toRectified(Eigen::Vector2d(features.points[k].x, features.points[k].y));
     if (!p) continue;
     features.points[kept] = cv::Point2f(static_cast<float>(p->x()), static_cast<float>(p->y()));
-    if (kept != static_cast<int>(k)) features.descriptors.row(static_cast<int>(k)).copyTo(features.descriptors.row(kept));
+    if (kept != static_cast<int>(k))
+      features.descriptors.row(static_cast<int>(k)).copyTo(features.descriptors.row(kept));
     ++kept;
   }
   features.points.resize(kept);

@@ -99,8 +99,12 @@ const char* stateName(State state) {
 class RegionTracker::Implementation {
  public:
   explicit Implementation(const TrackerConfig& config, std::shared_ptr<const image::Lens> lens = nullptr)
-      : config_(config), lens_(lens), esm_(config.esm, lens), gates_(config.occlusion, config.esm.saturation),
-        keyframes_(config.search.keyframes, lens), feature_search_(config.search, lens) {}
+      : config_(config),
+        lens_(lens),
+        esm_(config.esm, lens),
+        gates_(config.occlusion, config.esm.saturation),
+        keyframes_(config.search.keyframes, lens),
+        feature_search_(config.search, lens) {}
 
   void setLens(const std::optional<image::Lens>& lens);
 
@@ -153,7 +157,8 @@ class RegionTracker::Implementation {
   EsmState last_;                      // last estimate that was believed
   Eigen::Matrix3d carried_ = Eigen::Matrix3d::Identity();  // the same, moved by what the robot says
   bool is_carried_ = false;
-  geometry::Vector8d rest_velocity_ = geometry::Vector8d::Zero();  // as velocity_, of what remained beside the robot's motion
+  geometry::Vector8d rest_velocity_ =
+      geometry::Vector8d::Zero();  // as velocity_, of what remained beside the robot's motion
   bool has_rest_velocity_ = false;
   double last_good_stamp_ = 0.0;
   geometry::Vector8d velocity_ = geometry::Vector8d::Zero();  // 1/s, of the last motion, in normalised template coordinates
@@ -183,7 +188,8 @@ geometry::Rectangle RegionTracker::Implementation::checkedRoi(const cv::Mat& ima
 
 // False for NaN.
 bool RegionTracker::Implementation::shows(const cv::Mat& image, const geometry::Rectangle& roi) const {
-  if (!lens_) return roi.x >= 0.0 && roi.y >= 0.0 && roi.x + roi.width <= image.cols && roi.y + roi.height <= image.rows;
+  if (!lens_)
+    return roi.x >= 0.0 && roi.y >= 0.0 && roi.x + roi.width <= image.cols && roi.y + roi.height <= image.rows;
   const double longest_side = 65536.0;
   if (!(roi.width <= longest_side && roi.height <= longest_side)) return false;
   const auto seen = [&](double x, double y) {
@@ -202,7 +208,8 @@ bool RegionTracker::Implementation::shows(const cv::Mat& image, const geometry::
   return std::isfinite(right) && std::isfinite(bottom);
 }
 
-void RegionTracker::Implementation::drawPatch(const cv::Mat& image, const Eigen::Matrix3d& g, const geometry::Rectangle& roi) {
+void RegionTracker::Implementation::drawPatch(const cv::Mat& image, const Eigen::Matrix3d& g,
+                                              const geometry::Rectangle& roi) {
   const cv::Size size(static_cast<int>(roi.width), static_cast<int>(roi.height));
   if (lens_) {
     image::warpNearest(image, g * fromPatch(roi), *lens_, size, patch_);
@@ -226,7 +233,8 @@ TrackResult RegionTracker::Implementation::select(const cv::Mat& image, double s
   Implementation fresh(config_, lens_);
   const cv::Rect box = seenBox(roi.corners(), 0.0) & cv::Rect(cv::Point(0, 0), image.size());
   if (image.channels() == 3 && config_.esm.adapt_channel) fresh.channel_ = strongestChannel(image(box));
-  fresh.pyramid_.build(image, seenBox(roi.corners(), 4.0 * (1 << config_.esm.levels)), config_.esm.levels, fresh.channel_);
+  fresh.pyramid_.build(image, seenBox(roi.corners(), 4.0 * (1 << config_.esm.levels)), config_.esm.levels,
+                       fresh.channel_);
   fresh.esm_.setReference(fresh.pyramid_, roi);
   fresh.drawPatch(image, Eigen::Matrix3d::Identity(), roi);
   fresh.gates_.setReference(fresh.patch_);
@@ -318,7 +326,8 @@ bool RegionTracker::Implementation::carry(const std::optional<Eigen::Matrix3d>& 
 Eigen::Matrix3d RegionTracker::Implementation::predict(double stamp) const {
   const double dt = stamp - last_good_stamp_;
   if (!(is_carried_ ? has_rest_velocity_ : has_velocity_) || !(dt > 0.0)) return carried_;
-  const Eigen::Matrix3d motion = geometry::sl3Exp(config_.velocity_damping * dt * (is_carried_ ? rest_velocity_ : velocity_));
+  const Eigen::Matrix3d motion =
+      geometry::sl3Exp(config_.velocity_damping * dt * (is_carried_ ? rest_velocity_ : velocity_));
   const Eigen::Matrix3d g = carried_ * n_.inverse() * motion * n_;
   return geometry::isConvex(geometry::apply(g, esm_.roi().corners())) ? g : carried_;
 }
@@ -343,7 +352,8 @@ RegionTracker::Implementation::Attempt RegionTracker::Implementation::attempt(co
   e.record = record_;
   e.esm.state = start;
   e.esm.status = EsmStatus::kOutOfView;
-  const cv::Rect box = seenBox(geometry::apply(start.g, roi.corners()), std::max(32.0, 0.25 * std::max(roi.width, roi.height)));
+  const cv::Rect box =
+      seenBox(geometry::apply(start.g, roi.corners()), std::max(32.0, 0.25 * std::max(roi.width, roi.height)));
   if ((box & cv::Rect(cv::Point(0, 0), image.size())).empty()) {
     result.doubt = "the ROI is outside the image";
     return result;
@@ -452,8 +462,9 @@ std::vector<Eigen::Matrix3d> RegionTracker::Implementation::searchCoarsely(const
     coarse.setTo(0.0f, valid == 0.0f);
   }
   std::vector<Eigen::Matrix3d> places;
-  for (const Candidate& candidate : searchByCorrelation(level.value.view(), level.image_T_patch, coarse, level.scale, esm_.roi(),
-                                                        from_coarse.inverse() * last_.g, kSearchCandidates)) {
+  for (const Candidate& candidate :
+       searchByCorrelation(level.value.view(), level.image_T_patch, coarse, level.scale, esm_.roi(),
+                           from_coarse.inverse() * last_.g, kSearchCandidates)) {
     places.push_back(from_coarse * candidate.g);
   }
   return places;
@@ -499,7 +510,8 @@ void RegionTracker::Implementation::decide(const Attempt& best, double stamp) {
     }
     has_rest_velocity_ = is_carried_ && dt > 0.0;
     if (has_rest_velocity_) {
-      rest_velocity_ = geometry::sl3Log(geometry::normaliseDeterminant(n_ * carried_.inverse() * now.g * n_.inverse())) / dt;
+      rest_velocity_ =
+          geometry::sl3Log(geometry::normaliseDeterminant(n_ * carried_.inverse() * now.g * n_.inverse())) / dt;
       has_rest_velocity_ = rest_velocity_.allFinite();
     }
   }
@@ -537,7 +549,9 @@ TrackResult RegionTracker::Implementation::idle(double stamp, const std::string&
   return result;
 }
 
-void RegionTracker::Implementation::reset() { *this = Implementation(config_, lens_); }
+void RegionTracker::Implementation::reset() {
+  *this = Implementation(config_, lens_);
+}
 
 cv::Mat RegionTracker::Implementation::occlusionMask() const {
   if (state_ == State::kIdle) return {};
@@ -569,7 +583,9 @@ RegionTracker::~RegionTracker() = default;
 RegionTracker::RegionTracker(RegionTracker&&) noexcept = default;
 RegionTracker& RegionTracker::operator=(RegionTracker&&) noexcept = default;
 
-void RegionTracker::setLens(const std::optional<image::Lens>& lens) { implementation_->setLens(lens); }
+void RegionTracker::setLens(const std::optional<image::Lens>& lens) {
+  implementation_->setLens(lens);
+}
 
 TrackResult RegionTracker::select(const cv::Mat& image, double stamp, const geometry::Rectangle& roi) {
   return implementation_->select(image, stamp, roi);

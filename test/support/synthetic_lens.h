@@ -20,8 +20,8 @@ class LensView {
     }
   }
 
-  // The raw image of a scene whose pixel p is at g p in rectified pixels; black where the scene ends. Sampled from the scene at once, so
-  // that nothing but the lens comes between.
+  // The raw image of a scene whose pixel p is at g p in rectified pixels; black where the scene ends. Sampled from the
+  // scene at once, so that nothing but the lens comes between.
   cv::Mat operator()(const cv::Mat& scene, const Eigen::Matrix3d& g) const {
     const Eigen::Matrix3d inverse = g.inverse();
     cv::Mat2f map(rectified_.size());

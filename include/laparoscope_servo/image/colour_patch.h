@@ -21,9 +21,10 @@ struct ColourPatch {
 // type throws std::invalid_argument. Where the denominator of g is not positive, nothing is valid.
 void warpNearest(const cv::Mat& image, const Eigen::Matrix3d& g, const cv::Size& size, ColourPatch& patch);
 
-// The same through a lens: `g` takes (i, j, 1) to rectified pixels, `image` is the whole raw image. What lies outside the lens's field is
-// not valid.
-void warpNearest(const cv::Mat& image, const Eigen::Matrix3d& g, const Lens& lens, const cv::Size& size, ColourPatch& patch);
+// The same through a lens: `g` takes (i, j, 1) to rectified pixels, `image` is the whole raw image. What lies outside
+// the lens's field is not valid.
+void warpNearest(const cv::Mat& image, const Eigen::Matrix3d& g, const Lens& lens, const cv::Size& size,
+                 ColourPatch& patch);
 
 // 255 where any channel is at least `threshold` (grey levels), grown by `grow` px in every direction; 0 elsewhere. Highlights move
 // with the lamp rather than with the tissue, and their rims are bleached.

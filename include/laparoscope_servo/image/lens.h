@@ -1,11 +1,11 @@
 // The distortion of a lens, with the models and the order of coefficients of sensor_msgs/CameraInfo (and OpenCV).
 //
-// Rectified pixels are those that a pinhole camera would have seen, as in image_proc's image_rect; raw pixels are the image's own.
-// A rectified pixel p is the ray R^-1 P^-1 p of the camera; the model moves that ray's point (x, y, 1), and K takes it to its raw
-// pixel. Homographies of a plane hold between rectified pixels only.
+// Rectified pixels are those that a pinhole camera would have seen, as in image_proc's image_rect; raw pixels are the
+// image's own. A rectified pixel p is the ray R^-1 P^-1 p of the camera; the model moves that ray's point (x, y, 1),
+// and K takes it to its raw pixel. Homographies of a plane hold between rectified pixels only.
 //
-// The models are polynomials in the distance from the axis: far out they turn back, and would show one point of the scene twice. What
-// lies beyond the field in which the map is one to one has no raw pixel.
+// The models are polynomials in the distance from the axis: far out they turn back, and would show one point of the
+// scene twice. What lies beyond the field in which the map is one to one has no raw pixel.
 #pragma once
 
 #include <Eigen/Core>
@@ -32,7 +32,8 @@ struct LensParameters {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  // R: rays of the camera to rays of the rectified one
 };
 
-// A part of the raw image, made coarser: its pixel (0, 0) lies on the raw pixel `origin`, and is `scale` raw pixels wide.
+// A part of the raw image, made coarser: its pixel (0, 0) lies on the raw pixel `origin`, and is `scale` raw pixels
+// wide.
 struct RawWindow {
   cv::Point origin;
   double scale = 1.0;
@@ -47,7 +48,8 @@ struct LensLoop {
   float field = 0.0f;                                // largest x^2 + y^2
 };
 
-// Numerators and denominator of a projective map along a row of pixels: at the row's first pixel, and what they grow by.
+// Numerators and denominator of a projective map along a row of pixels: at the row's first pixel, and what they grow
+// by.
 struct ProjectiveRow {
   float u0, u1;
   float v0, v1;
@@ -56,11 +58,12 @@ struct ProjectiveRow {
 
 class Lens {
  public:
-  // Throws std::invalid_argument, with the value and what was expected, for a camera or coefficients that are not finite, a
-  // rotation that is none, and a model that is not one to one even on the axis.
+  // Throws std::invalid_argument, with the value and what was expected, for a camera or coefficients that are not
+  // finite, a rotation that is none, and a model that is not one to one even on the axis.
   explicit Lens(const LensParameters& parameters);
 
-  // px to px; empty outside the field, and behind the camera. toRectified solves the model by iterations, to 1e-9 of the focal length.
+  // px to px; empty outside the field, and behind the camera. toRectified solves the model by iterations, to 1e-9 of
+  // the focal length.
   std::optional<Eigen::Vector2d> toRaw(const Eigen::Vector2d& rectified) const;
   std::optional<Eigen::Vector2d> toRectified(const Eigen::Vector2d& raw) const;
 
@@ -87,15 +90,17 @@ class Lens {
 
 // The same map in every pixel.
 bool operator==(const Lens& a, const Lens& b);
-inline bool operator!=(const Lens& a, const Lens& b) { return !(a == b); }
+inline bool operator!=(const Lens& a, const Lens& b) {
+  return !(a == b);
+}
 
-// Pixels of the window that the rays along `row` are seen at, (u[i], v[i]) for the row's pixel first + i; NaN where there is none. The
-// row is that of raysFromRectified() * g, for a g that takes its pixels to rectified ones. Within 0.001 px of toRaw, for focal lengths
-// and windows of up to 4000 px.
+// Pixels of the window that the rays along `row` are seen at, (u[i], v[i]) for the row's pixel first + i; NaN where
+// there is none. The row is that of raysFromRectified() * g, for a g that takes its pixels to rectified ones. Within
+// 0.001 px of toRaw, for focal lengths and windows of up to 4000 px.
 void locateRaw(const LensLoop& lens, const ProjectiveRow& row, int first, int count, float* u, float* v);
 
-// The part of the raw image that shows the rectified quadrilateral, grown by `margin` (raw px) in every direction, not cut to any
-// image; empty when none of it is in the field. The corners have to be finite.
+// The part of the raw image that shows the rectified quadrilateral, grown by `margin` (raw px) in every direction, not
+// cut to any image; empty when none of it is in the field. The corners have to be finite.
 cv::Rect rawBox(const Lens& lens, const geometry::Quadrilateral& rectified, double margin);
 
 // The same, or, without a lens (null), the box around the corners themselves.
@@ -104,12 +109,14 @@ cv::Rect seenBox(const Lens* lens, const geometry::Quadrilateral& corners, doubl
 // The rectified pixels that a raw image of `size` shows, cut where it shows more than twice its own width and height.
 cv::Rect rectifiedBox(const Lens& lens, const cv::Size& size);
 
-// The rectified pixel of each raw one in `box`, to a quarter of a pixel: solved every few pixels only. Far outside any image where there is
-// none.
+// The rectified pixel of each raw one in `box`, to a quarter of a pixel: solved every few pixels only. Far outside any
+// image where there is none.
 cv::Mat2f rectifiedMap(const Lens& lens, const cv::Rect& box);
 
-// A mask of the ROI's pixels as the image shows it: result(v, u) = mask at the pixel that `g` takes to the pixel `window`'s first + (u, v)
-// of the raw image, 0 where there is none. Without a lens (null) g takes the mask's pixels to those of the image itself.
-void drawMask(const cv::Mat1b& mask, const Eigen::Matrix3d& g, const Lens* lens, const cv::Rect& window, cv::Mat1b& result);
+// A mask of the ROI's pixels as the image shows it: result(v, u) = mask at the pixel that `g` takes to the pixel
+// `window`'s first + (u, v) of the raw image, 0 where there is none. Without a lens (null) g takes the mask's pixels to
+// those of the image itself.
+void drawMask(const cv::Mat1b& mask, const Eigen::Matrix3d& g, const Lens* lens, const cv::Rect& window,
+              cv::Mat1b& result);
 
 }  // namespace laparoscope_servo::image

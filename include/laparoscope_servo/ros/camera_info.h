@@ -22,13 +22,13 @@ enum class ImageKind {
 
 // The pinhole camera of an image of `size` [px]. Takes care of binning and of the region that the driver cut out.
 // Throws std::invalid_argument, naming the value, when the focal lengths are zero, negative or not finite, the centre
-// is not finite, or the message is for images of another size. Distortion is not looked at. kToRectify takes K where P is
-// all zero, as drivers leave it that know K and D only.
+// is not finite, or the message is for images of another size. Distortion is not looked at. kToRectify takes K where P
+// is all zero, as drivers leave it that know K and D only.
 geometry::PinholeCamera cameraFromInfo(const sensor_msgs::CameraInfo& info, ImageKind kind, const cv::Size& size);
 
-// The lens of raw images of `size` [px] by D, K, R and P. Throws std::invalid_argument, naming the value, for the reasons
-// above, a model other than plumb_bob, rational_polynomial and equidistant, a number of coefficients that is not the
-// model's, and values that are not finite. An R that is all zero is taken for the identity.
+// The lens of raw images of `size` [px] by D, K, R and P. Throws std::invalid_argument, naming the value, for the
+// reasons above, a model other than plumb_bob, rational_polynomial and equidistant, a number of coefficients that is
+// not the model's, and values that are not finite. An R that is all zero is taken for the identity.
 image::Lens lensFromInfo(const sensor_msgs::CameraInfo& info, const cv::Size& size);
 
 // A file as camera_calibration writes it, YAML or INI. Throws std::runtime_error that names it.

@@ -21,7 +21,8 @@
 
 namespace laparoscope_servo::skin {
 
-// Where the camera was, for the tracker's prediction: the motion of `frame` from the image at `from` to that at `to`, or why not.
+// Where the camera was, for the tracker's prediction: the motion of `frame` from the image at `from` to that at `to`,
+// or why not.
 using CameraMotion = std::function<std::optional<Eigen::Isometry3d>(const std::string& frame, const ros::Time& from,
                                                                     const ros::Time& to, std::string& why)>;
 
@@ -47,8 +48,8 @@ class TrackerSession {
   // selected or reset() is called.
   explicit TrackerSession(const TrackerParameters& parameters);
 
-  // Holds for the images that follow. While the tracker rectifies, a lens that differs from the one before ends tracking;
-  // camera_info that cannot be used leaves the lens as it is, and takes H away.
+  // Holds for the images that follow. While the tracker rectifies, a lens that differs from the one before ends
+  // tracking; camera_info that cannot be used leaves the lens as it is, and takes H away.
   void setCameraInfo(const sensor_msgs::CameraInfo& info) {
     intrinsics_.set(info);
     lens_source_.set(info);

@@ -35,8 +35,8 @@ double viewDistance(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b, const ge
 
 class Keyframes {
  public:
-  // capacity: how many views are kept beside the reference, 0 or more. With a lens the images are raw, homographies and the ROI
-  // rectified.
+  // capacity: how many views are kept beside the reference, 0 or more. With a lens the images are raw, homographies and
+  // the ROI rectified.
   explicit Keyframes(int capacity, std::shared_ptr<const image::Lens> lens = nullptr)
       : capacity_(capacity), lens_(std::move(lens)) {}
 

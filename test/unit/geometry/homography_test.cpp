@@ -180,7 +180,8 @@ TEST(PixelsFromPlane, MovesThePictureAgainstTheCamera) {
 TEST(PixelsFromPlane, RefusesWhatNoPlaneIsSeenBy) {
   const Eigen::Vector3d n = Eigen::Vector3d::UnitZ();
   Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
-  for (const double bad : {0.0, -0.08, kNan}) EXPECT_THROW(pixelsFromPlane(motion, n, bad, kCamera), std::invalid_argument);
+  for (const double bad : {0.0, -0.08, kNan})
+    EXPECT_THROW(pixelsFromPlane(motion, n, bad, kCamera), std::invalid_argument);
   motion.translation().z() = -0.09;
   EXPECT_THROW(pixelsFromPlane(motion, n, 0.08, kCamera), std::invalid_argument) << "through the plane";
   motion.translation().z() = kNan;

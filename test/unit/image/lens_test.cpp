@@ -22,9 +22,13 @@ std::vector<LensParameters> models() {
   return {test::laparoscope(kSize, 500.0), test::rational(kSize, 500.0), test::equidistant(kSize, 300.0), turned};
 }
 
-std::string name(const LensParameters& p) { return "model " + std::to_string(static_cast<int>(p.distortion)); }
+std::string name(const LensParameters& p) {
+  return "model " + std::to_string(static_cast<int>(p.distortion));
+}
 
-cv::Matx33d matrix(const geometry::PinholeCamera& c) { return {c.fx, 0.0, c.cx, 0.0, c.fy, c.cy, 0.0, 0.0, 1.0}; }
+cv::Matx33d matrix(const geometry::PinholeCamera& c) {
+  return {c.fx, 0.0, c.cx, 0.0, c.fy, c.cy, 0.0, 0.0, 1.0};
+}
 
 cv::Matx33d matrix(const Eigen::Matrix3d& m) {
   return {m(0, 0), m(0, 1), m(0, 2), m(1, 0), m(1, 1), m(1, 2), m(2, 0), m(2, 1), m(2, 2)};
@@ -72,7 +76,8 @@ TEST(Lens, BendsAsOpenCvProjectsPoints) {
       cv::projectPoints(rays, turn, cv::Vec3d(0.0, 0.0, 0.0), matrix(p.raw), coefficients(p), raw);
     }
     for (std::size_t k = 0; k < rays.size(); ++k) {
-      const Eigen::Vector2d rectified(p.rectified.fx * rays[k].x + p.rectified.cx, p.rectified.fy * rays[k].y + p.rectified.cy);
+      const Eigen::Vector2d rectified(p.rectified.fx * rays[k].x + p.rectified.cx,
+                                      p.rectified.fy * rays[k].y + p.rectified.cy);
       const auto mine = lens.toRaw(rectified);
       ASSERT_TRUE(mine) << name(p) << rectified.transpose();
       EXPECT_NEAR(mine->x(), raw[k].x, 1e-6) << name(p);
@@ -89,7 +94,8 @@ TEST(Lens, StraightensAsOpenCvUndistortsPoints) {
       for (int u = 0; u < kSize.width; u += 20) raw.emplace_back(u, v);
     }
     if (p.distortion == Distortion::kEquidistant) {
-      cv::fisheye::undistortPoints(raw, rectified, matrix(p.raw), coefficients(p), matrix(p.rotation), matrix(p.rectified));
+      cv::fisheye::undistortPoints(raw, rectified, matrix(p.raw), coefficients(p), matrix(p.rotation),
+                                   matrix(p.rectified));
     } else {
       cv::undistortPoints(raw, rectified, matrix(p.raw), coefficients(p), matrix(p.rotation), matrix(p.rectified),
                           cv::TermCriteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 200, 1e-12));
@@ -113,8 +119,9 @@ TEST(Lens, TheLoopOverPixelsFindsTheSamePlaces) {
     double worst = 0.0;
     for (int j = 0; j < 300; j += 13) {
       const Eigen::Vector3d start = rays.col(1) * j + rays.col(2);
-      const ProjectiveRow row = {static_cast<float>(start[0]), static_cast<float>(rays(0, 0)), static_cast<float>(start[1]),
-                                 static_cast<float>(rays(1, 0)), static_cast<float>(start[2]), static_cast<float>(rays(2, 0))};
+      const ProjectiveRow row = {static_cast<float>(start[0]), static_cast<float>(rays(0, 0)),
+                                 static_cast<float>(start[1]), static_cast<float>(rays(1, 0)),
+                                 static_cast<float>(start[2]), static_cast<float>(rays(2, 0))};
       float u[400], v[400];
       locateRaw(lens.loop(window), row, 0, 400, u, v);
       for (int i = 0; i < 400; ++i) {
@@ -142,8 +149,9 @@ TEST(Lens, NothingIsSeenWhereThePolynomialTurnsBack) {
   float u[1200], v[1200];
   const Eigen::Matrix3d& rays = lens.raysFromRectified();
   const Eigen::Vector3d start = rays * Eigen::Vector3d(0.0, 240.0, 1.0);
-  const ProjectiveRow row = {static_cast<float>(start[0]), static_cast<float>(rays(0, 0)), static_cast<float>(start[1]),
-                             static_cast<float>(rays(1, 0)), static_cast<float>(start[2]), static_cast<float>(rays(2, 0))};
+  const ProjectiveRow row = {static_cast<float>(start[0]), static_cast<float>(rays(0, 0)),
+                             static_cast<float>(start[1]), static_cast<float>(rays(1, 0)),
+                             static_cast<float>(start[2]), static_cast<float>(rays(2, 0))};
   locateRaw(lens.loop({}), row, 0, 1200, u, v);
   for (int i = 0; i < 1200; ++i) {
     const bool seen = lens.toRaw(Eigen::Vector2d(i, 240.0)).has_value();
@@ -265,7 +273,8 @@ TEST_F(LensWarp, IsThePlainOneWhenAllCoefficientsAreZero) {
     warpNearest(colour_, g_, cv::Size(300, 170), plain_near);
     warpNearest(colour_, g_, lens, cv::Size(300, 170), near);
     EXPECT_EQ(cv::countNonZero(near.valid != plain_near.valid), 0);
-    EXPECT_LT(cv::countNonZero(near.green != plain_near.green), 300 * 170 / 500) << "but for pixels half-way between two";
+    EXPECT_LT(cv::countNonZero(near.green != plain_near.green), 300 * 170 / 500)
+        << "but for pixels half-way between two";
   }
 }
 
@@ -318,7 +327,8 @@ TEST_F(LensWarp, MarksWhatIsOutsideTheImageOrTheField) {
     for (int i = 0; i < patch.cols; i += 5) {
       const auto raw = lens.toRaw(Eigen::Vector2d(i - 300.0, j));
       const bool in = raw && raw->x() > 0.01 && raw->y() > 0.01 && raw->x() < 638.99 && raw->y() < 478.99;
-      if (raw && !in && raw->x() > -1.0 && raw->y() > -1.0 && raw->x() < 640.0 && raw->y() < 480.0) continue;  // on the border
+      if (raw && !in && raw->x() > -1.0 && raw->y() > -1.0 && raw->x() < 640.0 && raw->y() < 480.0)
+        continue;  // on the border
       EXPECT_EQ(valid(j, i), in ? 1.0f : 0.0f) << i << ", " << j;
       EXPECT_EQ(near.valid(j, i), in ? 255 : 0) << i << ", " << j;
     }

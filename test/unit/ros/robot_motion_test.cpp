@@ -51,7 +51,9 @@ Eigen::Isometry3d motionOf(int frame) {
   return start_T_now;
 }
 
-double timeOf(int frame) { return 1000.0 + 0.04 * frame; }
+double timeOf(int frame) {
+  return 1000.0 + 0.04 * frame;
+}
 
 Eigen::Matrix3d truth(int frame) {
   return geometry::pixelsFromPlane(motionOf(frame).inverse(), Eigen::Vector3d::UnitZ(), kDepth, kCamera);
@@ -103,10 +105,8 @@ class SessionWithRobot : public testing::Test {
   }
 
   void followTf() {
-    session_->setCameraMotion(
-        [this](const std::string& frame, const ros::Time& from, const ros::Time& to, std::string& why) {
-          return cameraMotion(tf_, "base", frame, from, to, why);
-        });
+    session_->setCameraMotion([this](const std::string& frame, const ros::Time& from, const ros::Time& to,
+                                     std::string& why) { return cameraMotion(tf_, "base", frame, from, to, why); });
   }
 
   void moveArm(int frame) {
@@ -123,7 +123,8 @@ class SessionWithRobot : public testing::Test {
   static double error(const Processed& processed, int frame) {
     double worst = 0.0;
     for (const Eigen::Vector2d& corner : kRoi.corners()) {
-      worst = std::max(worst, (geometry::apply(processed.result.g, corner) - geometry::apply(truth(frame), corner)).norm());
+      worst =
+          std::max(worst, (geometry::apply(processed.result.g, corner) - geometry::apply(truth(frame), corner)).norm());
     }
     return worst;
   }

@@ -250,9 +250,9 @@ TEST_F(TrackerOfflineTest, DoesNotOverwriteItsInput) {
 }
 
 TEST_F(TrackerOfflineTest, RectifiesByACalibrationFile) {
-  for (const image::LensParameters& lens : {test::laparoscope(cv::Size(320, 240), 220.0),
-                                            test::rational(cv::Size(320, 240), 220.0),
-                                            test::equidistant(cv::Size(320, 240), 160.0)}) {
+  for (const image::LensParameters& lens :
+       {test::laparoscope(cv::Size(320, 240), 220.0), test::rational(cv::Size(320, 240), 220.0),
+        test::equidistant(cv::Size(320, 240), 160.0)}) {
     options_.camera_info = out_.file("scope.yaml");
     writeRawFolder(image::Lens(lens), options_.camera_info);
     const OfflineSummary summary = run();
@@ -267,7 +267,8 @@ TEST_F(TrackerOfflineTest, RectifiesByACalibrationFile) {
       Eigen::Matrix3d g;
       for (int i = 0; i < 9; ++i) g(i / 3, i % 3) = values[static_cast<std::size_t>(3 + i)];
       for (const Eigen::Vector2d& corner : kRoi.corners()) {
-        EXPECT_LT((geometry::apply(g, corner) - geometry::apply(motion[static_cast<std::size_t>(k)], corner)).norm(), 0.2);
+        EXPECT_LT((geometry::apply(g, corner) - geometry::apply(motion[static_cast<std::size_t>(k)], corner)).norm(),
+                  0.2);
       }
     }
   }

@@ -68,7 +68,11 @@ TEST(DefaultFile, EqualsTheDefaultsOfTheStructs) {
 
 TEST(DefaultFile, NamesEveryParameter) {
   const ParameterReader file(parametersFromYaml(kDefaults), "/tracker");
-  for (const char* path : {"rectified_images", "rectify", "robot_motion/enabled", "robot_motion/fixed_frame", "robot_motion/depth",
+  for (const char* path : {"rectified_images",
+                           "rectify",
+                           "robot_motion/enabled",
+                           "robot_motion/fixed_frame",
+                           "robot_motion/depth",
                            "select_timeout",
                            "tracking/velocity_damping",
                            "tracking/min_roi_side",
@@ -143,7 +147,8 @@ TEST(TrackerParametersTest, NameWhatIsWrongWithTheRobotsMotion) {
   tree["robot_motion"]["dept"] = 0.1;
   const std::vector<std::string> errors = errorsOf(tree);
   EXPECT_EQ(errors.size(), 3u) << errorReport(errors);
-  for (const char* field : {"fixed_frame", "robot_motion/depth", "robot_motion/dept"}) EXPECT_TRUE(mentions(errors, field)) << field;
+  for (const char* field : {"fixed_frame", "robot_motion/depth", "robot_motion/dept"})
+    EXPECT_TRUE(mentions(errors, field)) << field;
 }
 
 TEST(TrackerParametersTest, KnowEveryName) {

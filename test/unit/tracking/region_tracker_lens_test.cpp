@@ -78,8 +78,8 @@ TEST_P(RegionTrackerLens, IsNeededForThat) {
   // Without the lens the corners are raw pixels; where they are seen is known. The ROI is that of the raw image.
   RegionTracker without{TrackerConfig()};
   const cv::Rect seen = image::rawBox(lens_, kRoi.corners(), 0.0);
-  const geometry::Rectangle roi{static_cast<double>(seen.x), static_cast<double>(seen.y), static_cast<double>(seen.width),
-                                static_cast<double>(seen.height)};
+  const geometry::Rectangle roi{static_cast<double>(seen.x), static_cast<double>(seen.y),
+                                static_cast<double>(seen.width), static_cast<double>(seen.height)};
   ASSERT_EQ(without.select(image(0), 0.0, roi).state, State::kTracking);
   double worst = 0.0;
   for (int frame = 1; frame <= 36; ++frame) {
@@ -151,8 +151,9 @@ TEST_P(RegionTrackerLens, FindsTheRegionAgainElsewhere) {
 
 TEST_P(RegionTrackerLens, RefusesARegionThatTheRawImageDoesNotShow) {
   RegionTracker with = tracker();
-  for (const geometry::Rectangle& roi : {geometry::Rectangle{-400, 40, 120, 110}, geometry::Rectangle{60, 40, 100, 600},
-                                         geometry::Rectangle{1e6, 1e6, 100, 100}, geometry::Rectangle{NAN, 40, 100, 100}}) {
+  for (const geometry::Rectangle& roi :
+       {geometry::Rectangle{-400, 40, 120, 110}, geometry::Rectangle{60, 40, 100, 600},
+        geometry::Rectangle{1e6, 1e6, 100, 100}, geometry::Rectangle{NAN, 40, 100, 100}}) {
     try {
       with.select(image(0), 0.0, roi);
       ADD_FAILURE() << roi.x;

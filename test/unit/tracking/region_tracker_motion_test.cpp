@@ -26,15 +26,16 @@ Eigen::Isometry3d jerky(int frame) {
   if (frame == 0) return pose(0.0, 0.0, 0.0, 0.0);
   cv::RNG rng(77 + frame);
   const double side = frame % 2 == 0 ? 1.0 : -1.0;
-  return pose(side * rng.uniform(0.006, 0.010), rng.uniform(-0.008, 0.008), rng.uniform(-0.004, 0.004), rng.uniform(-0.2, 0.2));
+  return pose(side * rng.uniform(0.006, 0.010), rng.uniform(-0.008, 0.008), rng.uniform(-0.004, 0.004),
+              rng.uniform(-0.2, 0.2));
 }
 
 Eigen::Matrix3d truth(int frame) {
   return geometry::pixelsFromPlane(jerky(frame).inverse(), Eigen::Vector3d::UnitZ(), kDepth, kCamera);
 }
 
-// From the image before to this one, by poses that are a little off, a depth that is 3 % off, and a plane that is taken to be parallel to
-// the image.
+// From the image before to this one, by poses that are a little off, a depth that is 3 % off, and a plane that is taken
+// to be parallel to the image.
 Eigen::Matrix3d byRobot(int from, int to) {
   Eigen::Isometry3d motion = jerky(to).inverse() * jerky(from);
   motion.translation() += Eigen::Vector3d(0.0003, -0.0003, 0.0002);
@@ -58,7 +59,8 @@ class RegionTrackerMotion : public ::testing::Test {
 
 TEST_F(RegionTrackerMotion, LosesWithoutItWhatJumpsTooFar) {
   int tracked = 0;
-  for (int frame = 1; frame <= 8; ++frame) tracked += tracker_.track(image(frame), 0.04 * frame).state == State::kTracking ? 1 : 0;
+  for (int frame = 1; frame <= 8; ++frame)
+    tracked += tracker_.track(image(frame), 0.04 * frame).state == State::kTracking ? 1 : 0;
   EXPECT_LE(tracked, 1);
 }
 
@@ -95,15 +97,16 @@ TEST_F(RegionTrackerMotion, GoesOnWhenItIsMissingForAWhile) {
 
 TEST_F(RegionTrackerMotion, WhatIsNoMotionIsIgnored) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  Eigen::Matrix3d mirrored = Eigen::Matrix3d::Identity(), huge = mirrored, through_infinity = mirrored, one_nan = mirrored;
+  Eigen::Matrix3d mirrored = Eigen::Matrix3d::Identity(), huge = mirrored, through_infinity = mirrored,
+                  one_nan = mirrored;
   mirrored(0, 0) = -1.0;
   huge(0, 0) = huge(1, 1) = 1e9;
   through_infinity(2, 0) = -1.0 / 320.0;
   one_nan(1, 2) = nan;
   int frame = 1;
   for (const Eigen::Matrix3d& bad :
-       {Eigen::Matrix3d(Eigen::Matrix3d::Constant(nan)), Eigen::Matrix3d(Eigen::Matrix3d::Zero()), mirrored, huge, through_infinity,
-        one_nan, Eigen::Matrix3d(Eigen::Matrix3d::Constant(1e308))}) {
+       {Eigen::Matrix3d(Eigen::Matrix3d::Constant(nan)), Eigen::Matrix3d(Eigen::Matrix3d::Zero()), mirrored, huge,
+        through_infinity, one_nan, Eigen::Matrix3d(Eigen::Matrix3d::Constant(1e308))}) {
     const TrackResult r = tracker_.track(image(0), 0.04 * frame, bad);
     ASSERT_EQ(r.state, State::kTracking) << bad << '\n' << r.reason;
     EXPECT_FALSE(r.motion_used);
@@ -113,7 +116,8 @@ TEST_F(RegionTrackerMotion, WhatIsNoMotionIsIgnored) {
 }
 
 TEST_F(RegionTrackerMotion, WhatLeadsNowhereDoesNoHarm) {
-  for (const Eigen::Vector2d& shift : {Eigen::Vector2d(150.0, 0.0), Eigen::Vector2d(-90.0, 130.0), Eigen::Vector2d(5000.0, 0.0)}) {
+  for (const Eigen::Vector2d& shift :
+       {Eigen::Vector2d(150.0, 0.0), Eigen::Vector2d(-90.0, 130.0), Eigen::Vector2d(5000.0, 0.0)}) {
     ASSERT_EQ(tracker_.select(image(0), 0.0, kRoi).state, State::kTracking);
     Eigen::Matrix3d wrong = Eigen::Matrix3d::Identity();
     wrong.topRightCorner<2, 1>() = shift;
