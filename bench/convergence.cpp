@@ -1,73 +1,62 @@
 // From how far off alignment converges, as in the papers on ESM: the ROI's corners are displaced by normal noise, or
 // the whole image by a shift, and counted is the share of trials that end with every corner within 1 px. Each trial is
-// a new view of the scene, with noise of its own; everybody starts from the identity.
+// a new view of the scene, with noise of its own; everybody starts from the identity, is given the same images, and as
+// much of them as it can use.
 #include <boost/program_options.hpp>
 #include <fstream>
 #include <iomanip>
 #include <iostream>
 #include <map>
 
+#include "bench/support/aligners.h"
 #include "bench/support/arguments.h"
 #include "bench/support/contestant.h"
+#include "bench/support/crop.h"
 #include "bench/support/json.h"
 #include "bench/support/sequence.h"
 #include "bench/support/synthetic.h"
-#include "laparoscope_servo/tracking/esm.h"
 
 namespace laparoscope_servo::bench {
 
 namespace {
 
-constexpr double kConverged = 1.0;  // px
-constexpr double kNoise = 2.0;      // grey levels
+constexpr double kConverged = 1.0;       // px
+constexpr double kNoise = 2.0;           // grey levels
+constexpr double kSurroundings = 120.0;  // px on each side of the ROI
+constexpr int kPatience = 50;  // iterations that plain ESM and ECC have at a level: how far they get, not how fast
 
-// ESM alone, without gates and states.
-class Aligner : public Contestant {
- public:
-  Aligner(std::string name, const tracking::EsmConfig& config)
-      : name_(std::move(name)), config_(config), esm_(config) {}
-  std::string name() const override { return name_; }
-  void select(const cv::Mat& image, const geometry::Rectangle& roi) override {
-    pyramid_.build(image, cv::Rect(0, 0, image.cols, image.rows), config_.levels, image::kLuma);
-    esm_.setReference(pyramid_, roi);
-  }
-  Verdict track(const cv::Mat& image) override {
-    pyramid_.build(image, cv::Rect(0, 0, image.cols, image.rows), config_.levels, image::kLuma);
-    esm_.forgetLight();
-    const tracking::EsmResult result = esm_.align(pyramid_, tracking::EsmState());
-    return {result.state.g, result.status == tracking::EsmStatus::kConverged};
-  }
-
- private:
-  std::string name_;
-  tracking::EsmConfig config_;
-  tracking::Esm esm_;
-  image::RegionPyramid pyramid_;
+// What is looked at, and where.
+struct Setting {
+  std::string name = "synthetic";
+  cv::Mat image;
+  geometry::Rectangle roi;
 };
 
-std::vector<std::unique_ptr<Contestant>> aligners(int max_iterations, bool peers) {
-  std::vector<std::unique_ptr<Contestant>> all;
-  tracking::EsmConfig config;
-  if (max_iterations > 0) config.max_iterations = max_iterations;
-  config.levels = 1;
-  all.push_back(std::make_unique<Aligner>("esm_1_level", config));
-  config.levels = 3;
-  all.push_back(std::make_unique<Aligner>("esm_3_levels", config));
-  // As the papers have it: neither light nor weights.
-  config.robust = false;
-  config.light = tracking::Light::kConstant;
-  all.push_back(std::make_unique<Aligner>("plain_esm_3_levels", config));
-  config.levels = 1;
-  all.push_back(std::make_unique<Aligner>("plain_esm_1_level", config));
-  all.push_back(makeOurs());
-  if (!peers) return all;
-  all.push_back(makeEcc());
-  all.push_back(makeKlt());
-#ifdef LAPAROSCOPE_SERVO_BENCH_VISP
-  all.push_back(makeVispTuned(1));
-  all.push_back(makeVispTuned(3));
-#endif
-  return all;
+Setting settingOf(const std::string& image, const std::string& folder) {
+  Setting setting;
+  if (!image.empty()) {
+    setting.name = image;
+    setting.image = readImage(image);
+    setting.roi = {0.0, 0.0, static_cast<double>(setting.image.cols), static_cast<double>(setting.image.rows)};
+  } else if (!folder.empty()) {
+    Sequence sequence(folder);
+    setting.name = sequence.name();
+    if (!sequence.next(setting.image) || !sequence.hasRoi())
+      throw std::runtime_error(folder + ": no image, or no scene.json");
+    setting.roi = sequence.roi();
+  } else {
+    setting.image = syntheticTissue(cv::Size(640, 480), 1);
+    setting.roi = {220.0, 140.0, 200.0, 200.0};
+  }
+  return setting;
+}
+
+// The part of the image around the ROI that anybody may need; the ROI is moved along with it.
+cv::Mat surroundings(const cv::Mat& image, geometry::Rectangle& roi) {
+  const cv::Rect box = boxAround(Eigen::Matrix3d::Identity(), roi, kSurroundings, image.size());
+  roi.x -= box.x;
+  roi.y -= box.y;
+  return image(box).clone();
 }
 
 struct Curve {
@@ -110,23 +99,49 @@ Curve measure(const std::string& kind, const std::vector<double>& distances, int
   return curve;
 }
 
+void write(std::ostream& stream, const Setting& setting, double side, int trials, const std::vector<Curve>& curves) {
+  JsonWriter json(stream);
+  json.beginObject();
+  json.value("scene", setting.name);
+  json.value("side", side);
+  json.value("trials", trials);
+  json.beginArray("curves");
+  for (const Curve& curve : curves) {
+    json.beginObject();
+    json.value("kind", curve.kind);
+    json.values("distance", curve.distance);
+    json.beginObject("share");
+    for (const auto& [name, share] : curve.share) json.values(name, share);
+    json.end();
+    json.beginObject("mistaken");
+    for (const auto& [name, share] : curve.mistaken) json.values(name, share);
+    json.end();
+    json.end();
+  }
+  json.end();
+  json.end();
+}
+
 int program(int argc, char** argv) {
   namespace po = boost::program_options;
-  std::string input, file, corners, shifts;
+  std::string who, input, image, roi_text, file, corners, shifts;
   int trials = 200, max_iterations = 0;
   double side = 100.0;
   unsigned seed = 1;
   po::options_description options("Share of alignments that converge. bench_convergence [options] [FOLDER]");
-  options.add_options()("help", "this text")  //
-      ("sequence", po::value(&input),
-       "folder whose first image is the scene; without one a synthetic scene is used")                           //
-      ("side", po::value(&side)->default_value(100.0), "px, of the ROI: a square in the middle of the scene's")  //
-      ("corners", po::value(&corners)->default_value("1:20"), "px, FIRST:LAST[:STEP], noise of the corners")     //
-      ("shifts", po::value(&shifts)->default_value("10:40:5"), "px, FIRST:LAST[:STEP], translation")             //
-      ("trials", po::value(&trials)->default_value(200), "for each distance")                                    //
-      ("iterations", po::value(&max_iterations), "per level, for ESM alone; by default the configuration's")     //
-      ("no-peers", "this package's only")                                                                        //
-      ("seed", po::value(&seed)->default_value(1), "of the noise")                                               //
+  options.add_options()("help", "this text")                                                                    //
+      ("sequence", po::value(&input), "folder with scene.json, whose first image is the scene")                 //
+      ("image", po::value(&image), "or an image file, or FILE@N for image N of a video; else a synthetic one")  //
+      ("roi", po::value(&roi_text), "x,y,width,height in it")                                                   //
+      ("side", po::value(&side)->default_value(100.0), "px, of the ROI used: a square in the middle of that")   //
+      ("corners", po::value(&corners)->default_value("1:20"),
+       "px, FIRST:LAST[:STEP], noise of the corners; or none")                                                 //
+      ("shifts", po::value(&shifts)->default_value("10:40:5"), "px, FIRST:LAST[:STEP], translation; or none")  //
+      ("trials", po::value(&trials)->default_value(200), "for each distance")                                  //
+      ("iterations", po::value(&max_iterations), "per level, for ESM alone; by default the configuration's")   //
+      ("who", po::value(&who)->default_value("all"),
+       "all; own: without peers; parts: ESM with each model of light, with weights and without")  //
+      ("seed", po::value(&seed)->default_value(1), "of the noise")                                //
       ("json", po::value(&file), "write everything there");
   po::positional_options_description positions;
   positions.add("sequence", 1);
@@ -137,44 +152,21 @@ int program(int argc, char** argv) {
     std::cout << options;
     return given.count("help") > 0 ? 0 : 2;
   }
-  cv::Mat scene = syntheticTissue(cv::Size(640, 480), 1);
-  geometry::Rectangle roi = {220.0, 140.0, 200.0, 200.0};
-  std::string name = "synthetic";
-  if (!input.empty()) {
-    Sequence sequence(input);
-    if (!sequence.next(scene)) throw std::runtime_error(input + ": no image");
-    if (sequence.hasRoi()) roi = sequence.roi();
-    name = sequence.name();
-  }
+  const Setting setting = settingOf(image, input);
+  geometry::Rectangle roi = roi_text.empty() ? setting.roi : parseRoi(roi_text);
   roi = middle(roi, side);
-  std::vector<std::unique_ptr<Contestant>> contestants = aligners(max_iterations, given.count("no-peers") == 0);
+  const cv::Mat scene = surroundings(setting.image, roi);
+  std::vector<std::unique_ptr<Contestant>> contestants = aligners(who, max_iterations);
   std::vector<Curve> curves;
-  curves.push_back(measure("corners", parseRange(corners), trials, scene, roi, contestants, seed));
-  curves.push_back(measure("translation", parseRange(shifts), trials, scene, roi, contestants, seed + 1));
+  for (const auto& [kind, range] : {std::pair("corners", corners), std::pair("translation", shifts)}) {
+    if (range != "none")
+      curves.push_back(measure(kind, parseRange(range), trials, scene, roi, contestants, seed + curves.size()));
+  }
 
   if (file.empty()) return 0;
   std::ofstream stream(file);
   if (!stream) throw std::runtime_error(file + ": cannot be written");
-  JsonWriter json(stream);
-  json.beginObject();
-  json.value("scene", name);
-  json.value("side", roi.width);
-  json.value("trials", trials);
-  json.beginArray("curves");
-  for (const Curve& curve : curves) {
-    json.beginObject();
-    json.value("kind", curve.kind);
-    json.values("distance", curve.distance);
-    json.beginObject("share");
-    for (const auto& [who, share] : curve.share) json.values(who, share);
-    json.end();
-    json.beginObject("mistaken");
-    for (const auto& [who, share] : curve.mistaken) json.values(who, share);
-    json.end();
-    json.end();
-  }
-  json.end();
-  json.end();
+  write(stream, setting, roi.width, trials, curves);
   return 0;
 }
 

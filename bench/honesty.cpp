@@ -1,12 +1,13 @@
 // What the tracker knows about an estimate, beside how wrong the estimate is: the data to choose the thresholds of the
-// state on.
+// state on, and to test what it says of its own error.
 //
-// Rows of three sources:
+// Rows of two sources:
 //   sequence  the tracker as configured by default, image by image
-//   jump      the tracker, with limits as lax as can be set, selected on the first image and shown a later one that is
-//   displaced besides: as if
-//             the images between were lost. Badly started alignments converge falsely; these are the negatives
-//   esm       ESM with both gates once, from a displaced start, with what only ESM tells (sigma, last step, status)
+//   jump      the tracker after its first images, thrown onto a later one that is displaced besides, as if the images
+//             between were lost. Alignments with bad starts converge falsely: these are the wrong estimates. What is
+//             known of an estimate comes from a tracker whose limits are as lax as can be set (`estimated`: it believed
+//             the estimate); `accepted` is what the tracker as configured by default, shown the same images, said
+// What tissue and camera are like is known from the first images: columns record_... .
 #include <boost/program_options.hpp>
 #include <fstream>
 #include <iostream>
@@ -14,8 +15,8 @@
 
 #include "bench/support/arguments.h"
 #include "bench/support/configurations.h"
-#include "bench/support/gated_esm.h"
 #include "bench/support/sequence.h"
+#include "bench/support/statistics.h"
 #include "bench/support/synthetic.h"
 #include "laparoscope_servo/tracking/region_tracker.h"
 
@@ -24,75 +25,49 @@ namespace laparoscope_servo::bench {
 namespace {
 
 constexpr double kPeriod = 0.04;  // s, between images
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr int kFirst = 8;         // images before the jump, after the reference
 
 struct Row {
   std::string source;
   std::string sequence;
   std::size_t frame = 0;
-  double covered = 0.0;      // truth: share of the ROI
-  double start_error = 0.0;  // px, before
-  double error = 0.0;        // px, after
-  int state = 0;
-  double zncc = 0.0;
-  double corner_error = 0.0;
-  double visible_fraction = 0.0;
-  int iterations = 0;
-  double gain = 1.0;
-  double sigma = kUnknown;
-  double last_step = kUnknown;
-  int status = -1;  // of EsmStatus
+  double covered = 0.0;  // truth: share of the ROI
+  double error = 0.0;    // px, of the worst corner
+  bool estimated = false;
+  bool accepted = false;
+  tracking::TrackResult result;
+};
+
+// Means over the first images.
+struct Record {
+  double zncc = std::numeric_limits<double>::quiet_NaN();
+  double sigma = zncc;  // grey levels
 };
 
 void writeHeader(std::ostream& out) {
-  out << "source,sequence,frame,covered,start_error,error,state,zncc,corner_error,visible_fraction,iterations,gain,"
-         "sigma,"
-         "last_step,status\n";
+  out << "source,sequence,frame,covered,error,estimated,accepted,zncc,sigma,corner_error,visible_fraction,iterations,"
+         "record_zncc,record_sigma\n";
 }
 
-void write(std::ostream& out, const Row& r) {
-  out << r.source << ',' << r.sequence << ',' << r.frame << ',' << r.covered << ',' << r.start_error << ',' << r.error
-      << ',' << r.state << ',' << r.zncc << ',' << r.corner_error << ',' << r.visible_fraction << ',' << r.iterations
-      << ',' << r.gain << ',' << r.sigma << ',' << r.last_step << ',' << r.status << '\n';
+void write(std::ostream& out, const Row& row, const Record& record) {
+  const tracking::TrackResult& r = row.result;
+  out << row.source << ',' << row.sequence << ',' << row.frame << ',' << row.covered << ',' << row.error << ','
+      << row.estimated << ',' << row.accepted << ',' << r.zncc << ',' << r.sigma << ',' << r.corner_error << ','
+      << r.visible_fraction << ',' << r.iterations << ',' << record.zncc << ',' << record.sigma << '\n';
 }
 
-void fill(Row& row, const tracking::TrackResult& result) {
-  row.state = static_cast<int>(result.state);
-  row.zncc = result.zncc;
-  row.corner_error = result.corner_error;
-  row.visible_fraction = result.visible_fraction;
-  row.iterations = result.iterations;
-  row.gain = result.gain;
-  row.sigma = result.sigma;
+bool tracks(const tracking::TrackResult& result) {
+  return result.state == tracking::State::kTracking;
 }
 
-void trackThrough(Sequence& sequence, std::ostream& out) {
-  tracking::RegionTracker tracker{tracking::TrackerConfig()};
-  sequence.rewind();
-  cv::Mat image;
-  for (std::size_t frame = 0; sequence.next(image); ++frame) {
-    if (frame == 0) {
-      tracker.select(image, 0.0, sequence.roi());
-      continue;
-    }
-    const tracking::TrackResult result = tracker.track(image, kPeriod * static_cast<double>(frame));
-    Row row{"sequence", sequence.name(), frame, sequence.covered()[frame]};
-    row.error = cornerError(result.g, sequence.truth()[frame], sequence.roi());
-    fill(row, result);
-    write(out, row);
+Record recordOf(const std::vector<tracking::TrackResult>& results) {
+  std::vector<double> zncc, sigma;
+  for (const tracking::TrackResult& result : results) {
+    if (!tracks(result)) continue;
+    zncc.push_back(result.zncc);
+    sigma.push_back(result.sigma);
   }
-}
-
-void fill(Row& row, const tracking::EsmResult& result, const GatedEsm& gated) {
-  row.iterations = result.iterations;
-  row.corner_error = result.corner_error;
-  row.gain = result.state.gain;
-  row.sigma = result.sigma;
-  row.last_step = result.last_step;
-  row.status = static_cast<int>(result.status);
-  if (!GatedEsm::usable(result)) return;
-  row.zncc = gated.zncc();
-  row.visible_fraction = gated.visibleFraction();
+  return {mean(zncc), mean(sigma)};
 }
 
 struct Trials {
@@ -101,42 +76,81 @@ struct Trials {
   double most = 30.0;  // px
 };
 
-void perturb(Sequence& sequence, const Trials& trials, unsigned seed, std::ostream& out) {
-  tracking::TrackerConfig config;
-  config.quality = credulous();
+// The first images, and what the tracker made of them.
+struct Beginning {
+  std::vector<cv::Mat> images;
+  Record record;
+  Eigen::Matrix3d last = Eigen::Matrix3d::Identity();  // truth of the last one
+};
+
+Beginning trackThrough(Sequence& sequence, std::ostream& out) {
+  tracking::RegionTracker tracker{tracking::TrackerConfig()};
+  Beginning beginning;
+  std::vector<tracking::TrackResult> results;
+  std::vector<Row> rows;
   sequence.rewind();
+  cv::Mat image;
+  for (std::size_t frame = 0; sequence.next(image); ++frame) {
+    if (frame <= kFirst) {
+      beginning.images.push_back(image.clone());
+      beginning.last = sequence.truth()[frame];
+    }
+    if (frame == 0) {
+      tracker.select(image, 0.0, sequence.roi());
+      continue;
+    }
+    Row row{"sequence", sequence.name(), frame, sequence.covered()[frame], 0.0, false, false, {}};
+    row.result = tracker.track(image, kPeriod * static_cast<double>(frame));
+    row.error = cornerError(row.result.g, sequence.truth()[frame], sequence.roi());
+    row.estimated = row.accepted = tracks(row.result);
+    if (frame <= kFirst) results.push_back(row.result);
+    rows.push_back(std::move(row));
+  }
+  beginning.record = recordOf(results);
+  for (const Row& row : rows) write(out, row, beginning.record);
+  return beginning;
+}
+
+tracking::TrackResult thrown(const tracking::TrackerConfig& config, const Beginning& beginning,
+                             const geometry::Rectangle& roi, std::size_t shown, const cv::Mat& image) {
+  tracking::RegionTracker tracker(config);
+  tracker.select(beginning.images[0], 0.0, roi);
+  for (std::size_t k = 1; k < shown; ++k) tracker.track(beginning.images[k], kPeriod * static_cast<double>(k));
+  return tracker.track(image, kPeriod * static_cast<double>(shown));
+}
+
+void jump(Sequence& sequence, const Beginning& beginning, const Trials& trials, unsigned seed, std::ostream& out) {
+  tracking::TrackerConfig lax;
+  lax.quality = credulous();
   const geometry::Rectangle& roi = sequence.roi();
-  cv::Mat first, image;
-  if (!sequence.next(first)) return;
-  GatedEsm gated(tracking::TrackerConfig(), first, roi);
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform(0.0, trials.most);
-  for (std::size_t frame = 1; sequence.next(image); ++frame) {
-    if (frame % static_cast<std::size_t>(trials.every) != 0) continue;
-    const Eigen::Matrix3d& truth = sequence.truth()[frame];
+  sequence.rewind();
+  cv::Mat image;
+  for (std::size_t frame = 0; sequence.next(image); ++frame) {
+    if (frame <= kFirst || frame % static_cast<std::size_t>(trials.every) != 0) continue;
     for (int trial = 0; trial < trials.per_frame; ++trial) {
       const double sigma = uniform(random);
       const Eigen::Matrix3d off =
           trial % 2 == 0 ? displacedCorners(roi, sigma, random) : displaced(2.0 * sigma, random);
-      Row row{"esm", sequence.name(), frame, sequence.covered()[frame]};
-      row.start_error = cornerError(truth * off, truth, roi);
-      const tracking::EsmResult aligned = gated.align(image, truth * off);
-      fill(row, aligned, gated);
-      row.error = cornerError(aligned.state.g, truth, roi);
-      write(out, row);
-
-      // The tracker cannot be told where to start: the image moves instead, so that the ROI is `off` from where it was
-      // first.
-      const Eigen::Matrix3d shown = off.inverse() * truth.inverse();
-      const cv::Mat moved = view(image, shown, 0.0, random);
-      tracking::RegionTracker tracker(config);
-      tracker.select(first, 0.0, roi);
-      const tracking::TrackResult result = tracker.track(moved, kPeriod);
-      Row jump{"jump", sequence.name(), frame, sequence.covered()[frame]};
-      jump.start_error = cornerError(Eigen::Matrix3d::Identity(), shown * truth, roi);
-      jump.error = cornerError(result.g, shown * truth, roi);
-      fill(jump, result);
-      write(out, jump);
+      // The tracker cannot be told where to start: the image moves instead, so that the ROI is `off` from where it was.
+      const Eigen::Matrix3d from_first = off * sequence.truth()[frame].inverse();
+      const Eigen::Matrix3d from_last = beginning.last * from_first;
+      Row row{"jump", sequence.name(), frame, sequence.covered()[frame], 0.0, false, false, {}};
+      // The lax tracker compares with its own record of the ROI, which no limit turns off: it is given none.
+      row.result = thrown(lax, beginning, roi, 1, view(image, from_first, 0.0, random));
+      row.estimated = tracks(row.result);
+      row.error = cornerError(row.result.g, off, roi);
+      const tracking::TrackResult strict = thrown(tracking::TrackerConfig(), beginning, roi, beginning.images.size(),
+                                                  view(image, from_last, 0.0, random));
+      row.accepted = tracks(strict);
+      write(out, row, beginning.record);
+      if (!row.accepted) continue;
+      Row said{"accepted", sequence.name(), frame, sequence.covered()[frame], 0.0, false, false, {}};
+      said.result = strict;
+      said.estimated = said.accepted = true;
+      said.error = cornerError(strict.g, beginning.last * off, roi);
+      write(out, said, beginning.record);
     }
   }
 }
@@ -176,8 +190,8 @@ int program(int argc, char** argv) {
     Sequence sequence(folder);
     if (!sequence.hasTruth() || !sequence.hasRoi())
       throw std::runtime_error(folder + ": no truth.csv, or no scene.json");
-    trackThrough(sequence, out);
-    if (trials.per_frame > 0) perturb(sequence, trials, seed, out);
+    const Beginning beginning = trackThrough(sequence, out);
+    if (trials.per_frame > 0) jump(sequence, beginning, trials, seed, out);
   }
   return 0;
 }

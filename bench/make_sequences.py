@@ -2,12 +2,14 @@
 """Makes the sequences with known ground truth that report.py measures on when it is given none: synthetic tissue, or a photograph.
 
 Each is a folder with frames/NNNN.png, truth.csv (frame, g00..g22: reference to current pixels, determinant 1, occluded: share of the
-ROI that is covered) and scene.json (roi: x, y, width, height in px; K).
+ROI that is covered), areas.csv (frame, then the same for each of its 14 x 14 areas, row by row) and scene.json (roi: x, y, width, height
+in px; K; noise in grey levels).
   still_sheet  as figures 3 to 5 of Bourger et al. (2007): nothing moves but a sheet (a green drape), over the ROI from frame 10 to 30,
                over 79 % of it (155 of 196 areas) at frame 23
   clear        a moving camera, nothing else
   light        a moving camera, light that changes by 20 %
   instrument   a moving camera, a grey bar that covers up to 60 %
+  tissue       a moving camera, other tissue of the same colours that covers up to 60 %
 """
 import argparse
 import json
@@ -18,6 +20,7 @@ import numpy as np
 
 SIZE = (640, 480)
 ROI = (222, 142, 196, 196)
+AREAS = 14   # in each direction
 NOISE = 2.0  # grey levels
 FOCAL = 700.0
 K = np.array([[FOCAL, 0, (SIZE[0] - 1) / 2], [0, FOCAL, (SIZE[1] - 1) / 2], [0, 0, 1.0]])
@@ -44,29 +47,40 @@ def motion(frames, amount, rng):
         yield G / np.cbrt(np.linalg.det(G))
 
 
-def render(out, scene, homographies, cover, colour, light, rng):
-    """`cover`: share of the ROI behind an edge that comes from the left, per frame; `light`: gain per frame."""
+def area_of_pixels():
+    """The area that each pixel of the ROI lies in."""
+    _, _, w, h = ROI
+    return (np.arange(h)[:, None] * AREAS // h) * AREAS + np.arange(w)[None, :] * AREAS // w
+
+
+def render(out, scene, homographies, cover, occluder, light, rng):
+    """`cover`: share of the ROI behind an edge that comes from the left, per frame; `occluder`: an image, or a colour; `light`: gain per
+    frame."""
     (out / "frames").mkdir(parents=True, exist_ok=True)
     x, y, w, h = ROI
     to_frame = np.array([[1, 0, (SIZE[0] - scene.shape[1]) / 2], [0, 1, (SIZE[1] - scene.shape[0]) / 2], [0, 0, 1.0]])
     points = np.stack(np.meshgrid(np.arange(x, x + w), np.arange(y, y + h)), -1).reshape(-1, 1, 2).astype(np.float64)
     columns = np.arange(SIZE[0])[None, :, None]
-    lines = []
+    area_of = area_of_pixels().ravel()
+    truth, areas = [], []
     for n, G in enumerate(homographies):
         image = cv2.warpPerspective(scene, G @ to_frame, SIZE, flags=cv2.INTER_CUBIC, borderMode=cv2.BORDER_REFLECT)
-        covered = 0.0
+        behind = np.zeros(w * h)
         if cover[n] > 0:
             seen = cv2.perspectiveTransform(points, G)[:, 0, 0]
             edge = np.quantile(seen, cover[n])
-            covered = float((seen <= edge).mean())
-            behind = np.clip(edge + 0.5 - columns, 0, 1).astype(np.float32)
-            image = image * (1 - behind) + np.array(colour, np.float32) * behind
+            behind = (seen <= edge).astype(float)
+            share = np.clip(edge + 0.5 - columns, 0, 1).astype(np.float32)
+            image = image * (1 - share) + np.asarray(occluder, np.float32) * share
         image = image * light[n] + rng.normal(0, NOISE, image.shape)
         cv2.imwrite(str(out / "frames" / f"{n:04d}.png"), np.clip(image, 0, 255).astype(np.uint8),
                     [cv2.IMWRITE_PNG_COMPRESSION, 1])
-        lines.append([n, *G.ravel(), covered])
+        truth.append([n, *G.ravel(), behind.mean()])
+        areas.append([n, *(np.bincount(area_of, behind) / np.bincount(area_of))])
     head = "frame," + ",".join(f"g{i}{j}" for i in range(3) for j in range(3)) + ",occluded"
-    np.savetxt(out / "truth.csv", lines, delimiter=",", header=head, comments="", fmt="%.10g")
+    np.savetxt(out / "truth.csv", truth, delimiter=",", header=head, comments="", fmt="%.10g")
+    head = "frame," + ",".join(f"a{k}" for k in range(AREAS * AREAS))
+    np.savetxt(out / "areas.csv", areas, delimiter=",", header=head, comments="", fmt="%.4g")
     (out / "scene.json").write_text(json.dumps({"roi": ROI, "K": K.tolist(), "noise": NOISE}))
 
 
@@ -86,14 +100,18 @@ def make(out, photograph=None, seed=1):
     sheet = np.interp(np.arange(41), [9, 23, 31], [0, 155 / 196, 0])
     bar = 0.6 * np.clip(3 * np.minimum(t - 0.2, 0.8 - t) / 0.6, 0, 1)
     none, steady = np.zeros(frames), np.ones(frames)
+    other = tissue(np.random.default_rng(seed + 1))[:SIZE[1], :SIZE[0]]
+    if photograph:
+        other = np.roll(scene[::-1, ::-1], (scene.shape[0] // 3, scene.shape[1] // 3), (0, 1))[:SIZE[1], :SIZE[0]]
     jobs = {
         "still_sheet": (still, sheet, (135, 120, 60), np.ones(41)),
         "clear": (motion(frames, 0.6, rng), none, (0, 0, 0), steady),
         "light": (motion(frames, 0.6, rng), none, (0, 0, 0), 1 + 0.2 * np.sin(2 * np.pi * 1.7 * t)),
         "instrument": (motion(frames, 0.5, rng), bar, (140, 138, 135), steady),
+        "tissue": (motion(frames, 0.4, rng), bar, other, steady),
     }
     for name, job in jobs.items():
-        if not (out / name / "scene.json").exists():
+        if not (out / name / "areas.csv").exists():
             render(out / name, scene, *job, rng)
     return {name: out / name for name in jobs}
 

@@ -27,8 +27,26 @@ tracking::TrackerConfig configurationNamed(const std::string& name) {
   config.esm.light = tracking::Light::kConstant;
   config.esm.robust = false;
   config.esm.saturation = 256;
-  config.esm.adapt_channel = false;
+  config.esm.channels = tracking::TrackedChannels::kLuma;
   return config;
+}
+
+std::vector<NamedConfig> gateConfigurations() {
+  using tracking::ColourGate;
+  const auto with = [](const char* name, ColourGate colour, bool structure, bool robust) {
+    NamedConfig named = {name, {}};
+    named.config.occlusion.colour = colour;
+    named.config.occlusion.structure = structure;
+    named.config.esm.robust = robust;
+    return named;
+  };
+  return {with("none", ColourGate::kNone, false, false),
+          with("published", ColourGate::kPublished, false, false),
+          with("colour", ColourGate::kNormalised, false, false),
+          with("structure", ColourGate::kNone, true, false),
+          with("robust", ColourGate::kNone, false, true),
+          with("colour+structure", ColourGate::kNormalised, true, false),
+          {"default", {}}};
 }
 
 }  // namespace laparoscope_servo::bench

@@ -28,11 +28,15 @@ class Contestant {
 
 // This package's region tracker, as configured by default.
 std::unique_ptr<Contestant> makeOurs();
-// OpenCV's findTransformECC from where the last image left the ROI, on the grey image around it.
-std::unique_ptr<Contestant> makeEcc();
-// Corners of the reference, followed from image to image by pyramidal Lucas-Kanade around the ROI, and a robust
-// homography.
-std::unique_ptr<Contestant> makeKlt();
+// OpenCV's findTransformECC from where the last image left the ROI, on the grey image around it and `margin` px more.
+constexpr double kEccMargin = 40.0;
+std::unique_ptr<Contestant> makeEcc(double margin = kEccMargin);
+// Corners of the reference, followed from image to image by pyramidal Lucas-Kanade around the ROI, `margin` px more,
+// and a robust homography.
+constexpr double kKltMargin = 48.0;
+std::unique_ptr<Contestant> makeKlt(double margin = kKltMargin);
+// A margin that takes in any image.
+constexpr double kWholeImage = 1e5;
 // ViSP's vpTemplateTrackerSSDESM with an SL(3) warp: as constructed, or with lambda 1e-6, gain 2 and `levels` of
 // pyramid.
 std::unique_ptr<Contestant> makeVispDefault();

@@ -8,8 +8,6 @@ namespace laparoscope_servo::bench {
 
 namespace {
 
-constexpr double kMargin = 40.0;  // px
-
 Eigen::Matrix3d translation(double x, double y) {
   Eigen::Matrix3d m = Eigen::Matrix3d::Identity();
   m(0, 2) = x;
@@ -19,6 +17,7 @@ Eigen::Matrix3d translation(double x, double y) {
 
 class Ecc : public Contestant {
  public:
+  explicit Ecc(double margin) : margin_(margin) {}
   std::string name() const override { return "ecc"; }
 
   void select(const cv::Mat& image, const geometry::Rectangle& roi) override {
@@ -31,7 +30,7 @@ class Ecc : public Contestant {
   }
 
   Verdict track(const cv::Mat& image) override {
-    const cv::Rect box = boxAround(g_, roi_, kMargin, image.size());
+    const cv::Rect box = boxAround(g_, roi_, margin_, image.size());
     if (box.width < 16 || box.height < 16) return {g_, false, true};  // its last estimate left the image
     smooth(image(box), grey_);
     const Eigen::Matrix3d start = translation(-box.x, -box.y) * g_ * translation(roi_.x, roi_.y);
@@ -59,6 +58,7 @@ class Ecc : public Contestant {
     cv::GaussianBlur(grey, grey, cv::Size(5, 5), 0.0);
   }
 
+  double margin_;  // px
   geometry::Rectangle roi_;
   cv::Mat reference_, grey_;
   Eigen::Matrix3d g_ = Eigen::Matrix3d::Identity();
@@ -66,8 +66,8 @@ class Ecc : public Contestant {
 
 }  // namespace
 
-std::unique_ptr<Contestant> makeEcc() {
-  return std::make_unique<Ecc>();
+std::unique_ptr<Contestant> makeEcc(double margin) {
+  return std::make_unique<Ecc>(margin);
 }
 
 }  // namespace laparoscope_servo::bench

@@ -15,12 +15,12 @@ namespace laparoscope_servo::bench {
 
 namespace {
 
-constexpr double kMargin = 48.0;  // px
 constexpr int kCorners = 200;
 constexpr int kFewest = 8;
 
 class Klt : public Contestant {
  public:
+  explicit Klt(double margin) : margin_(margin) {}
 #ifdef LAPAROSCOPE_SERVO_BENCH_MAGSAC
   std::string name() const override {
     return "klt_magsac";
@@ -48,7 +48,7 @@ class Klt : public Contestant {
   }
 
   Verdict track(const cv::Mat& image) override {
-    const cv::Rect box = boxAround(g_, roi_, kMargin, image.size());
+    const cv::Rect box = boxAround(g_, roi_, margin_, image.size());
     if (static_cast<int>(points_.size()) < kFewest || box.width < 32 || box.height < 32) {
       return {g_, false, true};
     }
@@ -75,6 +75,7 @@ class Klt : public Contestant {
   }
 
  private:
+  double margin_;  // px
   geometry::Rectangle roi_;
   Eigen::Matrix3d g_ = Eigen::Matrix3d::Identity();
   cv::Mat last_, grey_before_, grey_;
@@ -84,8 +85,8 @@ class Klt : public Contestant {
 
 }  // namespace
 
-std::unique_ptr<Contestant> makeKlt() {
-  return std::make_unique<Klt>();
+std::unique_ptr<Contestant> makeKlt(double margin) {
+  return std::make_unique<Klt>(margin);
 }
 
 }  // namespace laparoscope_servo::bench

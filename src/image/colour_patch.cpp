@@ -27,8 +27,9 @@ void locate(const Row& row, int width, int height, int stride, int channels, int
     const float x = static_cast<float>(first + i);
     const float w = r.w0 + r.w1 * x;
     // From the pixel's upper left corner, so that the conversion to int, towards zero, finds the nearest centre.
-    const float u = (r.u0 + r.u1 * x) / w + 0.5f;
-    const float v = (r.v0 + r.v1 * x) / w + 0.5f;
+    const float reciprocal = 1.0f / w;
+    const float u = (r.u0 + r.u1 * x) * reciprocal + 0.5f;
+    const float v = (r.v0 + r.v1 * x) * reciprocal + 0.5f;
     const int inside = static_cast<int>(u > 0.0f) & static_cast<int>(u < right) & static_cast<int>(v > 0.0f) &
                        static_cast<int>(v < bottom) & static_cast<int>(w > 0.0f);
     const int column = static_cast<int>(inside != 0 ? u : 0.0f);

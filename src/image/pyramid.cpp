@@ -1,6 +1,6 @@
 #include "laparoscope_servo/image/pyramid.h"
 
-#include <opencv2/imgproc.hpp>
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 
@@ -10,36 +10,138 @@ namespace laparoscope_servo::image {
 
 namespace {
 
+// A kernel of three pixels with the variance of a Gaussian of sigma 0.65 px.
+constexpr float kSide = 0.5f * 0.65f * 0.65f;
+constexpr float kMiddle = 1.0f - 2.0f * kSide;
+
+constexpr int kPadding = 2;  // pixels on each side of a row that is halved
+
 LAPAROSCOPE_SERVO_CLONES
 void weighRow(const unsigned char* __restrict from, int count, float b, float g, float r, float* __restrict to) {
+#pragma omp simd
   for (int u = 0; u < count; ++u) to[u] = b * from[3 * u] + g * from[3 * u + 1] + r * from[3 * u + 2];
 }
 
-void toOneChannel(const cv::Mat& image, const ChannelWeights& weights, cv::Mat1f& grey) {
-  grey.create(image.size());
-  if (image.type() == CV_8UC1) {
-    image.convertTo(grey, CV_32F);
-    return;
+LAPAROSCOPE_SERVO_CLONES
+void convertRow(const unsigned char* __restrict from, int count, float* __restrict to) {
+#pragma omp simd
+  for (int u = 0; u < count; ++u) to[u] = from[u];
+}
+
+// `row` has a pixel beyond each of its ends.
+LAPAROSCOPE_SERVO_CLONES
+void smoothAlong(const float* __restrict row, int count, float* __restrict to) {
+#pragma omp simd
+  for (int u = 0; u < count; ++u) to[u] = kMiddle * row[u] + kSide * (row[u - 1] + row[u + 1]);
+}
+
+LAPAROSCOPE_SERVO_CLONES
+void smoothAcross(const float* __restrict above, const float* __restrict row, const float* __restrict below, int count,
+                  float* __restrict to) {
+#pragma omp simd
+  for (int u = 0; u < count; ++u) to[u] = kMiddle * row[u] + kSide * (above[u] + below[u]);
+}
+
+// Binomial weights 1 4 6 4 1, across the rows and then along them.
+LAPAROSCOPE_SERVO_CLONES
+void halveAcross(const float* __restrict a, const float* __restrict b, const float* __restrict c, const float* __restrict d,
+                 const float* __restrict e, int count, float* __restrict to) {
+#pragma omp simd
+  for (int u = 0; u < count; ++u) to[u] = (a[u] + e[u] + 4.0f * (b[u] + d[u]) + 6.0f * c[u]) * (1.0f / 256.0f);
+}
+
+// `row` has two pixels beyond each of its ends.
+LAPAROSCOPE_SERVO_CLONES
+void halveAlong(const float* __restrict row, int count, float* __restrict to) {
+#pragma omp simd
+  for (int i = 0; i < count; ++i) {
+    const float* r = row + 2 * i;
+    to[i] = r[-2] + r[2] + 4.0f * (r[-1] + r[1]) + 6.0f * r[0];
   }
-  for (int v = 0; v < image.rows; ++v) {
-    weighRow(image.ptr<unsigned char>(v), image.cols, weights[0], weights[1], weights[2], grey.ptr<float>(v));
-  }
+}
+
+// The row that stands for row k beyond the first or the last: mirrored at it.
+int mirrored(int k, int size) {
+  if (k < 0) k = -k;
+  if (k >= size) k = 2 * size - 2 - k;
+  return std::clamp(k, 0, size - 1);
 }
 
 }  // namespace
 
-void RegionPyramid::build(const cv::Mat& image, const cv::Rect& region, int levels, const ChannelWeights& weights) {
+void RegionPyramid::Plane::resize(int width, int height) {
+  if (view.cols == width && view.rows == height) return;
+  data.resize(std::max(data.size(), static_cast<std::size_t>(width) * height));
+  view = cv::Mat1f(height, width, data.data());
+}
+
+// Rows are weighed and smoothed along, three at a time, and then across. Beyond the region they go on linearly, which leaves its
+// border as it is in that direction.
+void RegionPyramid::smooth(const cv::Mat& image, const ChannelWeights& weights, cv::Mat1f& level) {
+  const int width = level.cols;
+  const int height = level.rows;
+  const std::size_t stride = static_cast<std::size_t>(width) + 2;
+  rows_.resize(std::max(rows_.size(), 4 * stride));
+  float* const raw = rows_.data() + 1;
+  const auto smoothed = [&](int v) { return rows_.data() + stride * (1 + v % 3); };
+  for (int v = 0; v <= height; ++v) {
+    if (v < height) {
+      if (image.channels() == 1) {
+        convertRow(image.ptr<unsigned char>(v), width, raw);
+      } else {
+        weighRow(image.ptr<unsigned char>(v), width, weights[0], weights[1], weights[2], raw);
+      }
+      raw[-1] = width > 1 ? 2.0f * raw[0] - raw[1] : raw[0];
+      raw[width] = width > 1 ? 2.0f * raw[width - 1] - raw[width - 2] : raw[0];
+      smoothAlong(raw, width, smoothed(v));
+    }
+    if (v == 0) continue;
+    float* to = level.ptr<float>(v - 1);
+    if (v == 1 || v == height) {
+      std::copy_n(smoothed(v - 1), width, to);
+    } else {
+      smoothAcross(smoothed(v - 2), smoothed(v - 1), smoothed(v), width, to);
+    }
+  }
+}
+
+void RegionPyramid::halve(const cv::Mat1f& fine, cv::Mat1f& coarse) {
+  const int width = fine.cols;
+  rows_.resize(std::max(rows_.size(), static_cast<std::size_t>(width) + 2 * kPadding));
+  float* const row = rows_.data() + kPadding;
+  for (int j = 0; j < coarse.rows; ++j) {
+    const auto near = [&](int k) { return fine.ptr<float>(mirrored(2 * j + k, fine.rows)); };
+    halveAcross(near(-2), near(-1), near(0), near(1), near(2), width, row);
+    for (int k = 1; k <= kPadding; ++k) {
+      row[-k] = row[mirrored(-k, width)];
+      row[width - 1 + k] = row[mirrored(width - 1 + k, width)];
+    }
+    halveAlong(row, coarse.cols, coarse.ptr<float>(j));
+  }
+}
+
+void RegionPyramid::build(const cv::Mat& image, const cv::Rect& region, int levels, const Channels& channels) {
   if (image.type() != CV_8UC1 && image.type() != CV_8UC3) {
     throw std::invalid_argument("image of OpenCV type " + std::to_string(image.type()) +
                                 ", expected 8 bit with one channel or three");
   }
-  region_ = region & cv::Rect(0, 0, image.cols, image.rows);
-  if (region_.empty() || levels < 1) {
+  const cv::Rect inside = region & cv::Rect(0, 0, image.cols, image.rows);
+  if (inside.empty() || levels < 1) {
     throw std::invalid_argument("region of interest holds no pixel of the image");
   }
-  levels_.resize(levels);
-  toOneChannel(image(region_), weights, levels_[0]);
-  for (int l = 1; l < levels; ++l) cv::pyrDown(levels_[l - 1], levels_[l]);
+  region_ = inside;
+  levels_ = levels;
+  channels_ = image.channels() == 1 ? 1 : channels.count;
+  planes_.resize(static_cast<std::size_t>(channels_) * levels_);
+  for (int c = 0; c < channels_; ++c) {
+    Plane* plane = planes_.data() + static_cast<std::size_t>(c) * levels_;
+    plane[0].resize(region_.width, region_.height);
+    smooth(image(region_), channels.weights[c], plane[0].view);
+    for (int l = 1; l < levels_; ++l) {
+      plane[l].resize((plane[l - 1].view.cols + 1) / 2, (plane[l - 1].view.rows + 1) / 2);
+      halve(plane[l - 1].view, plane[l].view);
+    }
+  }
 }
 
 }  // namespace laparoscope_servo::image

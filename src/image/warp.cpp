@@ -30,8 +30,9 @@ int locate(const Row& row, int stride, int width, int height, int first, int cou
   for (int i = 0; i < count; ++i) {
     const float x = static_cast<float>(first + i);
     const float w = r.w0 + r.w1 * x;
-    const float u = (r.u0 + r.u1 * x) / w;
-    const float v = (r.v0 + r.v1 * x) / w;
+    const float reciprocal = 1.0f / w;
+    const float u = (r.u0 + r.u1 * x) * reciprocal;
+    const float v = (r.v0 + r.v1 * x) * reciprocal;
     // A NaN or an infinity ends at 0, and is not equal to what it came from.
     float uc = u > 0.0f ? u : 0.0f;
     float vc = v > 0.0f ? v : 0.0f;

@@ -39,7 +39,7 @@ void readEsm(ParameterReader& reader, tracking::EsmConfig& config) {
   readEnum(reader, "tracking/esm/light", {"constant", "global", "local"}, config.light);
   reader.read("tracking/esm/robust", config.robust);
   reader.read("tracking/esm/saturation", config.saturation, 1, 256);
-  reader.read("tracking/esm/adapt_channel", config.adapt_channel);
+  readEnum(reader, "tracking/esm/channels", {"luma", "strongest", "colour"}, config.channels);
 }
 
 void readQuality(ParameterReader& reader, tracking::QualityConfig& config) {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <opencv2/imgproc.hpp>
 
 #include "esm_kernels.h"
 #include "laparoscope_servo/geometry/sl3.h"
@@ -15,11 +14,21 @@ namespace laparoscope_servo::tracking {
 
 namespace {
 
-constexpr int kMinLevelSide = 8;        // px
 constexpr double kTukey = 4.6851;       // 95 % efficiency for normal noise (Marchand and Chaumette 2004, appendix)
 constexpr double kMadToSigma = 1.4826;  // normal noise
 constexpr double kMinSigma = 1.0;       // grey levels; below it quantisation is mistaken for outliers
-constexpr int kMaxSamples = 1024;        // of the residual, for its scale
+constexpr int kMaxSamples = 1024;       // of the residual, for its scale
+constexpr int kRun = 4;                 // px side by side, which share what is fetched from memory
+constexpr double kBinsPerLevel = 8.0;   // of the histogram of residuals, which ends at 128 grey levels
+constexpr int kBins = 1024;
+
+// Steps shrink by about this factor from one to the next before that has been measured.
+constexpr double kContraction = 0.3;
+constexpr double kSlowest = 0.9;         // steps that shrink by less do not converge
+constexpr double kCoarseAccuracy = 0.1;  // px of the level, enough for the next finer one
+
+// Surprise, chi squared with 8 degrees of freedom, at which a prior begins to count less: Student's t with as many of its own.
+constexpr double kFreedom = 8.0;
 
 Eigen::Matrix3d scaling(double s, double x, double y) {
   Eigen::Matrix3d m;
@@ -29,54 +38,43 @@ Eigen::Matrix3d scaling(double s, double x, double y) {
   return m;
 }
 
-// The derivative of the corner's image, in normalised template units, at the identity: the rows of J for unit gradients.
-Eigen::Matrix<double, 2, 8> cornerJacobian(double u, double v) {
+// The derivative of a corner's image, in normalised template units, at the identity: the rows of J for unit gradients.
+Eigen::Matrix<double, 2, 8> cornerJacobian(const Eigen::Vector2d& p) {
   Eigen::Matrix<double, 2, 8> j;
-  j.row(0) = esmJacobianRow(1.0, 0.0, u, v);
-  j.row(1) = esmJacobianRow(0.0, 1.0, u, v);
+  j.row(0) = esmJacobianRow(1.0, 0.0, p.x(), p.y());
+  j.row(1) = esmJacobianRow(0.0, 1.0, p.x(), p.y());
   return j;
 }
 
-// Blocks of light are about a twelfth of the ROI, to follow its shading, and at least a strip, to leave the texture's own contrast
-// to the motion.
-constexpr int kLightBlocksAlong = 12;
-
-// Begins of about equal parts of `size`, each a multiple of `unit` but for the last, as many as fit with at least `least` each.
-std::vector<int> split(int size, int unit, int least) {
-  const int parts = std::clamp((size + least / 2) / least, 1, kLightBlocksAlong);
-  std::vector<int> begins;
-  for (int k = 0; k < parts; ++k) {
-    const int begin = (k * size / parts + unit / 2) / unit * unit;
-    if (begins.empty() || begin > begins.back()) begins.push_back(begin);
-  }
-  begins.push_back(size);
-  return begins;
+// How far the image of `p` moves for a motion of it in the plane of the reference.
+Eigen::Matrix2d derivative(const Eigen::Matrix3d& g, const Eigen::Vector2d& p) {
+  const Eigen::Vector3d q = g * p.homogeneous();
+  const Eigen::Vector2d image = q.hnormalized();
+  return (g.topLeftCorner<2, 2>() - image * g.bottomLeftCorner<1, 2>()) / q.z();
 }
 
-// Of three rows, the least in each column, then of three columns around each second one.
-void leastOfNeighbours(const image::Patch& fine, const cv::Point& offset, std::vector<float>& row, image::Patch& coarse) {
-  const int width = fine.width();
-  row.resize(width + 2);
-  for (int j = 0; j < coarse.height(); ++j) {
-    const int centre = std::min(2 * j + offset.y, fine.height() - 1);
-    const float* a = fine.row(std::max(centre - 1, 0));
-    const float* b = fine.row(centre);
-    const float* c = fine.row(std::min(centre + 1, fine.height() - 1));
-    float* least = row.data() + 1;
-    for (int i = 0; i < width; ++i) least[i] = std::min(std::min(a[i], b[i]), c[i]);
-    least[-1] = least[0];
-    least[width] = least[width - 1];
-    float* to = coarse.row(j);
-    for (int i = 0; i < coarse.width(); ++i) {
-      const int k = std::min(2 * i + offset.x, width - 1);
-      to[i] = std::min(std::min(least[k - 1], least[k]), least[k + 1]);
-    }
+// A matrix that its diagonal has been divided out of: grey levels and normalised coordinates have nothing to do with each other.
+template <int N>
+class Factors {
+ public:
+  using Matrix = Eigen::Matrix<double, N, N>;
+  explicit Factors(const Matrix& a)
+      : d_(a.diagonal().cwiseMax(1e-12).cwiseSqrt().cwiseInverse()), ldlt_(d_.asDiagonal() * a * d_.asDiagonal()) {}
+  // 0 for a singular matrix, 1 for a diagonal one.
+  double conditioning() const { return ldlt_.info() == Eigen::Success ? ldlt_.vectorD().minCoeff() : 0.0; }
+  template <typename Right>
+  auto solve(const Right& b) const {
+    return (d_.asDiagonal() * ldlt_.solve(d_.asDiagonal() * b)).eval();
   }
-}
 
-void copy(const cv::Mat1f& from, image::Patch& to) {
-  to.resize(from.cols, from.rows);
-  for (int j = 0; j < from.rows; ++j) std::copy_n(from.ptr<float>(j), from.cols, to.row(j));
+ private:
+  Eigen::Matrix<double, N, 1> d_;
+  Eigen::LDLT<Matrix> ldlt_;
+};
+
+// How much a prior counts that expected x = 0.
+double credibility(const MotionPrior& prior, const geometry::Vector8d& x) {
+  return 2.0 * kFreedom / (kFreedom + x.dot(prior.information * x));
 }
 
 }  // namespace
@@ -88,264 +86,286 @@ void Esm::setReference(const image::RegionPyramid& reference, const geometry::Re
   n_inv_ = n_.inverse();
   levels_.clear();
   forgetLight();
-  // Without a lens the levels' pixels are taken as they are; with one they are sampled anyway, from the ROI's first on.
-  const int x = lens_ ? 0 : static_cast<int>(roi.x) - reference.origin().x;
-  const int y = lens_ ? 0 : static_cast<int>(roi.y) - reference.origin().y;
-  const int right = x + static_cast<int>(roi.width) - 1;
-  const int bottom = y + static_cast<int>(roi.height) - 1;
   for (int l = 0; l < std::min(config_.levels, reference.levels()); ++l) {
-    const int size = 1 << l;
-    const cv::Point begin((x + size - 1) / size, (y + size - 1) / size);
-    const cv::Point end(right / size, bottom / size);
-    const cv::Rect patch(begin, cv::Size(end.x - begin.x + 1, end.y - begin.y + 1));
-    if (l > 0 && std::min(patch.width, patch.height) < kMinLevelSide) break;
-    EsmLevel level;
-    level.weight.resize(patch.width, patch.height);
-    level.weight.view().setTo(1.0f);
-    level.used.resize(patch.width, patch.height);
-    level.warped.resize(patch.width, patch.height);
-    level.valid.resize(patch.width, patch.height);
-    level.scale = size;
-    level.first = begin * size - cv::Point(x, y);
-    level.image_T_patch = scaling(size, roi.x + level.first.x, roi.y + level.first.y);
-    takeReference(reference, l, patch, level);
-    image::gradients(level.value, level.gx, level.gy);
-    // Cells of an eighth of the patch or less: the Jacobian's polynomials hardly change within.
-    level.cells_per_strip = patch.width >= 128 ? 1 : patch.width >= 64 ? 2 : 4;
-    level.cell_rows = patch.height >= 128 ? kMaxCellRows : patch.height >= 64 ? kMaxCellRows / 2 : kMaxCellRows / 4;
-    planLight(level);
+    EsmLevel level(reference, roi, l, lens_.get());
+    if (level.planes.empty()) break;
+    if (config_.light == Light::kLocal) level.centreLight();
+    if (l > 0) matchBlocks(level, levels_.back());
     levels_.push_back(std::move(level));
   }
 }
 
-void Esm::takeReference(const image::RegionPyramid& reference, int l, const cv::Rect& patch, EsmLevel& level) const {
-  if (!lens_) {
-    copy(reference.level(l)(patch), level.value);
-    return;
-  }
-  copy(image::rectify(reference.level(l), level.image_T_patch, *lens_, {reference.origin(), level.scale}, patch.size()),
-       level.value);
-}
-
-void Esm::planLight(EsmLevel& level) const {
-  const std::vector<int> columns = split(level.value.width(), image::Patch::kStrip, image::Patch::kStrip);
-  level.block_row_begin = split(level.value.height(), kMaxCellRows, image::Patch::kStrip);
-  level.block_columns = static_cast<int>(columns.size()) - 1;
-  level.block_of_strip.resize(level.value.strips());
-  for (int strip = 0; strip < level.value.strips(); ++strip) {
-    const auto next = std::upper_bound(columns.begin(), columns.end() - 1, strip * image::Patch::kStrip);
-    level.block_of_strip[strip] = static_cast<int>(next - columns.begin()) - 1;
-  }
-  level.bias.assign(level.block_columns * (level.block_row_begin.size() - 1), 0.0);
-}
-
 void Esm::setWeights(const cv::Mat1f& weights) {
-  copy(weights, levels_[0].weight);
-  for (std::size_t l = 1; l < levels_.size(); ++l) {
-    const EsmLevel& fine = levels_[l - 1];
-    leastOfNeighbours(fine.weight, (levels_[l].first - fine.first) / static_cast<int>(fine.scale), samples_, levels_[l].weight);
-  }
+  EsmLevel& finest = levels_[0];
+  for (int j = 0; j < finest.height; ++j) std::copy_n(weights.ptr<float>(j), finest.width, finest.weight.row(j));
+  for (std::size_t l = 1; l < levels_.size(); ++l) coarsenWeights(levels_[l - 1], scratch_, levels_[l]);
 }
 
 void Esm::warp(const image::RegionPyramid& current, EsmLevel& level, int l, const Eigen::Matrix3d& g) {
   const double size = level.scale;
-  if (lens_) {
-    level.all_valid = image::warpBilinear(current.level(l), g * level.image_T_patch, *lens_, {current.origin(), size},
-                                          level.warped, level.valid);
-  } else {
-    const Eigen::Matrix3d level_T_image = scaling(1.0 / size, -current.origin().x / size, -current.origin().y / size);
-    level.all_valid =
-        image::warpBilinear(current.level(l), level_T_image * g * level.image_T_patch, level.warped, level.valid);
+  const Eigen::Matrix3d level_T_image = scaling(1.0 / size, -current.origin().x / size, -current.origin().y / size);
+  const Eigen::Matrix3d level_T_patch = level_T_image * g * level.image_T_patch;
+  for (std::size_t c = 0; c < level.planes.size(); ++c) {
+    const int channel = std::min(static_cast<int>(c), current.channels() - 1);  // an image without colour stands for all
+    image::Patch& warped = level.planes[c].warped;
+    level.all_valid = lens_ ? image::warpBilinear(current.level(l, channel), g * level.image_T_patch, *lens_,
+                                                  {current.origin(), size}, warped, level.valid)
+                            : image::warpBilinear(current.level(l, channel), level_T_patch, warped, level.valid);
+    warped.extrapolate();
   }
-  level.warped.extrapolate();
-  if (level.all_valid) return;
-  // A pixel beside one that is not valid has no gradient.
-  cv::Mat1f valid = level.valid.view();
-  cv::erode(valid.clone(), valid, cv::getStructuringElement(cv::MORPH_CROSS, cv::Size(3, 3)));
-  cv::Mat1f used = level.used.view();
-  cv::multiply(level.weight.view(), valid, used);
+  if (!level.all_valid) level.useValid();
 }
 
 void Esm::forgetLight() { light_known_ = false; }
 
 void Esm::startLight(EsmLevel& level, const EsmState& state) {
-  const image::Patch& weight = level.all_valid ? level.weight : level.used;
-  std::vector<double> sums(level.bias.size(), 0.0), weights(level.bias.size(), 0.0);
-  for (std::size_t block_row = 0; block_row + 1 < level.block_row_begin.size(); ++block_row) {
-    for (int j = level.block_row_begin[block_row]; j < level.block_row_begin[block_row + 1]; ++j) {
-      for (int i = 0; i < level.value.width(); ++i) {
-        const std::size_t block = block_row * level.block_columns + level.block_of_strip[i / image::Patch::kStrip];
-        sums[block] += weight(j, i) * (level.value(j, i) - state.gain * level.warped(j, i));
-        weights[block] += weight(j, i);
+  const image::Patch& weight = level.usedWeight();
+  for (EsmPlane& plane : level.planes) {
+    std::vector<double> sums(plane.bias.size(), 0.0), weights(plane.bias.size(), 0.0);
+    for (std::size_t block_row = 0; block_row + 1 < level.block_row_begin.size(); ++block_row) {
+      for (int j = level.block_row_begin[block_row]; j < level.block_row_begin[block_row + 1]; ++j) {
+        for (int i = 0; i < level.width; ++i) {
+          const std::size_t block = block_row * level.block_columns + level.block_of_strip[i / image::Patch::kStrip];
+          const double centred = state.gain * (plane.warped(j, i) - plane.mean[block]) + plane.mean[block];
+          sums[block] += weight(j, i) * (plane.value(j, i) - centred);
+          weights[block] += weight(j, i);
+        }
       }
     }
-  }
-  for (std::size_t block = 0; block < sums.size(); ++block) {
-    level.bias[block] = weights[block] > 0.0 && config_.light == Light::kLocal ? sums[block] / weights[block] : state.bias;
+    for (std::size_t block = 0; block < sums.size(); ++block) {
+      plane.bias[block] = weights[block] > 0.0 && config_.light == Light::kLocal ? sums[block] / weights[block] : state.bias;
+    }
   }
 }
 
 double Esm::residualScale(const EsmLevel& level, const EsmState& state) {
-  samples_.clear();
-  const image::Patch& weight = level.all_valid ? level.weight : level.used;
-  const int pixels = level.value.width() * level.value.height();
-  const int stride = std::max(1, pixels / kMaxSamples);
+  histogram_.assign(kBins, 0);
+  const image::Patch& weight = level.usedWeight();
+  const int pixels = level.width * level.height * static_cast<int>(level.planes.size());
+  const int stride = kRun * std::max(1, pixels / kMaxSamples);
   const float gain = static_cast<float>(state.gain);
-  std::size_t block_row = 0;
-  for (int j = 0; j < level.value.height(); ++j) {
-    if (j >= level.block_row_begin[block_row + 1]) ++block_row;
-    const double* bias = level.bias.data() + block_row * level.block_columns;
-    // A stride along the rows that starts elsewhere in each row, so that no pattern of the image is preferred.
-    for (int i = (j * 7) % stride; i < level.value.width(); i += stride) {
-      if (!(weight(j, i) > 0.0f)) continue;
-      const float b = static_cast<float>(bias[level.block_of_strip[i / image::Patch::kStrip]]);
-      samples_.push_back(std::abs(gain * level.warped(j, i) + b - level.value(j, i)));
+  int count = 0;
+  for (const EsmPlane& plane : level.planes) {
+    std::size_t block_row = 0;
+    for (int j = 0; j < level.height; ++j) {
+      if (j >= level.block_row_begin[block_row + 1]) ++block_row;
+      const float* weights = weight.row(j);
+      const float* image = plane.warped.row(j);
+      const float* reference = plane.value.row(j);
+      // Runs that start elsewhere in each row, so that no pattern of the image is preferred.
+      for (int first = (j * 7 * kRun) % stride / kRun * kRun; first < level.width; first += stride) {
+        const std::size_t block = block_row * level.block_columns + level.block_of_strip[first / image::Patch::kStrip];
+        const float b = static_cast<float>(plane.biasOf(block, state.gain));
+        for (int i = first; i < std::min(first + kRun, level.width); ++i) {
+          if (!(weights[i] > 0.0f)) continue;
+          const float residual = std::abs(gain * image[i] + b - reference[i]);
+          ++histogram_[std::min(static_cast<int>(residual * static_cast<float>(kBinsPerLevel)), kBins - 1)];
+          ++count;
+        }
+      }
     }
   }
-  if (samples_.empty()) return kMinSigma;
-  const auto middle = samples_.begin() + static_cast<std::ptrdiff_t>(samples_.size() / 2);
-  std::nth_element(samples_.begin(), middle, samples_.end());
-  return std::max(kMinSigma, kMadToSigma * static_cast<double>(*middle));
+  if (count == 0) return kMinSigma;
+  // The median lies in the bin where half of the samples are reached, as far along as they are reached there.
+  double below = 0.0;
+  int bin = 0;
+  while (below + histogram_[bin] < 0.5 * count) below += histogram_[bin++];
+  const double median = (bin + (0.5 * count - below) / histogram_[bin]) / kBinsPerLevel;
+  return std::max(kMinSigma, kMadToSigma * median);
 }
 
 void Esm::accumulate(const EsmLevel& level, const EsmState& state, double sigma) {
   CellInput input;
-  input.image = &level.warped;
-  input.reference = &level.value;
-  input.reference_gx = &level.gx;
-  input.reference_gy = &level.gy;
-  input.weight = level.all_valid ? &level.weight : &level.used;
+  input.weight = &level.usedWeight();
   input.gain = static_cast<float>(state.gain);
   input.inverse_rejection = config_.robust ? static_cast<float>(1.0 / (kTukey * sigma)) : 0.0f;
   // The kernel adds both gradients; J takes their mean, per normalised unit.
   equations_.reset(config_.light, 0.5 * half_size_ / level.scale);
-  const Eigen::Matrix3d unit_T_patch = n_ * level.image_T_patch;
-  const int strips = level.value.strips();
-  strip_bias_.resize(strips);
   block_sums_.clear();
-  for (std::size_t block_row = 0; block_row + 1 < level.block_row_begin.size(); ++block_row) {
-    const int begin = level.block_row_begin[block_row];
-    const int end = level.block_row_begin[block_row + 1];
-    const int cell_rows = (end - begin + level.cell_rows - 1) / level.cell_rows;
-    for (int strip = 0; strip < strips; ++strip) {
-      strip_bias_[strip] = static_cast<float>(level.bias[block_row * level.block_columns + level.block_of_strip[strip]]);
-    }
-    const int per_strip = level.cells_per_strip;
-    cells_.resize(static_cast<std::size_t>(cell_rows) * strips * per_strip);
-    for (int k = 0; k < cell_rows; ++k) {
-      const int row = begin + k * level.cell_rows;
-      sumCells(input, row, std::min(level.cell_rows, end - row), per_strip, strip_bias_.data(),
-               cells_.data() + k * strips * per_strip);
-    }
-    const int cell_columns = image::Patch::kStrip / per_strip;
-    for (int strip = 0; strip < strips; ++strip) {
-      for (int cell = strip * per_strip; cell < (strip + 1) * per_strip; ++cell) {
-        const int columns = std::min(cell_columns, level.value.width() - cell * cell_columns);
-        if (columns <= 0) break;
-        const double u = unit_T_patch(0, 2) + unit_T_patch(0, 0) * (cell * cell_columns + 0.5 * (columns - 1));
-        for (int k = 0; k < cell_rows; ++k) {
-          const int row = begin + k * level.cell_rows;
-          const int rows = std::min(level.cell_rows, end - row);
-          const double v = unit_T_patch(1, 2) + unit_T_patch(1, 1) * (row + 0.5 * (rows - 1));
-          equations_.addCell(cells_[k * strips * per_strip + cell], u, v);
-        }
-      }
-      if (strip + 1 < strips && level.block_of_strip[strip + 1] == level.block_of_strip[strip]) continue;
-      equations_.endBlock();
-      block_sums_.push_back({equations_.blockWeight(), equations_.blockResidual(), equations_.blockJacobian()});
+  for (const EsmPlane& plane : level.planes) {
+    input.image = &plane.warped;
+    input.reference = &plane.value;
+    for (int row = 0; row + 1 < static_cast<int>(level.block_row_begin.size()); ++row) {
+      accumulateBlocks(level, input, plane, row);
     }
   }
 }
 
-bool Esm::solve(EsmLevel& level, EsmState& state, double& step) {
-  const Matrix10d a = equations_.matrix();
-  // Unit diagonal first: grey levels and normalised coordinates have nothing to do with each other.
-  const Vector10d d = a.diagonal().cwiseMax(1e-12).cwiseSqrt().cwiseInverse();
-  const Eigen::LDLT<Matrix10d> factors(d.asDiagonal() * a * d.asDiagonal());
-  if (factors.info() != Eigen::Success || !(factors.vectorD().minCoeff() > 1e-9)) return false;
-  const Vector10d x = -(d.asDiagonal() * factors.solve(d.asDiagonal() * equations_.vector()));
-  if (!x.allFinite()) return false;
-  const Eigen::Matrix3d motion = geometry::sl3Exp(x.head<8>());
-  const geometry::Quadrilateral before = geometry::apply(state.g, roi_.corners());
-  state.g = state.g * n_inv_ * motion * n_;
-  state.g /= std::cbrt(state.g.determinant());
-  state.gain += x[8];
-  state.bias += x[9];
-  double bias = 0.0;
-  double weight = 0.0;
-  for (std::size_t k = 0; k < block_sums_.size(); ++k) {
-    const BlockSums& sums = block_sums_[k];
-    if (config_.light == Light::kLocal && sums.weight > 0.0) {
-      level.bias[k] -= (sums.residual + sums.jacobian.dot(x)) / sums.weight;
-      bias += sums.weight * level.bias[k];
-      weight += sums.weight;
-    } else if (config_.light != Light::kLocal) {
-      level.bias[k] = state.bias;
-    }
+void Esm::accumulateBlocks(const EsmLevel& level, const CellInput& input, const EsmPlane& plane, int block_row) {
+  const Eigen::Matrix3d unit_T_patch = n_ * level.image_T_patch;
+  const int begin = level.block_row_begin[block_row];
+  const int end = level.block_row_begin[block_row + 1];
+  const int cell_rows = (end - begin + level.cell_rows - 1) / level.cell_rows;
+  const int strips = level.weight.strips();
+  strip_bias_.resize(strips);
+  for (int strip = 0; strip < strips; ++strip) {
+    const std::size_t block = block_row * level.block_columns + level.block_of_strip[strip];
+    strip_bias_[strip] = static_cast<float>(plane.biasOf(block, input.gain));
   }
-  if (weight > 0.0) state.bias = bias / weight;
+  const int per_strip = level.cells_per_strip;
+  cells_.resize(static_cast<std::size_t>(cell_rows) * strips * per_strip);
+  for (int k = 0; k < cell_rows; ++k) {
+    const int row = begin + k * level.cell_rows;
+    sumCells(input, row, std::min(level.cell_rows, end - row), per_strip, strip_bias_.data(),
+             cells_.data() + k * strips * per_strip);
+  }
+  const int cell_columns = image::Patch::kStrip / per_strip;
+  for (int strip = 0; strip < strips; ++strip) {
+    for (int cell = strip * per_strip; cell < (strip + 1) * per_strip; ++cell) {
+      const int columns = std::min(cell_columns, level.width - cell * cell_columns);
+      if (columns <= 0) break;
+      const double u = unit_T_patch(0, 2) + unit_T_patch(0, 0) * (cell * cell_columns + 0.5 * (columns - 1));
+      for (int k = 0; k < cell_rows; ++k) {
+        const int row = begin + k * level.cell_rows;
+        const int rows = std::min(level.cell_rows, end - row);
+        const double v = unit_T_patch(1, 2) + unit_T_patch(1, 1) * (row + 0.5 * (rows - 1));
+        equations_.addCell(cells_[k * strips * per_strip + cell], u, v);
+      }
+    }
+    if (strip + 1 < strips && level.block_of_strip[strip + 1] == level.block_of_strip[strip]) continue;
+    equations_.endBlock();
+    block_sums_.push_back(
+        {equations_.blockWeight(), equations_.blockResidual(), equations_.blockJacobian(), equations_.blockScore()});
+  }
+}
+
+bool Esm::solve(EsmLevel& level, const MotionPrior* prior, EsmState& state, double& step) {
+  Matrix10d a = equations_.matrix();
+  Vector10d b = equations_.vector();
+  if (prior != nullptr) {
+    const double unit = prior->noise * credibility(*prior, deviation_);
+    a.topLeftCorner<8, 8>() += unit * prior->information;
+    b.head<8>() += unit * (prior->information * deviation_);
+  }
+  const Factors<10> factors(a);
+  if (!(factors.conditioning() > 1e-9)) return false;
+  const Vector10d x = -factors.solve(b);
+  if (!x.allFinite()) return false;
+  deviation_ += x.head<8>();
+  const geometry::Quadrilateral before = geometry::apply(state.g, roi_.corners());
+  takeStep(level, x, state);
   const geometry::Quadrilateral after = geometry::apply(state.g, roi_.corners());
   step = 0.0;
   for (int k = 0; k < 4; ++k) step = std::max(step, (after[k] - before[k]).norm());
   return state.g.allFinite() && std::isfinite(step) && state.gain > 0.0;
 }
 
-double Esm::predictedCornerError(double sigma) const {
-  const Matrix10d a = equations_.matrix();
-  const Vector10d d = a.diagonal().cwiseMax(1e-12).cwiseSqrt().cwiseInverse();
-  const Eigen::LDLT<Matrix10d> factors(d.asDiagonal() * a * d.asDiagonal());
-  if (factors.info() != Eigen::Success || !(factors.vectorD().minCoeff() > 1e-12)) {
-    return std::numeric_limits<double>::infinity();
+void Esm::takeStep(EsmLevel& level, const Vector10d& x, EsmState& state) {
+  state.g = state.g * n_inv_ * geometry::sl3Exp(x.head<8>()) * n_;
+  state.g /= std::cbrt(state.g.determinant());
+  state.gain += x[8];
+  state.bias += x[9];
+  double bias = 0.0;
+  double weight = 0.0;
+  auto sums = block_sums_.begin();
+  for (EsmPlane& plane : level.planes) {
+    for (std::size_t block = 0; block < plane.bias.size(); ++block, ++sums) {
+      if (config_.light != Light::kLocal) {
+        plane.bias[block] = state.bias;
+      } else if (sums->weight > 0.0) {
+        // The step is one of gain * image + bias; part of it is what the gain's does to the mean.
+        plane.bias[block] += x[8] * plane.mean[block] - (sums->residual + sums->jacobian.dot(x)) / sums->weight;
+        bias += sums->weight * plane.biasOf(block, state.gain);
+        weight += sums->weight;
+      }
+    }
   }
-  const Matrix10d inverse = d.asDiagonal() * factors.solve(Matrix10d(d.asDiagonal()));
+  if (weight > 0.0) state.bias = bias / weight;
+}
+
+// The covariance that the residuals show is A^-1 B A^-1 with A = J'WJ and B the sum of the blocks' J'Wr times itself: whatever the
+// residuals within a block have in common is in it. `noise` is the one number that makes A/noise as large as its inverse.
+void Esm::judge(const MotionPrior* prior, EsmResult& result) {
+  Matrix10d scores = Matrix10d::Zero();
+  int blocks = 0;
+  for (const BlockSums& sums : block_sums_) {
+    if (!(sums.weight > 0.0)) continue;
+    scores += sums.score * sums.score.transpose();
+    ++blocks;
+  }
+  const Factors<10> factors(equations_.matrix());
+  result.noise = result.sigma * result.sigma;
+  result.corner_error = std::numeric_limits<double>::infinity();
+  Matrix8d information = Matrix8d::Zero();
+  if (factors.conditioning() > 1e-12) {
+    const Matrix10d inverse = factors.solve(Matrix10d::Identity());
+    const Matrix8d shape = inverse.topLeftCorner<8, 8>();
+    const Matrix8d seen = (inverse * scores * inverse).topLeftCorner<8, 8>();
+    const Factors<8> of_shape(shape);
+    // Nine unknowns have been fitted to the blocks.
+    const double freedom = std::max(1.0, blocks - 9.0) / std::max(1, blocks);
+    const double seen_noise = of_shape.solve(seen).trace() / 8.0 / freedom;
+    if (std::isfinite(seen_noise)) result.noise = std::max(result.noise, seen_noise);
+    information = of_shape.solve(Matrix8d::Identity()) / result.noise;
+  }
+  if (prior != nullptr) information += credibility(*prior, deviation_) * prior->information;
+  const Factors<8> posterior(information);
+  if (!(posterior.conditioning() > 1e-12)) return;
+  result.covariance = posterior.solve(Matrix8d::Identity());
+  result.corner_error = cornerError(result.state.g, result.covariance);
+}
+
+double Esm::cornerError(const Eigen::Matrix3d& g, const Matrix8d& covariance) const {
   double worst = 0.0;
   for (const Eigen::Vector2d& corner : roi_.corners()) {
-    const Eigen::Vector2d p = geometry::apply(n_, corner);
-    const Eigen::Matrix<double, 2, 8> j = half_size_ * cornerJacobian(p.x(), p.y());
-    worst = std::max(worst, (j * inverse.topLeftCorner<8, 8>() * j.transpose()).trace());
+    const Eigen::Matrix<double, 2, 8> j = half_size_ * derivative(g, corner) * cornerJacobian(geometry::apply(n_, corner));
+    worst = std::max(worst, (j * covariance * j.transpose()).trace());
   }
-  return sigma * std::sqrt(worst);
+  return std::sqrt(worst);
 }
 
 double Esm::referenceCornerError(double sigma) {
   EsmLevel& level = levels_[0];
-  copy(level.value.view(), level.warped);
-  level.warped.extrapolate();
+  for (EsmPlane& plane : level.planes) {
+    for (int j = 0; j < level.height; ++j) std::copy_n(plane.value.row(j), level.width, plane.warped.row(j));
+    plane.warped.extrapolate();
+  }
   level.all_valid = true;
   accumulate(level, EsmState(), sigma);
-  return predictedCornerError(std::sqrt(2.0) * sigma);
+  const Factors<10> factors(equations_.matrix());
+  if (!(factors.conditioning() > 1e-12)) return std::numeric_limits<double>::infinity();
+  const Matrix10d inverse = factors.solve(Matrix10d::Identity());
+  return cornerError(Eigen::Matrix3d::Identity(), 2.0 * sigma * sigma * inverse.topLeftCorner<8, 8>());
 }
 
-EsmResult Esm::align(const image::RegionPyramid& current, const EsmState& start, int finest, int coarsest) {
+// From the second step on the ratio of two steps tells how fast they shrink, and so how far there is still to go.
+EsmStatus Esm::alignLevel(const image::RegionPyramid& current, int l, const MotionPrior* prior, EsmResult& result) {
+  EsmLevel& level = levels_[l];
+  const double accuracy = l == 0 ? config_.min_step : std::max(config_.min_step, kCoarseAccuracy * level.scale);
+  double contraction = kContraction;
+  for (int k = 0; k < config_.max_iterations; ++k) {
+    if (!geometry::isConvex(geometry::apply(result.state.g, roi_.corners()))) return EsmStatus::kOutOfView;
+    warp(current, level, l, result.state.g);
+    if (k == 0 && !(light_known_ && config_.light == Light::kLocal)) startLight(level, result.state);
+    result.sigma = residualScale(level, result.state);
+    accumulate(level, result.state, result.sigma);
+    ++result.iterations;
+    const double last_step = result.last_step;
+    if (!solve(level, prior, result.state, result.last_step)) return EsmStatus::kIllConditioned;
+    if (k > 0) contraction = std::min(result.last_step / std::max(last_step, 1e-9), kSlowest);
+    if (result.last_step * contraction / (1.0 - contraction) < accuracy) return EsmStatus::kConverged;
+  }
+  return EsmStatus::kMaxIterations;
+}
+
+EsmResult Esm::align(const image::RegionPyramid& current, const EsmState& start, const MotionPrior* prior, int coarsest) {
   EsmResult result;
   result.state = start;
   result.corner_error = std::numeric_limits<double>::infinity();
-  for (int l = std::min({coarsest, levels() - 1, current.levels() - 1}); l >= finest; --l) {
-    EsmLevel& level = levels_[l];
-    const double min_step = l == finest ? config_.min_step : std::max(config_.min_step, 0.1 * level.scale);
-    result.status = EsmStatus::kMaxIterations;
-    for (int k = 0; k < config_.max_iterations; ++k) {
-      if (!geometry::isConvex(geometry::apply(result.state.g, roi_.corners()))) {
-        result.status = EsmStatus::kOutOfView;
-        return result;
-      }
-      warp(current, level, l, result.state.g);
-      if (k == 0 && !(light_known_ && config_.light == Light::kLocal)) startLight(level, result.state);
-      result.sigma = residualScale(level, result.state);
-      accumulate(level, result.state, result.sigma);
-      ++result.iterations;
-      if (!solve(level, result.state, result.last_step)) {
-        result.status = EsmStatus::kIllConditioned;
-        return result;
-      }
-      if (result.last_step < min_step) {
-        result.status = EsmStatus::kConverged;
-        break;
-      }
-    }
+  deviation_.setZero();
+  if (prior != nullptr && prior->predicted != start.g) {
+    deviation_ = geometry::sl3Log(geometry::normaliseDeterminant(n_ * prior->predicted.inverse() * start.g * n_inv_));
+    if (!deviation_.allFinite()) prior = nullptr;
+  }
+  const int first = std::min({coarsest, levels() - 1, current.levels() - 1});
+  for (int l = first; l >= 0; --l) {
+    for (EsmPlane& plane : levels_[l].planes) plane.before = plane.bias;
+    if (l < first && light_known_ && config_.light == Light::kLocal) inheritLight(levels_[l + 1], levels_[l]);
+    result.status = alignLevel(current, l, prior, result);
+    if (result.status == EsmStatus::kOutOfView || result.status == EsmStatus::kIllConditioned) return result;
   }
   light_known_ = true;
-  result.corner_error = predictedCornerError(result.sigma);
+  judge(prior, result);
   return result;
 }
 

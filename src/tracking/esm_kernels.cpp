@@ -10,21 +10,30 @@ namespace {
 
 constexpr int kLanes = image::Patch::kStrip;
 
+// One row of a cell; those above and below for the gradient.
 struct Rows {
-  const float* above;
-  const float* image;
-  const float* below;
-  const float* reference;
-  const float* reference_gx;
-  const float* reference_gy;
+  const float *image_above, *image, *image_below;
+  const float *reference_above, *reference, *reference_below;
   const float* weight;
 };
 
-// Adds one row of a cell, lane by lane. The lanes are summed when the cell is complete.
-struct Lanes {
-  float xx[kLanes], xy[kLanes], yy[kLanes], xr[kLanes], yr[kLanes], x[kLanes], y[kLanes], xm[kLanes], ym[kLanes], w[kLanes],
-      r[kLanes], m[kLanes], mm[kLanes], mr[kLanes];
-};
+// The order of CellSums' members.
+enum Sum { kXX, kXY, kYY, kXR, kYR, kX, kY, kXM, kYM, kW, kR, kM, kMM, kMR, kSums };
+
+// What is added up, lane by lane. The lanes are summed when the cell is complete.
+using Lanes = float[kSums][kLanes];
+
+// The first `cells` lanes of each sum become those of the cells: halves of each cell's lanes are added until one is left.
+inline void fold(int cells, Lanes& s) {
+  for (int width = kLanes / cells; width > 1; width /= 2) {
+    const int half = width / 2;
+    for (int k = 0; k < kSums; ++k) {
+      for (int cell = 0; cell < cells; ++cell) {
+        for (int i = 0; i < half; ++i) s[k][cell * half + i] = s[k][cell * width + i] + s[k][cell * width + half + i];
+      }
+    }
+  }
+}
 
 LAPAROSCOPE_SERVO_CLONES
 void sumCell(const Rows* rows, int count, float gain, float bias, float inverse_rejection, int cells, CellSums* sums) {
@@ -41,48 +50,42 @@ void sumCell(const Rows* rows, int count, float gain, float bias, float inverse_
       const float tukey = t > 0.0f ? t : 0.0f;
       const float w = row.weight[i] * tukey * tukey;
       // Image and reference alike, which makes the step second-order.
-      const float gx = 0.5f * gain * (row.image[i + 1] - row.image[i - 1]) + row.reference_gx[i];
-      const float gy = 0.5f * gain * (row.below[i] - row.above[i]) + row.reference_gy[i];
+      const float gx = 0.5f * (gain * (row.image[i + 1] - row.image[i - 1]) + (row.reference[i + 1] - row.reference[i - 1]));
+      const float gy = 0.5f * (gain * (row.image_below[i] - row.image_above[i]) + (row.reference_below[i] - row.reference_above[i]));
       const float m = 0.5f * (image + reference);
       const float wx = w * gx;
       const float wy = w * gy;
       const float wm = w * m;
-      s.xx[i] += wx * gx;
-      s.xy[i] += wx * gy;
-      s.yy[i] += wy * gy;
-      s.xr[i] += wx * r;
-      s.yr[i] += wy * r;
-      s.x[i] += wx;
-      s.y[i] += wy;
-      s.xm[i] += wx * m;
-      s.ym[i] += wy * m;
-      s.w[i] += w;
-      s.r[i] += w * r;
-      s.m[i] += wm;
-      s.mm[i] += wm * m;
-      s.mr[i] += wm * r;
+      s[kXX][i] += wx * gx;
+      s[kXY][i] += wx * gy;
+      s[kYY][i] += wy * gy;
+      s[kXR][i] += wx * r;
+      s[kYR][i] += wy * r;
+      s[kX][i] += wx;
+      s[kY][i] += wy;
+      s[kXM][i] += wx * m;
+      s[kYM][i] += wy * m;
+      s[kW][i] += w;
+      s[kR][i] += w * r;
+      s[kM][i] += wm;
+      s[kMM][i] += wm * m;
+      s[kMR][i] += wm * r;
     }
+    // The next strip: columns are walked down, which the processor does not foresee.
+    __builtin_prefetch(row.image + 2 * kLanes);
+    __builtin_prefetch(row.reference + 2 * kLanes);
+    __builtin_prefetch(row.weight + 2 * kLanes);
   }
-  const int width = kLanes / cells;
-  for (int cell = 0; cell < cells; ++cell) {
-    CellSums c = {};
-    for (int i = cell * width; i < (cell + 1) * width; ++i) {
-      c.xx += s.xx[i];
-      c.xy += s.xy[i];
-      c.yy += s.yy[i];
-      c.xr += s.xr[i];
-      c.yr += s.yr[i];
-      c.x += s.x[i];
-      c.y += s.y[i];
-      c.xm += s.xm[i];
-      c.ym += s.ym[i];
-      c.w += s.w[i];
-      c.r += s.r[i];
-      c.m += s.m[i];
-      c.mm += s.mm[i];
-      c.mr += s.mr[i];
-    }
-    sums[cell] = c;
+  if (cells == 1) {
+    fold(1, s);
+  } else if (cells == 2) {
+    fold(2, s);
+  } else {
+    fold(4, s);
+  }
+  for (int c = 0; c < cells; ++c) {
+    sums[c] = {s[kXX][c], s[kXY][c], s[kYY][c], s[kXR][c], s[kYR][c], s[kX][c],  s[kY][c],
+               s[kXM][c], s[kYM][c], s[kW][c],  s[kR][c],  s[kM][c],  s[kMM][c], s[kMR][c]};
   }
 }
 
@@ -95,9 +98,9 @@ void sumCells(const CellInput& input, int first_row, int rows, int per_strip, co
     const int column = strip * kLanes;
     for (int j = 0; j < rows; ++j) {
       const int row = first_row + j;
-      cell[j] = {input.image->row(row - 1) + column,       input.image->row(row) + column,
-                 input.image->row(row + 1) + column,       input.reference->row(row) + column,
-                 input.reference_gx->row(row) + column,    input.reference_gy->row(row) + column,
+      cell[j] = {input.image->row(row - 1) + column,     input.image->row(row) + column,
+                 input.image->row(row + 1) + column,     input.reference->row(row - 1) + column,
+                 input.reference->row(row) + column,     input.reference->row(row + 1) + column,
                  input.weight->row(row) + column};
     }
     sumCell(cell, rows, input.gain, bias[strip], input.inverse_rejection, per_strip, sums + strip * per_strip);

@@ -7,13 +7,12 @@
 namespace laparoscope_servo::tracking {
 
 // Cells have at most this many rows, and a strip's width of columns or a half or a quarter of that.
-constexpr int kMaxCellRows = 8;
+constexpr int kMaxCellRows = 16;
 
+// Image and reference have their margins extrapolated.
 struct CellInput {
-  const image::Patch* image = nullptr;      // warped; its margin extrapolated
+  const image::Patch* image = nullptr;  // warped
   const image::Patch* reference = nullptr;
-  const image::Patch* reference_gx = nullptr;  // per pixel
-  const image::Patch* reference_gy = nullptr;
   const image::Patch* weight = nullptr;
   float gain = 1.0f;
   float inverse_rejection = 0.0f;  // 1 / (C sigma) of Tukey's weights; 0 gives every residual its full weight

@@ -25,13 +25,25 @@ double product(const Monomial& s, const Monomial& t, const double* moments) {
   return c == 0.0 ? 0.0 : c * moments[indexOfDegree4(s.a + t.a, s.b + t.b)];
 }
 
+// Adds the row of J for the gradient (gx, gy).
+inline void addRow(double gx, double gy, double u, double v, Vector10d& sum) {
+  const double g3 = -(u * gx + v * gy);
+  sum[0] += gx;
+  sum[1] += gy;
+  sum[2] += gx * v;
+  sum[3] += gy * u;
+  sum[4] += gx * u - gy * v;
+  sum[5] += g3 - gy * v;
+  sum[6] += g3 * u;
+  sum[7] += g3 * v;
+}
+
 }  // namespace
 
 Eigen::Matrix<double, 1, 8> esmJacobianRow(double gx, double gy, double u, double v) {
-  const double g3 = -(u * gx + v * gy);
-  Eigen::Matrix<double, 1, 8> j;
-  j << gx, gy, gx * v, gy * u, gx * u - gy * v, g3 - gy * v, g3 * u, g3 * v;
-  return j;
+  Vector10d j = Vector10d::Zero();
+  addRow(gx, gy, u, v, j);
+  return j.head<8>().transpose();
 }
 
 void NormalEquations::reset(Light light, double gradient_scale) {
@@ -40,6 +52,7 @@ void NormalEquations::reset(Light light, double gradient_scale) {
   moments_ = {};
   matrix_.setZero();
   vector_.setZero();
+  gain_column_.setZero();
   block_jacobian_.setZero();
   block_weight_ = block_residual_ = 0.0;
   block_open_ = false;
@@ -49,6 +62,7 @@ void NormalEquations::addCell(const CellSums& cell, double u, double v) {
   if (!block_open_) {
     block_jacobian_.setZero();
     block_weight_ = block_residual_ = 0.0;
+    vector_before_ = vector_;
     block_open_ = true;
   }
   const double f = gradient_scale_;
@@ -62,14 +76,14 @@ void NormalEquations::addCell(const CellSums& cell, double u, double v) {
       moments_.yy[k] += power * cell.yy;
     }
   }
-  vector_.head<8>() += esmJacobianRow(f * cell.xr, f * cell.yr, u, v).transpose();
+  addRow(f * cell.xr, f * cell.yr, u, v, vector_);
   block_weight_ += cell.w;
   block_residual_ += cell.r;
   if (light_ == Light::kConstant) return;
-  matrix_.col(8).head<8>() += esmJacobianRow(f * cell.xm, f * cell.ym, u, v).transpose();
+  addRow(f * cell.xm, f * cell.ym, u, v, gain_column_);
   matrix_(8, 8) += cell.mm;
   vector_[8] += cell.mr;
-  block_jacobian_.head<8>() += esmJacobianRow(f * cell.x, f * cell.y, u, v).transpose();
+  addRow(f * cell.x, f * cell.y, u, v, block_jacobian_);
   block_jacobian_[8] += cell.m;
 }
 
@@ -87,6 +101,7 @@ void NormalEquations::endBlock() {
 
 Matrix10d NormalEquations::matrix() const {
   Matrix10d m = matrix_;
+  m.col(8).head<8>() += gain_column_.head<8>();
   for (int k = 0; k < 8; ++k) {
     for (int l = k; l < 8; ++l) {
       m(k, l) += product(kP[k], kP[l], moments_.xx) + product(kP[k], kQ[l], moments_.xy) + product(kQ[k], kP[l], moments_.xy) +

@@ -12,7 +12,6 @@ namespace {
 constexpr double kNearlyConverged = 1.0;
 
 constexpr double kRecordRate = 0.05;    // share of a new image in the record: it follows within a second of video
-constexpr double kRecordVisible = 0.4;  // of the ROI, for an image to enter the record
 
 // How much worse than the record an estimate may be: factor and constant on the unexplained share 1 - zncc, and on sigma [grey
 // levels]. A search starts anywhere, and picks the areas that agree; false fits have 1.5 to 4 times the residual.

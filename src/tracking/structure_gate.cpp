@@ -34,9 +34,14 @@ void addRow(const float* __restrict image, const float* __restrict reference, co
 
 }  // namespace
 
-void StructureStatistics::compute(const image::Patch& image, const image::Patch& reference, const image::Patch& weight,
-                                  const image::AreaGrid& grid) {
-  areas_.resize(grid.count());
+void StructureStatistics::compute(const PatchPair* channels, int count, const image::Patch& weight, const image::AreaGrid& grid) {
+  areas_.assign(grid.count(), {});
+  for (int c = 0; c < count; ++c) add(channels[c], 1.0 / count, weight, grid);
+}
+
+void StructureStatistics::add(const PatchPair& channel, double part, const image::Patch& weight, const image::AreaGrid& grid) {
+  const image::Patch& image = *channel.image;
+  const image::Patch& reference = *channel.reference;
   const int width = grid.width();
   columns_.resize(static_cast<std::size_t>(6) * width);
   for (int row = 0; row < grid.rows(); ++row) {
@@ -52,12 +57,14 @@ void StructureStatistics::compute(const image::Patch& image, const image::Patch&
       }
       const int area = row * grid.columns() + column;
       const double n = sums[0];
-      areas_[area] = {};
       if (!(n > 0.0)) continue;
       const double a = sums[1] / n;
       const double b = sums[2] / n;
-      areas_[area] = {static_cast<float>(n / grid.pixelsIn(area)), static_cast<float>(std::max(0.0, sums[3] / n - a * a)),
-                      static_cast<float>(std::max(0.0, sums[4] / n - b * b)), static_cast<float>(sums[5] / n - a * b)};
+      AreaMoments& moments = areas_[area];
+      moments.share = static_cast<float>(n / grid.pixelsIn(area));
+      moments.image += static_cast<float>(part * std::max(0.0, sums[3] / n - a * a));
+      moments.reference += static_cast<float>(part * std::max(0.0, sums[4] / n - b * b));
+      moments.both += static_cast<float>(part * (sums[5] / n - a * b));
     }
   }
 }

@@ -1,7 +1,10 @@
-// A pyramid of one channel around a region of an image.
+// A pyramid around a region of an image, of one channel or several.
 //
 // Level l is 2^l times as coarse as the image. The centre of its pixel (0, 0) lies on the image's pixel origin(), so a point
 // (u, v) of the image is ((u - origin.x) / 2^l, (v - origin.y) / 2^l) at level l.
+//
+// Level 0 is smoothed a little (sigma 0.65 px): between the pixels of what is smooth, bilinear interpolation hardly errs, and
+// gradients are of the tissue rather than of the noise.
 #pragma once
 
 #include <array>
@@ -10,24 +13,51 @@
 
 namespace laparoscope_servo::image {
 
-// What blue, green and red weigh in the one channel that is tracked. BT.601 luma by default.
+// What blue, green and red weigh in a channel that is tracked. BT.601 luma by default.
 using ChannelWeights = std::array<float, 3>;
 constexpr ChannelWeights kLuma = {0.114f, 0.587f, 0.299f};
+constexpr int kMaxChannels = 3;
+
+// One channel or more, at most kMaxChannels.
+struct Channels {
+  Channels(const ChannelWeights& one) : count(1), weights{one} {}  // NOLINT: a channel is channels
+  Channels(const ChannelWeights& first, const ChannelWeights& second, const ChannelWeights& third)
+      : count(3), weights{first, second, third} {}
+  int count;
+  std::array<ChannelWeights, kMaxChannels> weights;
+};
 
 class RegionPyramid {
  public:
-  // `image` is CV_8UC1 (weights are ignored) or CV_8UC3, blue first. `region` is cut to the image; it must then hold at least
-  // one pixel, else std::invalid_argument. Buffers are kept from one call to the next.
-  void build(const cv::Mat& image, const cv::Rect& region, int levels, const ChannelWeights& weights);
+  RegionPyramid() = default;
+  RegionPyramid(RegionPyramid&&) noexcept = default;
+  RegionPyramid& operator=(RegionPyramid&&) noexcept = default;
 
-  int levels() const { return static_cast<int>(levels_.size()); }
-  const cv::Mat1f& level(int l) const { return levels_[l]; }
+  // `image` is CV_8UC1 (there is then one channel, and weights are ignored) or CV_8UC3, blue first. `region` is cut to the image; it
+  // must then hold at least one pixel, else std::invalid_argument. Buffers are kept from one call to the next.
+  void build(const cv::Mat& image, const cv::Rect& region, int levels, const Channels& channels);
+
+  int levels() const { return levels_; }
+  int channels() const { return channels_; }
+  const cv::Mat1f& level(int l, int channel = 0) const { return planes_[channel * levels_ + l].view; }
   cv::Point origin() const { return region_.tl(); }
   const cv::Rect& region() const { return region_; }
 
  private:
+  // Regions change in size by a pixel or two from image to image; the memory stays.
+  struct Plane {
+    cv::Mat1f view;
+    std::vector<float> data;
+    void resize(int width, int height);
+  };
+  void smooth(const cv::Mat& image, const ChannelWeights& weights, cv::Mat1f& level);
+  void halve(const cv::Mat1f& fine, cv::Mat1f& coarse);
+
   cv::Rect region_;
-  std::vector<cv::Mat1f> levels_;
+  int levels_ = 0;
+  int channels_ = 0;
+  std::vector<Plane> planes_;  // channel by channel
+  std::vector<float> rows_;
 };
 
 }  // namespace laparoscope_servo::image

@@ -18,6 +18,7 @@ namespace laparoscope_servo::tracking {
 // Order of the unknowns: x_1 .. x_8 of sl(3), then the changes of gain and bias.
 using Matrix10d = Eigen::Matrix<double, 10, 10>;
 using Vector10d = Eigen::Matrix<double, 10, 1>;
+using Matrix8d = Eigen::Matrix<double, 8, 8>;
 
 // The eight entries of J for one pixel, as above. Reference for tests, and readable beside the papers.
 Eigen::Matrix<double, 1, 8> esmJacobianRow(double gx, double gy, double u, double v);
@@ -50,6 +51,8 @@ class NormalEquations {
   double blockWeight() const { return block_weight_; }
   double blockResidual() const { return block_residual_; }
   const Vector10d& blockJacobian() const { return block_jacobian_; }
+  // What the block added to vector().
+  Vector10d blockScore() const { return vector_ - vector_before_; }
 
  private:
   static constexpr int kSecond = 15;  // monomials u^a v^b with a + b <= 4
@@ -60,7 +63,9 @@ class NormalEquations {
   Light light_ = Light::kConstant;
   double gradient_scale_ = 1.0;
   Matrix10d matrix_ = Matrix10d::Identity();
+  Vector10d gain_column_ = Vector10d::Zero();  // of matrix_, apart from what blocks subtract
   Vector10d vector_ = Vector10d::Zero();
+  Vector10d vector_before_ = Vector10d::Zero();  // without the last block
   Vector10d block_jacobian_ = Vector10d::Zero();
   double block_weight_ = 0.0;
   double block_residual_ = 0.0;

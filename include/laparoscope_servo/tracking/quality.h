@@ -9,6 +9,9 @@
 
 namespace laparoscope_servo::tracking {
 
+// Share of the ROI that has to be visible in an image for it to be learned from.
+constexpr double kRecordVisible = 0.4;
+
 // What estimates of this ROI that were believed have looked like. Tissue that deforms never correlates as well as a plane does, and a
 // noisy camera leaves larger residuals than a good one: what is too bad is relative.
 class TrackRecord {

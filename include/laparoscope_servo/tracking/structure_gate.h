@@ -20,10 +20,17 @@ struct AreaMoments {
   float both = 0.0f;  // covariance
 };
 
+// What is compared: the image, warped, and the reference.
+struct PatchPair {
+  const image::Patch* image;
+  const image::Patch* reference;
+};
+
 class StructureStatistics {
  public:
-  // `weight`: 1 for pixels that are used, 0 for the others. Sizes must agree with the grid's.
-  void compute(const image::Patch& image, const image::Patch& reference, const image::Patch& weight, const image::AreaGrid& grid);
+  // Of one patch, or of as many channels of it, whose moments are then their mean over the channels. `weight`: 1 for pixels that are
+  // used, 0 for the others. Sizes must agree with the grid's.
+  void compute(const PatchPair* channels, int count, const image::Patch& weight, const image::AreaGrid& grid);
 
   const AreaMoments& area(int k) const { return areas_[k]; }
   int count() const { return static_cast<int>(areas_.size()); }
@@ -34,6 +41,8 @@ class StructureStatistics {
   float dissimilarity(int k, double gain, double sigma) const;
 
  private:
+  void add(const PatchPair& channel, double part, const image::Patch& weight, const image::AreaGrid& grid);
+
   std::vector<AreaMoments> areas_;
   std::vector<float> columns_;  // six sums for each column of a row of areas
 };

@@ -20,6 +20,13 @@ enum class Light {
   kLocal,     // one gain, a bias for each block of 16 x 16 px: shading and shadows that move do not pull the estimate
 };
 
+// What of the colours ESM tracks.
+enum class TrackedChannels {
+  kLuma,
+  kStrongest,  // the mixture that varies most across the ROI
+  kColour,     // blue, green and red: three residuals a pixel, as Bourger et al. (2007) extend ESM
+};
+
 struct OcclusionConfig {
   ColourGate colour = ColourGate::kNormalised;
   int rows = 14;           // 2 to 64; 14 x 14 = 196 areas in the paper
@@ -33,11 +40,11 @@ struct OcclusionConfig {
 struct EsmConfig {
   int levels = 3;            // 1 to 6, of the pyramid; a level twice as coarse each
   int max_iterations = 10;   // 1 to 100, per level
-  double min_step = 0.02;    // px, 0.0001 to 1: converged when no corner of the ROI moves by more in an iteration
+  double min_step = 0.02;    // px, 0.0001 to 1: converged when no corner of the ROI is expected to move by more
   Light light = Light::kLocal;
   bool robust = true;        // Tukey's weights on the residuals
   int saturation = 250;      // 1 to 256 grey levels: pixels as bright as this in any channel weigh nothing; 256 turns it off
-  bool adapt_channel = true; // track the combination of colours that varies most across the ROI; false: luma
+  TrackedChannels channels = TrackedChannels::kStrongest;
 };
 
 // When an estimate is believed.

@@ -34,7 +34,7 @@ TEST(RegionPyramid, LevelsShowAPlaneOfGreyLevelsAtTheirCoordinates) {
 TEST(RegionPyramid, WeighsTheChannels) {
   const cv::Mat image(30, 30, CV_8UC3, cv::Scalar(10, 20, 30));
   RegionPyramid pyramid;
-  pyramid.build(image, cv::Rect(0, 0, 30, 30), 1, {0.5f, -0.25f, 1.0f});
+  pyramid.build(image, cv::Rect(0, 0, 30, 30), 1, ChannelWeights{0.5f, -0.25f, 1.0f});
   EXPECT_FLOAT_EQ(pyramid.level(0)(7, 3), 0.5f * 10 - 0.25f * 20 + 30);
 }
 

@@ -56,7 +56,7 @@ TEST(DefaultFile, EqualsTheDefaultsOfTheStructs) {
   EXPECT_EQ(f.esm.light, c.esm.light);
   EXPECT_EQ(f.esm.robust, c.esm.robust);
   EXPECT_EQ(f.esm.saturation, c.esm.saturation);
-  EXPECT_EQ(f.esm.adapt_channel, c.esm.adapt_channel);
+  EXPECT_EQ(f.esm.channels, c.esm.channels);
   EXPECT_EQ(f.quality.min_zncc, c.quality.min_zncc);
   EXPECT_EQ(f.quality.min_visible_fraction, c.quality.min_visible_fraction);
   EXPECT_EQ(f.quality.max_corner_error, c.quality.max_corner_error);
@@ -90,7 +90,7 @@ TEST(DefaultFile, NamesEveryParameter) {
                            "tracking/esm/light",
                            "tracking/esm/robust",
                            "tracking/esm/saturation",
-                           "tracking/esm/adapt_channel",
+                           "tracking/esm/channels",
                            "tracking/quality/min_zncc",
                            "tracking/quality/min_visible_fraction",
                            "tracking/quality/max_corner_error",

@@ -23,7 +23,7 @@ class RelocalisationTest : public ::testing::Test {
   }
   std::vector<Candidate> search(const cv::Mat& image, const Eigen::Matrix3d& last, int count = 3) {
     const EsmLevel& level = esm_.level(2);
-    return searchByCorrelation(level.value.view(), level.image_T_patch, pyramidOf(image).level(2), level.scale, kRoi, last, count);
+    return searchByCorrelation(level.planes[0].value.view(), level.image_T_patch, pyramidOf(image).level(2), level.scale, kRoi, last, count);
   }
 };
 

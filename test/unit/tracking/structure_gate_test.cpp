@@ -39,7 +39,9 @@ class StructureGateTest : public ::testing::Test {
     return patch;
   }
   std::vector<float> gate(const cv::Mat1f& image, double gain = 1.0, double sigma = 3.0) {
-    statistics_.compute(patchOf(image), patchOf(reference_), patchOf(valid_), grid_);
+    const image::Patch a = patchOf(image), b = patchOf(reference_);
+    const PatchPair pair = {&a, &b};
+    statistics_.compute(&pair, 1, patchOf(valid_), grid_);
     std::vector<float> d;
     for (int area = 0; area < grid_.count(); ++area) d.push_back(statistics_.dissimilarity(area, gain, sigma));
     return d;
@@ -97,6 +99,19 @@ TEST_F(StructureGateTest, GivesTheMomentsOfAnAreasUsedPixels) {
   EXPECT_NEAR(m.image, dev_a[0] * dev_a[0], 0.01 * m.image);
   EXPECT_NEAR(m.reference, dev_b[0] * dev_b[0], 0.01 * m.reference);
   EXPECT_NEAR(m.both, cv::mean((image(lower) - mean_a[0]).mul(reference_(lower) - mean_b[0]))[0], 0.01 * m.reference);
+}
+
+TEST_F(StructureGateTest, TakesTheMeanOverTheChannels) {
+  const image::Patch a = patchOf(reference_ + noise(kSize, 5.0, 1)), b = patchOf(reference_), flat = patchOf(cv::Mat1f(kSize, 9.0f));
+  const PatchPair pairs[] = {{&a, &b}, {&flat, &flat}};
+  statistics_.compute(pairs, 1, patchOf(valid_), grid_);
+  const AreaMoments one = statistics_.area(17);
+  statistics_.compute(pairs, 2, patchOf(valid_), grid_);
+  const AreaMoments& two = statistics_.area(17);
+  EXPECT_EQ(two.share, one.share);
+  EXPECT_FLOAT_EQ(two.image, 0.5f * one.image);
+  EXPECT_FLOAT_EQ(two.reference, 0.5f * one.reference);
+  EXPECT_FLOAT_EQ(two.both, 0.5f * one.both);
 }
 
 TEST_F(StructureGateTest, IsNotANumberWhereTooLittleIsValid) {

@@ -1,0 +1,97 @@
+// The gates of occlusion, and the whole tracker.
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "bench/kernels/kernel_bench.h"
+#include "bench/support/synthetic.h"
+#include "laparoscope_servo/image/colour_patch.h"
+#include "laparoscope_servo/tracking/occlusion_gates.h"
+#include "laparoscope_servo/tracking/region_tracker.h"
+
+namespace laparoscope_servo::bench {
+
+namespace {
+
+using benchmark::State;
+
+constexpr double kPi = 3.14159265358979;
+
+struct Gates {
+  explicit Gates(const Scene& scene) : gates(tracking::OcclusionConfig(), tracking::EsmConfig().saturation) {
+    image::warpNearest(scene.image, scene.image_T_patch, scene.size(), patch);
+    gates.setReference(patch);
+  }
+  tracking::OcclusionGates gates;
+  image::ColourPatch patch;
+};
+
+void colourGate(State& state) {
+  const Scene scene(state);
+  Gates g(scene);
+  measure(state, scene.pixels(), [&] {
+    image::warpNearest(scene.seen, scene.moved * scene.image_T_patch, scene.size(), g.patch);
+    g.gates.observeColour(g.patch);
+    benchmark::DoNotOptimize(g.gates.weights().data);
+    return 1;
+  });
+  // Image, patch, mask, weights; the point, and the feature with a root and a division.
+  roofline(state, 3 + 3 + 1 + 4, 8 + 20);
+}
+
+void structureGate(State& state) {
+  const Scene scene(state);
+  const Patches patches(scene);
+  Gates g(scene);
+  measure(state, scene.pixels(), [&] {
+    const int found = g.gates.observeStructure(patches.warped, patches.reference, patches.valid, 1.0, 2.0);
+    benchmark::DoNotOptimize(found);
+    return 1;
+  });
+  roofline(state, 4 * 4 + 1, 14);  // image, reference, what is valid, what is used, what is saturated
+}
+
+// Image by image, over a motion there and back.
+void track(State& state, bool through_lens) {
+  const Scene scene(state);
+  std::mt19937 random(2);
+  std::vector<cv::Mat> images;
+  constexpr int kImages = 24;
+  for (int k = 0; k < kImages; ++k) {
+    const double phase = 2.0 * kPi * k / kImages;
+    Eigen::Matrix3d g = Eigen::Matrix3d::Identity();
+    g.topRightCorner<2, 1>() << 12.0 * std::sin(phase), 8.0 * (std::cos(phase) - 1.0);
+    g(2, 0) = 5e-5 * std::sin(phase);
+    images.push_back(view(scene.image, g, 2.0, random));
+  }
+  tracking::RegionTracker tracker{tracking::TrackerConfig()};
+  if (through_lens) {
+    // The images are raw ones then, and show no plane any more: by little enough that the work is the same.
+    image::LensParameters parameters;
+    parameters.coefficients = {-0.01, 0.001, 0.0, 0.0, 0.0};
+    parameters.raw = parameters.rectified = {700.0, 700.0, 480.0, 360.0};
+    tracker.setLens(image::Lens(parameters));
+  }
+  tracker.select(images[0], 0.0, scene.roi);
+  double iterations = 0.0, stamp = 0.0, tracked = 0.0;
+  std::size_t k = 0;
+  measure(state, scene.pixels(), [&] {
+    k = (k + 1) % kImages;
+    stamp += 0.04;
+    const tracking::TrackResult result = tracker.track(images[k], stamp);
+    iterations += result.iterations;
+    tracked += result.state == tracking::State::kTracking ? 1.0 : 0.0;
+    return 1;
+  });
+  state.counters["iterations"] = benchmark::Counter(iterations, benchmark::Counter::kAvgIterations);
+  state.counters["tracked"] = benchmark::Counter(tracked, benchmark::Counter::kAvgIterations);
+}
+
+BENCHMARK(colourGate)->Name("kernel/colour_gate")->Apply(sides);
+BENCHMARK(structureGate)->Name("kernel/structure_gate")->Apply(sides);
+BENCHMARK_CAPTURE(track, plain, false)->Name("kernel/track")->Apply(sides)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(track, lens, true)->Name("kernel/track_through_lens")->Apply(sides)->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+
+}  // namespace laparoscope_servo::bench

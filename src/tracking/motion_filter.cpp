@@ -1,0 +1,88 @@
+#include "laparoscope_servo/tracking/motion_filter.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+
+namespace laparoscope_servo::tracking {
+
+namespace {
+
+constexpr double kRate = 0.05;  // share of a new image in what is learned: it follows within a second of video
+constexpr int kImagesOfDoubt = 5;  // as many images as the first guess of the innovations counts
+constexpr double kMaxIntervals = 10.0;  // images that were missed, for which the innovation still grows
+
+// px, standard deviations by which shift, affine motion and perspective move the ROI's border unexpectedly: the first guess, and what
+// even a target that has stood still may do in the next image.
+struct Spread {
+  double shift, affine, perspective;
+};
+constexpr Spread kGuess = {4.0, 2.0, 1.0};
+constexpr Spread kLeast = {0.5, 0.2, 0.1};
+
+constexpr double kGuessedNoise = 400.0;  // grey levels squared
+
+Matrix8d covariance(const Spread& px, double half_size) {
+  geometry::Vector8d sigma;
+  sigma << px.shift, px.shift, px.affine, px.affine, px.affine, px.affine, px.perspective, px.perspective;
+  return (sigma / half_size).cwiseAbs2().asDiagonal();
+}
+
+}  // namespace
+
+void MotionFilter::start(const geometry::Rectangle& roi, const Eigen::Matrix3d& normalisation, double stamp) {
+  const double half_size = 1.0 / normalisation(0, 0);
+  *this = MotionFilter(damping_);
+  roi_ = roi;
+  n_ = normalisation;
+  n_inv_ = n_.inverse();
+  last_stamp_ = stamp;
+  innovation_ = covariance(kGuess, half_size);
+  least_ = covariance(kLeast, half_size);
+  noise_ = kGuessedNoise;
+}
+
+geometry::Vector8d MotionFilter::deviation(const Eigen::Matrix3d& from, const Eigen::Matrix3d& to) const {
+  return geometry::sl3Log(geometry::normaliseDeterminant(n_ * from.inverse() * to * n_inv_));
+}
+
+MotionPrior MotionFilter::predict(double stamp, const std::optional<Eigen::Matrix3d>& carried) const {
+  MotionPrior prior;
+  const double dt = std::max(0.0, stamp - last_stamp_);
+  const Eigen::Matrix3d from = carried.value_or(last_);
+  prior.predicted = from * n_inv_ * geometry::sl3Exp(damping_ * dt * (carried ? rest_ : velocity_)) * n_;
+  if (!geometry::isConvex(geometry::apply(prior.predicted, roi_.corners()))) prior.predicted = from;
+  const double images = interval_ > 0.0 ? std::clamp(dt / interval_, 1.0, kMaxIntervals) : 1.0;
+  const Matrix8d expected = covariance_ + images * images * (innovation_ + least_);
+  prior.information = expected.ldlt().solve(Matrix8d::Identity());
+  prior.noise = noise_;
+  return prior;
+}
+
+void MotionFilter::update(const MotionPrior& prior, const EsmResult& estimate, double stamp, bool learn,
+                          const std::optional<Eigen::Matrix3d>& carried) {
+  const double dt = stamp - last_stamp_;
+  const geometry::Vector8d x = deviation(prior.predicted, estimate.state.g);
+  if (learn && x.allFinite()) {
+    ++learned_;
+    const double rate = std::max(kRate, 1.0 / (kImagesOfDoubt + learned_));
+    innovation_ += rate * (x * x.transpose() - innovation_);
+    noise_ += rate * (estimate.noise - noise_);
+    if (dt > 0.0) interval_ = interval_ > 0.0 ? interval_ + rate * (dt - interval_) : dt;
+  }
+  const geometry::Vector8d motion = deviation(last_, estimate.state.g);
+  restart(estimate, stamp);
+  if (dt > 0.0 && motion.allFinite()) velocity_ = motion / dt;
+  if (!carried) return;
+  const geometry::Vector8d rest = deviation(*carried, estimate.state.g);
+  if (dt > 0.0 && rest.allFinite()) rest_ = rest / dt;
+}
+
+void MotionFilter::restart(const EsmResult& estimate, double stamp) {
+  last_ = estimate.state.g;
+  last_stamp_ = stamp;
+  covariance_ = estimate.covariance;
+  stop();
+}
+
+}  // namespace laparoscope_servo::tracking
