@@ -49,9 +49,12 @@ def write(report, a):
     peak, triad = machine(report, runs)
     rows = []
     for name, b in runs.items():
+        if name.startswith("peer/remap_image/"):
+            rows.append(["cv::remap, whole image", "x".join(name.split("/")[2:4]), number(b["ns_per_px"], 2), "", "", "",
+                         number(b["cpu_time"] / 1e3, 2) + " ms"])
         if not name.startswith("kernel/"):
             continue
         _, kernel, side = name.split("/")
         rows.append([kernel, f"{side}²", number(b["ns_per_px"], 2), *limits(b, int(side), peak, triad),
-                     number(b["cpu_time"] / 1e3, 2) + " ms" if kernel == "track" else ""])
+                     number(b["cpu_time"] / 1e3, 2) + " ms" if kernel.startswith("track") else ""])
     report.table(["kernel", "ROI", "ns/px", "memory's limit", "arithmetic's limit", "of the limit", "per image"], rows)

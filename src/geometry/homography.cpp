@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <string>
 
 #include "laparoscope_servo/geometry/sl3.h"
 
@@ -79,6 +80,17 @@ Eigen::Matrix3d fromCorners(const Quadrilateral& from, const Quadrilateral& to) 
 
 Eigen::Matrix3d fromPlane(const Eigen::Isometry3d& current_T_reference, const Eigen::Vector3d& n, double d) {
   return current_T_reference.linear() + current_T_reference.translation() * n.transpose() / d;
+}
+
+Eigen::Matrix3d pixelsFromPlane(const Eigen::Isometry3d& current_T_reference, const Eigen::Vector3d& n, double d,
+                                const PinholeCamera& camera) {
+  if (!(d > 0.0))
+    throw std::invalid_argument("plane at the distance " + std::to_string(d) + " m, expected a positive one");
+  const Eigen::Matrix3d h = fromPlane(current_T_reference, n, d);
+  if (!(h.determinant() > 0.0)) {  // also for NaN
+    throw std::invalid_argument("motion is not finite, or takes the camera through the plane that it looks at");
+  }
+  return normaliseDeterminant(pixelsFromNormalised(h, camera));
 }
 
 Eigen::Matrix3d euclideanScale(const Eigen::Matrix3d& h, const Eigen::Vector3d& m) {

@@ -13,11 +13,7 @@ namespace {
 constexpr int kChunk = 256;  // pixels that a row is worked in
 constexpr int kMaxGrow = kChunk / 4;
 
-struct Row {
-  float u0, u1;
-  float v0, v1;
-  float w0, w1;
-};
+using Row = ProjectiveRow;
 
 // Offset of the pixel's first byte in the image; that of the first pixel where it lies outside, with valid 0.
 LAPAROSCOPE_SERVO_CLONES
@@ -36,6 +32,25 @@ void locate(const Row& row, int width, int height, int stride, int channels, int
     const float v = (r.v0 + r.v1 * x) * reciprocal + 0.5f;
     const int inside = static_cast<int>(u > 0.0f) & static_cast<int>(u < right) & static_cast<int>(v > 0.0f) &
                        static_cast<int>(v < bottom) & static_cast<int>(w > 0.0f);
+    const int column = static_cast<int>(inside != 0 ? u : 0.0f);
+    const int line = static_cast<int>(inside != 0 ? v : 0.0f);
+    offset[i] = line * stride + column * channels;
+    valid[i] = static_cast<unsigned char>(-inside);
+  }
+}
+
+// The same for points that are there already, see locateRaw.
+LAPAROSCOPE_SERVO_CLONES
+void place(const float* __restrict us, const float* __restrict vs, int width, int height, int stride, int channels,
+           int count, int* __restrict offset, unsigned char* __restrict valid) {
+  const float right = static_cast<float>(width);
+  const float bottom = static_cast<float>(height);
+#pragma omp simd
+  for (int i = 0; i < count; ++i) {
+    const float u = us[i] + 0.5f;
+    const float v = vs[i] + 0.5f;
+    const int inside = static_cast<int>(u > 0.0f) & static_cast<int>(u < right) & static_cast<int>(v > 0.0f) &
+                       static_cast<int>(v < bottom);
     const int column = static_cast<int>(inside != 0 ? u : 0.0f);
     const int line = static_cast<int>(inside != 0 ? v : 0.0f);
     offset[i] = line * stride + column * channels;
@@ -99,9 +114,9 @@ void growAcross(int grow, cv::Mat1b& mask) {
   }
 }
 
-}  // namespace
-
-void warpNearest(const cv::Mat& image, const Eigen::Matrix3d& g, const cv::Size& size, ColourPatch& patch) {
+// `lens`: null without one.
+void warpRows(const cv::Mat& image, const Eigen::Matrix3d& g, const LensLoop* lens, const cv::Size& size,
+              ColourPatch& patch) {
   if (image.type() != CV_8UC1 && image.type() != CV_8UC3) {
     throw std::invalid_argument("image of OpenCV type " + std::to_string(image.type()) +
                                 ", expected 8 bit with one channel or three");
@@ -115,6 +130,7 @@ void warpNearest(const cv::Mat& image, const Eigen::Matrix3d& g, const cv::Size&
   }
   const int stride = static_cast<int>(image.step[0]);
   int offset[kChunk];
+  float u[kChunk], v[kChunk];
   for (int j = 0; j < size.height; ++j) {
     const Eigen::Vector3f start = (g.col(1) * j + g.col(2)).cast<float>();
     const Eigen::Vector3f step = g.col(0).cast<float>();
@@ -122,7 +138,12 @@ void warpNearest(const cv::Mat& image, const Eigen::Matrix3d& g, const cv::Size&
     for (int first = 0; first < size.width; first += kChunk) {
       const int count = std::min(kChunk, size.width - first);
       unsigned char* valid = patch.valid.ptr<unsigned char>(j) + first;
-      locate(row, image.cols, image.rows, stride, image.channels(), first, count, offset, valid);
+      if (lens == nullptr) {
+        locate(row, image.cols, image.rows, stride, image.channels(), first, count, offset, valid);
+      } else {
+        locateRaw(*lens, row, first, count, u, v);
+        place(u, v, image.cols, image.rows, stride, image.channels(), count, offset, valid);
+      }
       unsigned char* blue = patch.blue.ptr<unsigned char>(j) + first;
       if (!patch.has_colour) {
         for (int i = 0; i < count; ++i) blue[i] = image.data[offset[i]] & valid[i];
@@ -138,6 +159,18 @@ void warpNearest(const cv::Mat& image, const Eigen::Matrix3d& g, const cv::Size&
       }
     }
   }
+}
+
+}  // namespace
+
+void warpNearest(const cv::Mat& image, const Eigen::Matrix3d& g, const cv::Size& size, ColourPatch& patch) {
+  warpRows(image, g, nullptr, size, patch);
+}
+
+void warpNearest(const cv::Mat& image, const Eigen::Matrix3d& g, const Lens& lens, const cv::Size& size,
+                 ColourPatch& patch) {
+  const LensLoop loop = lens.loop({});
+  warpRows(image, lens.raysFromRectified() * g, &loop, size, patch);
 }
 
 void saturatedPixels(const ColourPatch& patch, int threshold, int grow, cv::Mat1b& mask) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <opencv2/imgproc.hpp>
 
 #include "laparoscope_servo/image/multiversion.h"
 
@@ -9,12 +10,7 @@ namespace laparoscope_servo::image {
 
 namespace {
 
-// One row of the patch. `n`, `d`: numerators and denominator of the point at i = 0, and what they grow by with i.
-struct Row {
-  float u0, u1;
-  float v0, v1;
-  float w0, w1;
-};
+using Row = ProjectiveRow;
 
 constexpr int kChunk = 256;  // pixels that a row is worked in, so that what lies between the loops stays in the cache
 
@@ -56,6 +52,35 @@ int locate(const Row& row, int stride, int width, int height, int first, int cou
   return inside_count;
 }
 
+// The same for points that are there already, see locateRaw.
+LAPAROSCOPE_SERVO_CLONES
+int place(const float* __restrict u, const float* __restrict v, int stride, int width, int height, int count,
+          int* __restrict offset, float* __restrict right_of, float* __restrict below, float* __restrict valid) {
+  const float right = static_cast<float>(width - 1);
+  const float bottom = static_cast<float>(height - 1);
+  const float last_column = static_cast<float>(std::max(width - 2, 0));
+  const float last_row = static_cast<float>(std::max(height - 2, 0));
+  int inside_count = 0;
+#pragma omp simd reduction(+ : inside_count)
+  for (int i = 0; i < count; ++i) {
+    float uc = u[i] > 0.0f ? u[i] : 0.0f;
+    float vc = v[i] > 0.0f ? v[i] : 0.0f;
+    uc = uc < right ? uc : right;
+    vc = vc < bottom ? vc : bottom;
+    const int inside = static_cast<int>(uc == u[i]) & static_cast<int>(vc == v[i]);
+    const float column = uc < last_column ? uc : last_column;
+    const float line = vc < last_row ? vc : last_row;
+    const int iu = static_cast<int>(column);
+    const int iv = static_cast<int>(line);
+    right_of[i] = uc - static_cast<float>(iu);
+    below[i] = vc - static_cast<float>(iv);
+    offset[i] = iv * stride + iu;
+    valid[i] = static_cast<float>(inside);
+    inside_count += inside;
+  }
+  return inside_count;
+}
+
 LAPAROSCOPE_SERVO_CLONES
 void blend(const float* __restrict upper, const float* __restrict lower, const float* __restrict right_of,
            const float* __restrict below, int count, float* __restrict patch) {
@@ -67,17 +92,23 @@ void blend(const float* __restrict upper, const float* __restrict lower, const f
   }
 }
 
-// Returns how many pixels are valid.
-int warpRow(const cv::Mat1f& image, int width, const Row& row, int count, float* patch, float* valid) {
+// Returns how many pixels are valid. `lens`: null without one.
+int warpRow(const cv::Mat1f& image, int width, const Row& row, const LensLoop* lens, int count, float* patch,
+            float* valid) {
   const float* pixels = image.ptr<float>();
   const int stride = static_cast<int>(image.step1());
   const int step_down = image.rows > 1 ? stride : 0;
   int offset[kChunk];
-  float right_of[kChunk], below[kChunk], upper[2 * kChunk], lower[2 * kChunk];
+  float right_of[kChunk], below[kChunk], upper[2 * kChunk], lower[2 * kChunk], u[kChunk], v[kChunk];
   int inside = 0;
   for (int first = 0; first < count; first += kChunk) {
     const int n = std::min(kChunk, count - first);
-    inside += locate(row, stride, width, image.rows, first, n, offset, right_of, below, valid + first);
+    if (lens == nullptr) {
+      inside += locate(row, stride, width, image.rows, first, n, offset, right_of, below, valid + first);
+    } else {
+      locateRaw(*lens, row, first, n, u, v);
+      inside += place(u, v, stride, width, image.rows, n, offset, right_of, below, valid + first);
+    }
     for (int i = 0; i < n; ++i) {
       std::memcpy(upper + 2 * i, pixels + offset[i], 2 * sizeof(float));
       std::memcpy(lower + 2 * i, pixels + offset[i] + step_down, 2 * sizeof(float));
@@ -87,18 +118,22 @@ int warpRow(const cv::Mat1f& image, int width, const Row& row, int count, float*
   return inside;
 }
 
+Row rowOf(const Eigen::Matrix3d& g, int j) {
+  const Eigen::Vector3d start = g.col(1) * j + g.col(2);
+  return {static_cast<float>(start[0]), static_cast<float>(g(0, 0)),  static_cast<float>(start[1]),
+          static_cast<float>(g(1, 0)),  static_cast<float>(start[2]), static_cast<float>(g(2, 0))};
+}
+
 template <typename PatchRow, typename ValidRow>
-bool warpRows(const cv::Mat1f& image, const Eigen::Matrix3d& g, int width, int height, PatchRow patch, ValidRow valid) {
+bool warpRows(const cv::Mat1f& image, const Eigen::Matrix3d& g, const LensLoop* lens, int width, int height,
+              PatchRow patch, ValidRow valid) {
   // Pairs of neighbours are read; an image of one column is given a second one.
   cv::Mat1f widened;
   if (image.cols == 1) cv::hconcat(image, image, widened);
   const cv::Mat1f& source = image.cols == 1 ? widened : image;
   int inside = 0;
   for (int j = 0; j < height; ++j) {
-    const Eigen::Vector3d start = g.col(1) * j + g.col(2);
-    const Row row = {static_cast<float>(start[0]), static_cast<float>(g(0, 0)), static_cast<float>(start[1]),
-                     static_cast<float>(g(1, 0)), static_cast<float>(start[2]), static_cast<float>(g(2, 0))};
-    inside += warpRow(source, image.cols, row, width, patch(j), valid(j));
+    inside += warpRow(source, image.cols, rowOf(g, j), lens, width, patch(j), valid(j));
   }
   return inside == width * height;
 }
@@ -106,13 +141,44 @@ bool warpRows(const cv::Mat1f& image, const Eigen::Matrix3d& g, int width, int h
 }  // namespace
 
 bool warpBilinear(const cv::Mat1f& image, const Eigen::Matrix3d& g, Patch& patch, Patch& valid) {
-  return warpRows(image, g, patch.width(), patch.height(), [&](int j) { return patch.row(j); },
-                  [&](int j) { return valid.row(j); });
+  return warpRows(
+      image, g, nullptr, patch.width(), patch.height(), [&](int j) { return patch.row(j); },
+      [&](int j) { return valid.row(j); });
 }
 
 bool warpBilinear(const cv::Mat1f& image, const Eigen::Matrix3d& g, cv::Mat1f& patch, cv::Mat1f& valid) {
-  return warpRows(image, g, patch.cols, patch.rows, [&](int j) { return patch.ptr<float>(j); },
-                  [&](int j) { return valid.ptr<float>(j); });
+  return warpRows(
+      image, g, nullptr, patch.cols, patch.rows, [&](int j) { return patch.ptr<float>(j); },
+      [&](int j) { return valid.ptr<float>(j); });
+}
+
+bool warpBilinear(const cv::Mat1f& image, const Eigen::Matrix3d& g, const Lens& lens, const RawWindow& window,
+                  Patch& patch, Patch& valid) {
+  const LensLoop loop = lens.loop(window);
+  return warpRows(
+      image, lens.raysFromRectified() * g, &loop, patch.width(), patch.height(), [&](int j) { return patch.row(j); },
+      [&](int j) { return valid.row(j); });
+}
+
+bool warpBilinear(const cv::Mat1f& image, const Eigen::Matrix3d& g, const Lens& lens, const RawWindow& window,
+                  cv::Mat1f& patch, cv::Mat1f& valid) {
+  const LensLoop loop = lens.loop(window);
+  return warpRows(
+      image, lens.raysFromRectified() * g, &loop, patch.cols, patch.rows, [&](int j) { return patch.ptr<float>(j); },
+      [&](int j) { return valid.ptr<float>(j); });
+}
+
+cv::Mat1f rectify(const cv::Mat1f& image, const Eigen::Matrix3d& g, const Lens& lens, const RawWindow& window,
+                  const cv::Size& size) {
+  const LensLoop loop = lens.loop(window);
+  const Eigen::Matrix3d rays = lens.raysFromRectified() * g;
+  cv::Mat1f u(size), v(size), result;
+  for (int j = 0; j < size.height; ++j)
+    locateRaw(loop, rowOf(rays, j), 0, size.width, u.ptr<float>(j), v.ptr<float>(j));
+  cv::patchNaNs(u, -1e4);
+  cv::patchNaNs(v, -1e4);
+  cv::remap(image, result, u, v, cv::INTER_CUBIC, cv::BORDER_REPLICATE);
+  return result;
 }
 
 }  // namespace laparoscope_servo::image

@@ -84,7 +84,8 @@ void Tracker::standAside(const std::string& why) {
 
 void Tracker::start(const skin::TrackerParameters& parameters) {
   session_ = std::make_unique<skin::TrackerSession>(parameters);
-  statistics_ = std::make_unique<skin::TrackerDiagnostics>(parameters.tracking);
+  statistics_ = std::make_unique<skin::TrackerDiagnostics>(parameters.tracking, parameters.robot_motion.enabled);
+  if (parameters.robot_motion.enabled) followRobot(parameters.robot_motion);
 
   ros::NodeHandle& node = getNodeHandle();
   ros::NodeHandle& private_node = getPrivateNodeHandle();
@@ -107,6 +108,15 @@ void Tracker::start(const skin::TrackerParameters& parameters) {
   select_server_ = request_node.advertiseService("select_roi", &Tracker::selectRoi, this);
   request_spinner_ = std::make_unique<ros::AsyncSpinner>(1, &request_queue_);
   request_spinner_->start();
+}
+
+void Tracker::followRobot(const skin::RobotMotionConfig& config) {
+  tf_ = std::make_unique<tf2_ros::Buffer>();
+  tf_listener_ = std::make_unique<tf2_ros::TransformListener>(*tf_);  // in a thread of its own
+  session_->setCameraMotion([this, fixed_frame = config.fixed_frame](const std::string& frame, const ros::Time& from,
+                                                                     const ros::Time& to, std::string& why) {
+    return skin::cameraMotion(*tf_, fixed_frame, frame, from, to, why);
+  });
 }
 
 void Tracker::cameraInfoCallback(const sensor_msgs::CameraInfoConstPtr& message) {
@@ -151,8 +161,8 @@ void Tracker::publish(const skin::Processed& processed) {
     mask_publisher_.publish(skin::imageMessage(processed.header, session_->occlusionMask()));
   }
   if (overlay_publisher_.getNumSubscribers() > 0) {
-    overlay_publisher_.publish(
-        skin::imageMessage(processed.header, skin::drawOverlay(processed.image, processed.result)));
+    overlay_publisher_.publish(skin::imageMessage(
+        processed.header, skin::drawOverlay(processed.image, processed.result, processed.lens.get())));
   }
 }
 

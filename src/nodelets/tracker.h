@@ -10,6 +10,8 @@
 #include <sensor_msgs/CameraInfo.h>
 #include <sensor_msgs/Image.h>
 #include <std_srvs/Trigger.h>
+#include <tf2_ros/buffer.h>
+#include <tf2_ros/transform_listener.h>
 
 #include <memory>
 #include <string>
@@ -28,6 +30,7 @@ class Tracker : public nodelet::Nodelet {
   void onInit() override;
   void start(const skin::TrackerParameters& parameters);
   void standAside(const std::string& why);
+  void followRobot(const skin::RobotMotionConfig& config);
 
   // All in the nodelet's own single-threaded queue.
   void imageCallback(const sensor_msgs::ImageConstPtr& message);
@@ -41,6 +44,8 @@ class Tracker : public nodelet::Nodelet {
   void publish(const skin::Processed& processed);
   void refuse(const std::string& error);
 
+  std::unique_ptr<tf2_ros::Buffer> tf_;  // with robot_motion only
+  std::unique_ptr<tf2_ros::TransformListener> tf_listener_;
   std::unique_ptr<skin::TrackerSession> session_;
   std::unique_ptr<skin::TrackerDiagnostics> statistics_;
   std::unique_ptr<diagnostic_updater::Updater> diagnostics_;

@@ -1,5 +1,7 @@
 #include "laparoscope_servo/ros/camera_info.h"
 
+#include <camera_calibration_parsers/parse.h>
+
 #include <algorithm>
 #include <sstream>
 #include <stdexcept>
@@ -27,10 +29,42 @@ cv::Size imageSize(const sensor_msgs::CameraInfo& info) {
   return {static_cast<int>(width / binning_x), static_cast<int>(height / binning_y)};
 }
 
+bool allZero(const std::vector<double>& values) {
+  return std::all_of(values.begin(), values.end(), [](double value) { return value == 0.0; });
+}
+
+struct Model {
+  const char* name;
+  image::Distortion distortion;
+  std::vector<std::size_t> counts;  // of coefficients; the rest is 0
+};
+
+const Model& modelOf(const sensor_msgs::CameraInfo& info) {
+  // Calibrations by OpenCV give a plumb_bob without its fifth coefficient, and uncalibrated drivers none.
+  static const Model models[] = {{"plumb_bob", image::Distortion::kPlumbBob, {5, 4, 0}},
+                                 {"rational_polynomial", image::Distortion::kRationalPolynomial, {8, 0}},
+                                 {"equidistant", image::Distortion::kEquidistant, {4}}};
+  if (info.distortion_model.empty() && allZero(info.D)) return models[0];
+  for (const Model& model : models) {
+    if (info.distortion_model == model.name) return model;
+  }
+  throw std::invalid_argument("camera_info cannot be used: distortion_model '" + info.distortion_model +
+                              "', expected plumb_bob, rational_polynomial or equidistant");
+}
+
+// But for the header, with which the same camera_info comes for every image. A NaN is never the same.
+bool sameCalibration(const sensor_msgs::CameraInfo& a, const sensor_msgs::CameraInfo& b) {
+  return a.width == b.width && a.height == b.height && a.distortion_model == b.distortion_model && a.D == b.D &&
+         a.K == b.K && a.R == b.R && a.P == b.P && a.binning_x == b.binning_x && a.binning_y == b.binning_y &&
+         a.roi.x_offset == b.roi.x_offset && a.roi.y_offset == b.roi.y_offset && a.roi.width == b.roi.width &&
+         a.roi.height == b.roi.height;
+}
+
 }  // namespace
 
 geometry::PinholeCamera cameraFromInfo(const sensor_msgs::CameraInfo& info, ImageKind kind, const cv::Size& size) {
-  const bool raw = kind == ImageKind::kRaw;
+  const bool has_p = std::any_of(info.P.begin(), info.P.end(), [](double value) { return value != 0.0; });
+  const bool raw = kind == ImageKind::kRaw || (kind == ImageKind::kToRectify && !has_p);
   geometry::PinholeCamera camera;
   camera.fx = raw ? info.K[0] : info.P[0];
   camera.fy = raw ? info.K[4] : info.P[5];
@@ -54,6 +88,57 @@ geometry::PinholeCamera cameraFromInfo(const sensor_msgs::CameraInfo& info, Imag
   camera.cx = (camera.cx - info.roi.x_offset) / binning_x;
   camera.cy = (camera.cy - info.roi.y_offset) / binning_y;
   return camera;
+}
+
+image::Lens lensFromInfo(const sensor_msgs::CameraInfo& info, const cv::Size& size) {
+  image::LensParameters parameters;
+  parameters.raw = cameraFromInfo(info, ImageKind::kRaw, size);
+  parameters.rectified = cameraFromInfo(info, ImageKind::kToRectify, size);
+  const Model& model = modelOf(info);
+  parameters.distortion = model.distortion;
+  const bool uncalibrated = info.distortion_model.empty();  // D is all zero then, however long
+  if (!uncalibrated && std::find(model.counts.begin(), model.counts.end(), info.D.size()) == model.counts.end()) {
+    throw std::invalid_argument("camera_info cannot be used: D has " + std::to_string(info.D.size()) +
+                                " coefficients, expected " + std::to_string(model.counts.front()) + " for " +
+                                model.name);
+  }
+  if (!uncalibrated) std::copy(info.D.begin(), info.D.end(), parameters.coefficients.begin());
+  const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> rotation(info.R.data());
+  if (!(rotation.array() == 0.0).all()) parameters.rotation = rotation;
+  try {
+    return image::Lens(parameters);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(std::string("camera_info cannot be used: ") + error.what());
+  }
+}
+
+sensor_msgs::CameraInfo readCameraInfo(const std::string& file) {
+  sensor_msgs::CameraInfo info;
+  std::string name;
+  if (!camera_calibration_parsers::readCalibration(file, name, info)) {
+    throw std::runtime_error("'" + file + "' cannot be read, expected a calibration as camera_calibration writes it");
+  }
+  return info;
+}
+
+void LensSource::set(const sensor_msgs::CameraInfo& info) {
+  if (info_ && sameCalibration(*info_, info)) return;
+  info_ = info;
+  fresh_ = true;
+}
+
+const std::shared_ptr<const image::Lens>& LensSource::lensFor(const cv::Size& size) {
+  if (!info_ || (!fresh_ && size == size_)) return lens_;
+  fresh_ = false;
+  size_ = size;
+  lens_.reset();
+  error_.clear();
+  try {
+    lens_ = std::make_shared<const image::Lens>(lensFromInfo(*info_, size));
+  } catch (const std::invalid_argument& error) {
+    error_ = error.what();
+  }
+  return lens_;
 }
 
 void Intrinsics::update(const cv::Size& size, bool new_reference) {

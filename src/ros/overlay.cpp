@@ -16,23 +16,32 @@ const cv::Scalar kBlue(255, 0, 0);
 const cv::Scalar kRed(0, 0, 255);
 const cv::Scalar kWhite(255, 255, 255);
 const cv::Scalar kBlack(0, 0, 0);
+constexpr int kBentPieces = 16;   // that an edge is drawn in, where a lens bends it
 constexpr int kShift = 4;         // OpenCV draws in 1/16 px
 constexpr double kFarAway = 1e5;  // px: further out nothing is drawn, fixed-point coordinates would overflow
 
-// Empty when a corner cannot be drawn.
-std::vector<cv::Point> drawable(const geometry::Quadrilateral& corners) {
+// The quadrilateral's outline as the image shows it, each edge in `pieces`. Empty when a point of it cannot be drawn.
+std::vector<cv::Point> drawable(const geometry::Quadrilateral& corners, const image::Lens* lens, int pieces) {
   std::vector<cv::Point> points;
-  for (const Eigen::Vector2d& corner : corners) {
-    if (!(corner.cwiseAbs().maxCoeff() < kFarAway)) return {};
-    points.emplace_back(static_cast<int>(std::lround(corner.x() * (1 << kShift))),
-                        static_cast<int>(std::lround(corner.y() * (1 << kShift))));
+  for (int k = 0; k < 4; ++k) {
+    for (int piece = 0; piece < pieces; ++piece) {
+      Eigen::Vector2d p = corners[k] + static_cast<double>(piece) / pieces * (corners[(k + 1) % 4] - corners[k]);
+      if (lens != nullptr) {
+        const auto raw = lens->toRaw(p);
+        if (!raw) return {};
+        p = *raw;
+      }
+      if (!(p.cwiseAbs().maxCoeff() < kFarAway)) return {};
+      points.emplace_back(static_cast<int>(std::lround(p.x() * (1 << kShift))),
+                          static_cast<int>(std::lround(p.y() * (1 << kShift))));
+    }
   }
   return points;
 }
 
-void drawQuadrilateral(cv::Mat& canvas, const geometry::Quadrilateral& corners, const cv::Scalar& colour,
-                       int thickness) {
-  const std::vector<cv::Point> points = drawable(corners);
+void drawQuadrilateral(cv::Mat& canvas, const geometry::Quadrilateral& corners, const image::Lens* lens,
+                       const cv::Scalar& colour, int thickness) {
+  const std::vector<cv::Point> points = drawable(corners, lens, lens != nullptr ? kBentPieces : 1);
   if (!points.empty()) cv::polylines(canvas, points, true, colour, thickness, cv::LINE_AA, kShift);
 }
 
@@ -47,14 +56,15 @@ geometry::Quadrilateral areaCorners(const tracking::TrackResult& result, int row
           Eigen::Vector2d(left, bottom)};
 }
 
-void drawOccludedAreas(cv::Mat& canvas, const tracking::TrackResult& result) {
+void drawOccludedAreas(cv::Mat& canvas, const tracking::TrackResult& result, const image::Lens* lens) {
   const tracking::AreaReport& areas = result.areas;
   cv::Mat mask;
   for (int row = 0; row < areas.rows; ++row) {
     for (int column = 0; column < areas.columns; ++column) {
       const std::size_t index = static_cast<std::size_t>(row) * areas.columns + column;
       if (index >= areas.occluded.size() || !areas.occluded[index]) continue;
-      const std::vector<cv::Point> points = drawable(geometry::apply(result.g, areaCorners(result, row, column)));
+      const std::vector<cv::Point> points =
+          drawable(geometry::apply(result.g, areaCorners(result, row, column)), lens, 1);
       if (points.empty()) continue;
       if (mask.empty()) mask = cv::Mat::zeros(canvas.size(), CV_8UC1);
       cv::fillConvexPoly(mask, points, cv::Scalar(255), cv::LINE_8, kShift);
@@ -81,7 +91,7 @@ void drawText(cv::Mat& canvas, const tracking::TrackResult& result) {
 
 }  // namespace
 
-cv::Mat drawOverlay(const cv::Mat& image, const tracking::TrackResult& result) {
+cv::Mat drawOverlay(const cv::Mat& image, const tracking::TrackResult& result, const image::Lens* lens) {
   cv::Mat canvas;
   if (image.channels() == 1) {
     cv::cvtColor(image, canvas, cv::COLOR_GRAY2BGR);
@@ -91,11 +101,11 @@ cv::Mat drawOverlay(const cv::Mat& image, const tracking::TrackResult& result) {
   if (result.state != State::kIdle) {
     const int thickness = std::max(2, canvas.cols / 640);
     const bool shown = result.state != State::kLost;
-    if (shown) drawOccludedAreas(canvas, result);
-    drawQuadrilateral(canvas, result.roi.corners(), kBlue, thickness);
+    if (shown) drawOccludedAreas(canvas, result, lens);
+    drawQuadrilateral(canvas, result.roi.corners(), lens, kBlue, thickness);
     if (shown) {
       const int line = result.state == State::kTracking ? thickness : 1;
-      drawQuadrilateral(canvas, geometry::apply(result.g, result.roi.corners()), kRed, line);
+      drawQuadrilateral(canvas, geometry::apply(result.g, result.roi.corners()), lens, kRed, line);
     }
   }
   drawText(canvas, result);

@@ -38,6 +38,12 @@ void TrackerDiagnostics::processed(double now, const Processed& processed, bool 
   ++window_.images;
   window_.total_time += processed.processing_time;
   window_.longest_time = std::max(window_.longest_time, processed.processing_time);
+  if (processed.motion_wanted) {
+    ++window_.motion_wanted;
+    if (processed.motion_error.empty()) ++window_.motion_given;
+    if (processed.result.motion_used) ++window_.motion_used;
+    if (!processed.motion_error.empty()) motion_error_ = processed.motion_error;
+  }
   last_image_ = now;
   refusal_.clear();
   selection_failed_ = !processed.selection_error.empty();
@@ -45,6 +51,7 @@ void TrackerDiagnostics::processed(double now, const Processed& processed, bool 
   camera_error_ = processed.camera_error;
   has_colour_ = processed.image.channels() == 3;
   ignores_distortion_ = ignores_distortion;
+  rectifies_ = processed.lens != nullptr;
 }
 
 void TrackerDiagnostics::refused(double now, const std::string& error) {
@@ -73,6 +80,14 @@ std::string TrackerDiagnostics::colourGate() const {
   return has_colour_ ? "on" : "stands aside: the images have no colour";
 }
 
+std::string TrackerDiagnostics::robotMotion() const {
+  if (!with_robot_motion_) return "not asked for";
+  const std::string text = "given for " + std::to_string(window_.motion_given) + " of " +
+                           std::to_string(window_.motion_wanted) + " images, used for " +
+                           std::to_string(window_.motion_used);
+  return window_.motion_given < window_.motion_wanted ? text + "; last missing: " + motion_error_ : text;
+}
+
 void TrackerDiagnostics::fill(double now, diagnostic_updater::DiagnosticStatusWrapper& status) {
   summarise(now, status);
   const double duration = now - window_.start;
@@ -91,10 +106,11 @@ void TrackerDiagnostics::fill(double now, diagnostic_updater::DiagnosticStatusWr
   status.addf("corner error [px]", "%.3f", result_.corner_error);
   status.add("ROI [px]", result_.state == State::kIdle ? "none" : roiText(result_.roi));
   status.add("intrinsics", has_camera_ ? "from camera_info" : camera_error_.empty() ? "unknown" : camera_error_);
-  status.add("lens distortion", ignores_distortion_
-                                    ? "not corrected: camera_info has some; let image_proc rectify the images"
-                                    : "none, or corrected");
+  status.add("lens distortion", rectifies_            ? "corrected by the tracker"
+                                : ignores_distortion_ ? "not corrected: camera_info has some; see parameter rectify"
+                                                      : "none, or corrected");
   status.add("colour gate", colourGate());
+  status.add("robot motion", robotMotion());
   window_ = Window();
   window_.start = now;
 }

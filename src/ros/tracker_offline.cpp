@@ -92,7 +92,7 @@ class OverlayVideo {
 
   void write(const Processed& processed) {
     if (path_.empty()) return;
-    cv::Mat picture = drawOverlay(processed.image, processed.result);
+    cv::Mat picture = drawOverlay(processed.image, processed.result, processed.lens.get());
     if (size_.empty()) open(picture.size());
     if (picture.size() != size_) cv::resize(picture, picture, size_);
     writer_.write(picture);
@@ -135,6 +135,8 @@ OfflineSummary trackOffline(const OfflineOptions& options, const OfflineProgress
                             const OfflineReport& report) {
   if (!options.parameters.roi) throw std::invalid_argument("no ROI is given, expected x,y,width,height in px");
   TrackerSession session(options.parameters);
+  const bool own_camera_info = !options.camera_info.empty();
+  if (own_camera_info) session.setCameraInfo(readCameraInfo(options.camera_info));
   const std::unique_ptr<ImageSource> source = openImageSource(options.input, options.source);
   refuseToOverwriteInput(options);
   CsvFile csv(options.csv);
@@ -144,7 +146,7 @@ OfflineSummary trackOffline(const OfflineOptions& options, const OfflineProgress
   OfflineSummary summary;
   summary.by_state.assign(4, 0);
   while (const std::optional<SourceImage> image = source->next()) {
-    if (image->camera_info) session.setCameraInfo(*image->camera_info);
+    if (image->camera_info && !own_camera_info) session.setCameraInfo(*image->camera_info);
     Processed processed;
     try {
       processed = process(session, *image);

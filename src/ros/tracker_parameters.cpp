@@ -102,6 +102,17 @@ void readRoi(ParameterReader& reader, const std::string& name, std::optional<geo
   roi = rectangle;
 }
 
+void readRobotMotion(ParameterReader& reader, const std::string& name, RobotMotionConfig& config) {
+  reader.read("robot_motion/enabled", config.enabled);
+  reader.read("robot_motion/fixed_frame", config.fixed_frame);
+  reader.read("robot_motion/depth", config.depth, 0.005, 1.0);
+  reader.refuseUnknown("robot_motion");
+  if (config.fixed_frame.empty() || config.fixed_frame[0] == '/') {
+    reader.addError(name + "/robot_motion/fixed_frame is '" + config.fixed_frame +
+                    "', expected the name of a tf frame, without a leading slash");
+  }
+}
+
 }  // namespace
 
 TrackerParameters readTrackerParameters(const XmlRpc::XmlRpcValue& tree, const std::string& name,
@@ -110,9 +121,15 @@ TrackerParameters readTrackerParameters(const XmlRpc::XmlRpcValue& tree, const s
   ParameterReader reader(tree, name);
   readTracking(reader, parameters.tracking);
   readRoi(reader, name, parameters.roi);
+  readRobotMotion(reader, name, parameters.robot_motion);
   bool rectified = false;
   reader.read("rectified_images", rectified);
-  parameters.image_kind = rectified ? ImageKind::kRectified : ImageKind::kRaw;
+  bool rectify = false;
+  reader.read("rectify", rectify);
+  if (rectify && rectified) {
+    reader.addError(name + "/rectify: true beside rectified_images: true, expected one of them at most");
+  }
+  parameters.image_kind = rectify ? ImageKind::kToRectify : rectified ? ImageKind::kRectified : ImageKind::kRaw;
   reader.read("select_timeout", parameters.select_timeout, 0.1, 60.0);
   if (reader.errors().empty()) reader.addErrors(tracking::validate(parameters.tracking));
   errors.insert(errors.end(), reader.errors().begin(), reader.errors().end());

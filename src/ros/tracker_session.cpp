@@ -51,6 +51,8 @@ void TrackerSession::complete(Processed& processed, const std::optional<geometry
   const bool jumped_back = last_stamp_ && stamp < *last_stamp_;
   if (jumped_back && start_roi_in_force_) start_roi_pending_ = true;
   processed.result = track(processed, request);
+  if (processed.result.state == tracking::State::kTracking) believed_stamp_ = stamp;
+  if (!tracker_.hasRoi()) believed_stamp_.reset();
   last_stamp_ = stamp;
   image_size_ = processed.image.size();
   if (processed.result.selected_now) reference_stamp_ = stamp;
@@ -58,12 +60,54 @@ void TrackerSession::complete(Processed& processed, const std::optional<geometry
   intrinsics_.update(processed.image.size(), processed.result.selected_now || !tracker_.hasRoi());
   processed.camera = intrinsics_.camera();
   processed.camera_error = intrinsics_.error();
+  if (!lens_error_.empty()) {
+    processed.camera.reset();
+    processed.camera_error = lens_error_;
+  }
+  processed.lens = lens_;
+}
+
+// Pixels of the image that was believed last to those of this one, for a plane parallel to the image.
+std::optional<Eigen::Matrix3d> TrackerSession::motionBefore(Processed& processed) const {
+  const ros::Time& stamp = processed.header.stamp;
+  if (!camera_motion_ || !believed_stamp_ || !tracker_.hasRoi() || !(stamp > *believed_stamp_)) return std::nullopt;
+  processed.motion_wanted = true;
+  // That of the image before: when the camera changes, so does all that was tracked.
+  const std::optional<geometry::PinholeCamera>& camera = intrinsics_.camera();
+  if (!camera) {
+    processed.motion_error = "no intrinsics: " + intrinsics_.error();
+    return std::nullopt;
+  }
+  auto motion = camera_motion_(processed.header.frame_id, *believed_stamp_, stamp, processed.motion_error);
+  if (!motion) return std::nullopt;
+  if (lens_) {  // the rectified camera is turned against the one that tf knows
+    const Eigen::Isometry3d turn(lens_->parameters().rotation);
+    motion = turn * *motion * turn.inverse();
+  }
+  try {
+    return geometry::pixelsFromPlane(*motion, Eigen::Vector3d::UnitZ(), parameters_.robot_motion.depth, *camera);
+  } catch (const std::invalid_argument& error) {
+    processed.motion_error = error.what();
+    return std::nullopt;
+  }
+}
+
+void TrackerSession::updateLens(const cv::Size& size) {
+  if (parameters_.image_kind != ImageKind::kToRectify) return;
+  const std::shared_ptr<const image::Lens>& lens = lens_source_.lensFor(size);
+  lens_error_ = lens ? "" : "images cannot be rectified: " + lens_source_.error();
+  if (!lens || lens == lens_) return;
+  tracker_.setLens(*lens);
+  lens_ = lens;
 }
 
 tracking::TrackResult TrackerSession::track(Processed& processed, const std::optional<geometry::Rectangle>& request) {
   const double stamp = processed.header.stamp.toSec();
   const bool from_parameters = !request && start_roi_pending_;
-  if (request || from_parameters) {
+  updateLens(processed.image.size());
+  if (!lens_error_.empty()) {
+    if (request || from_parameters) processed.selection_error = lens_error_;
+  } else if (request || from_parameters) {
     try {
       const auto result = tracker_.select(processed.image, stamp, request ? *request : *parameters_.roi);
       start_roi_pending_ = false;
@@ -74,7 +118,9 @@ tracking::TrackResult TrackerSession::track(Processed& processed, const std::opt
       processed.selection_error = error.what();
     }
   }
-  tracking::TrackResult result = tracker_.track(processed.image, stamp);
+  const bool had_roi = tracker_.hasRoi();
+  tracking::TrackResult result = tracker_.track(processed.image, stamp, motionBefore(processed));
+  if (!lens_error_.empty() && !had_roi) result.reason = lens_error_;
   if (!processed.selection_error.empty() && result.state == tracking::State::kIdle) {
     result.reason = "the ROI could not be selected: " + processed.selection_error;
   }
@@ -88,6 +134,7 @@ cv::Mat TrackerSession::occlusionMask() const {
 
 void TrackerSession::reset() {
   tracker_.reset();
+  believed_stamp_.reset();
   start_roi_pending_ = start_roi_in_force_ = false;
 }
 

@@ -1,6 +1,5 @@
 #include "laparoscope_servo/ros/video_player.h"
 
-#include <camera_calibration_parsers/parse.h>
 #include <image_transport/camera_common.h>
 #include <ros/callback_queue.h>
 #include <rosgraph_msgs/Clock.h>
@@ -10,6 +9,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "laparoscope_servo/ros/camera_info.h"
 #include "laparoscope_servo/ros/image_conversion.h"
 #include "laparoscope_servo/ros/result_messages.h"
 
@@ -20,16 +20,6 @@ namespace {
 constexpr std::chrono::milliseconds kClockPeriod(10);
 constexpr std::chrono::milliseconds kCameraInfoTimeout(500);
 constexpr std::chrono::seconds kResultTimeout(2);  // a tracker that gives none must not stop the video
-
-sensor_msgs::CameraInfo calibration(const std::string& file) {
-  sensor_msgs::CameraInfo info;
-  if (file.empty()) return info;
-  std::string name;
-  if (!camera_calibration_parsers::readCalibration(file, name, info)) {
-    throw std::runtime_error("'" + file + "' cannot be read, expected a calibration as camera_calibration writes it");
-  }
-  return info;
-}
 
 }  // namespace
 
@@ -59,7 +49,7 @@ VideoPlayer::VideoPlayer(ros::NodeHandle node, const VideoPlayerConfig& config) 
   options_.folder_rate = config.fps;
   source_ = openImageSource(config.video, options_);
   if (!source_->hasRecordedStamps()) offset_ = ros::Duration(config.first_stamp);
-  camera_info_ = calibration(config.camera_info);
+  if (!config.camera_info.empty()) camera_info_ = readCameraInfo(config.camera_info);
   if (config.clock) clock_publisher_ = node.advertise<rosgraph_msgs::Clock>("/clock", 10);
   if (config.lockstep) {
     homography_subscriber_ = node.subscribe<Homography>(

@@ -33,6 +33,8 @@ options::options_description describeOptions(skin::OfflineOptions& offline, std:
   add("image-topic", options::value(&offline.source.image_topic), "of a bag with several topics of images");
   add("start", options::value(&offline.source.start), "skip so many seconds of the input");
   add("rate", options::value(&offline.source.folder_rate), "images per second of a folder (default 25)");
+  add("camera-info", options::value(&offline.camera_info),
+      "calibration file (YAML, INI), instead of the bag's camera_info; needed for rectify: true where there is none");
   add("params", options::value(&parameters), "YAML file laid over the package's config/tracker.yaml");
   add("csv", options::value(&offline.csv), "table to write, a line per image");
   add("output", options::value(&offline.bag), "bag to write: homography, task_error, areas, roi under /tracker");

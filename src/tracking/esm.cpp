@@ -92,7 +92,7 @@ void Esm::setReference(const image::RegionPyramid& reference, const geometry::Re
   levels_.clear();
   forgetLight();
   for (int l = 0; l < std::min(config_.levels, reference.levels()); ++l) {
-    EsmLevel level(reference, roi, l);
+    EsmLevel level(reference, roi, l, lens_.get());
     if (level.planes.empty()) break;
     if (config_.light == Light::kLocal) level.centreLight();
     if (l > 0) matchBlocks(level, levels_.back());
@@ -113,7 +113,9 @@ void Esm::warp(const image::RegionPyramid& current, EsmLevel& level, int l, cons
   for (std::size_t c = 0; c < level.planes.size(); ++c) {
     const int channel = std::min(static_cast<int>(c), current.channels() - 1);  // an image without colour stands for all
     image::Patch& warped = level.planes[c].warped;
-    level.all_valid = image::warpBilinear(current.level(l, channel), level_T_patch, warped, level.valid);
+    level.all_valid = lens_ ? image::warpBilinear(current.level(l, channel), g * level.image_T_patch, *lens_,
+                                                  {current.origin(), size}, warped, level.valid)
+                            : image::warpBilinear(current.level(l, channel), level_T_patch, warped, level.valid);
     warped.extrapolate();
   }
   if (!level.all_valid) level.useValid();

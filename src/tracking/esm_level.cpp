@@ -4,6 +4,7 @@
 
 #include "esm_kernels.h"
 #include "laparoscope_servo/image/multiversion.h"
+#include "laparoscope_servo/image/warp.h"
 
 namespace laparoscope_servo::tracking {
 
@@ -46,10 +47,11 @@ void keepInside(const float* __restrict weight, const float* __restrict above, c
 
 }  // namespace
 
-EsmLevel::EsmLevel(const image::RegionPyramid& reference, const geometry::Rectangle& roi, int l) {
+EsmLevel::EsmLevel(const image::RegionPyramid& reference, const geometry::Rectangle& roi, int l, const image::Lens* lens) {
   const int size = 1 << l;
-  const int x = static_cast<int>(roi.x) - reference.origin().x;
-  const int y = static_cast<int>(roi.y) - reference.origin().y;
+  // Without a lens the level's pixels are taken as they are; with one they are sampled anyway, from the ROI's first on.
+  const int x = lens != nullptr ? 0 : static_cast<int>(roi.x) - reference.origin().x;
+  const int y = lens != nullptr ? 0 : static_cast<int>(roi.y) - reference.origin().y;
   const cv::Point begin((x + size - 1) / size, (y + size - 1) / size);
   const cv::Point end((x + static_cast<int>(roi.width) - 1) / size, (y + static_cast<int>(roi.height) - 1) / size);
   width = end.x - begin.x + 1;
@@ -79,7 +81,10 @@ EsmLevel::EsmLevel(const image::RegionPyramid& reference, const geometry::Rectan
   planes.resize(reference.channels());
   for (int c = 0; c < reference.channels(); ++c) {
     EsmPlane& plane = planes[c];
-    const cv::Mat1f pixels = reference.level(l, c)(cv::Rect(begin, cv::Size(width, height)));
+    const cv::Size level_size(width, height);
+    const cv::Mat1f pixels = lens != nullptr ? image::rectify(reference.level(l, c), image_T_patch, *lens,
+                                                              {reference.origin(), scale}, level_size)
+                                             : reference.level(l, c)(cv::Rect(begin, level_size));
     plane.value.resize(width, height);
     for (int j = 0; j < height; ++j) std::copy_n(pixels.ptr<float>(j), width, plane.value.row(j));
     plane.value.extrapolate();

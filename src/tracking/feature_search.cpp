@@ -81,10 +81,26 @@ bool plausible(const Eigen::Matrix3d& g, const geometry::Rectangle& roi) {
   return std::max(ratio, 1.0 / ratio) <= kMaxAreaRatio;
 }
 
+// Raw points to rectified ones; those that the lens cannot have shown are dropped.
+void rectify(const image::Lens& lens, Features& features) {
+  int kept = 0;
+  for (std::size_t k = 0; k < features.points.size(); ++k) {
+    const auto p = lens.toRectified(Eigen::Vector2d(features.points[k].x, features.points[k].y));
+    if (!p) continue;
+    features.points[kept] = cv::Point2f(static_cast<float>(p->x()), static_cast<float>(p->y()));
+    if (kept != static_cast<int>(k))
+      features.descriptors.row(static_cast<int>(k)).copyTo(features.descriptors.row(kept));
+    ++kept;
+  }
+  features.points.resize(kept);
+  if (!features.descriptors.empty()) features.descriptors.resize(kept);
+}
+
 }  // namespace
 
-FeatureSearch::FeatureSearch(const SearchConfig& config)
+FeatureSearch::FeatureSearch(const SearchConfig& config, std::shared_ptr<const image::Lens> lens)
     : config_(config),
+      lens_(std::move(lens)),
       many_(cv::ORB::create(kSurplus * config.max_features, kOctaveStep, kOctaves, kEdge, 0, 2, cv::ORB::HARRIS_SCORE,
                             31, kFastThreshold)),
       few_(cv::ORB::create(config.max_features / 2, kOctaveStep, kOctaves, kEdge, 0, 2, cv::ORB::HARRIS_SCORE, 31,
@@ -125,6 +141,7 @@ Features FeatureSearch::draw(const cv::Mat& image, const cv::Point& first, const
     features.points.emplace_back(static_cast<float>((point.pt.x + 0.5) * sx - 0.5 + first.x),
                                  static_cast<float>((point.pt.y + 0.5) * sy - 0.5 + first.y));
   }
+  if (lens_) rectify(*lens_, features);
   return features;
 }
 
@@ -133,16 +150,8 @@ void FeatureSearch::describe(Keyframe& view, const geometry::Rectangle& roi, dou
   // Where the crop shows what can be trusted of the ROI.
   Eigen::Matrix3d from_roi = Eigen::Matrix3d::Identity();
   from_roi.topRightCorner<2, 1>() << roi.x, roi.y;
-  Eigen::Matrix3d to_crop = Eigen::Matrix3d::Identity();
-  to_crop.topRightCorner<2, 1>() << -view.first.x, -view.first.y;
-  const Eigen::Matrix3d g = to_crop * view.g * from_roi;
-  cv::Matx33d warp;
-  for (int r = 0; r < 3; ++r) {
-    for (int c = 0; c < 3; ++c) warp(r, c) = g(r, c);
-  }
   cv::Mat1b mask;
-  cv::warpPerspective(view.trusted, mask, warp, view.crop.size(), cv::INTER_NEAREST, cv::BORDER_CONSTANT,
-                      cv::Scalar(0));
+  image::drawMask(view.trusted, view.g * from_roi, lens_.get(), cv::Rect(view.first, view.crop.size()), mask);
   view.features = draw(view.crop, view.first, mask, scale, weights, config_.max_features / 2, false);
   view.described = true;
 }

@@ -77,17 +77,9 @@ void Keyframes::add(const cv::Mat& image, const Eigen::Matrix3d& g, const cv::Ma
 }
 
 Keyframe Keyframes::cut(const cv::Mat& image, const Eigen::Matrix3d& g, const cv::Mat1f& weights) const {
-  Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
-  Eigen::Vector2d high = -low;
-  for (const Eigen::Vector2d& corner : geometry::apply(g, roi_.corners())) {
-    low = low.cwiseMin(corner);
-    high = high.cwiseMax(corner);
-  }
   const double margin = kMargin * std::hypot(image.cols, image.rows);
-  const auto bounded = [](double x) { return static_cast<int>(std::clamp(x, -1e6, 1e6)); };
-  const cv::Point first(bounded(std::floor(low.x() - margin)), bounded(std::floor(low.y() - margin)));
-  const cv::Point last(bounded(std::ceil(high.x() + margin)), bounded(std::ceil(high.y() + margin)));
-  const cv::Rect box = cv::Rect(first, last) & cv::Rect(cv::Point(0, 0), image.size());
+  const geometry::Quadrilateral corners = geometry::apply(g, roi_.corners());
+  const cv::Rect box = image::seenBox(lens_.get(), corners, margin) & cv::Rect(cv::Point(0, 0), image.size());
   Keyframe view;
   view.g = g;
   if (box.empty()) return view;

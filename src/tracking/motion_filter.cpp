@@ -46,11 +46,12 @@ geometry::Vector8d MotionFilter::deviation(const Eigen::Matrix3d& from, const Ei
   return geometry::sl3Log(geometry::normaliseDeterminant(n_ * from.inverse() * to * n_inv_));
 }
 
-MotionPrior MotionFilter::predict(double stamp) const {
+MotionPrior MotionFilter::predict(double stamp, const std::optional<Eigen::Matrix3d>& carried) const {
   MotionPrior prior;
   const double dt = std::max(0.0, stamp - last_stamp_);
-  prior.predicted = last_ * n_inv_ * geometry::sl3Exp(damping_ * dt * velocity_) * n_;
-  if (!geometry::isConvex(geometry::apply(prior.predicted, roi_.corners()))) prior.predicted = last_;
+  const Eigen::Matrix3d from = carried.value_or(last_);
+  prior.predicted = from * n_inv_ * geometry::sl3Exp(damping_ * dt * (carried ? rest_ : velocity_)) * n_;
+  if (!geometry::isConvex(geometry::apply(prior.predicted, roi_.corners()))) prior.predicted = from;
   const double images = interval_ > 0.0 ? std::clamp(dt / interval_, 1.0, kMaxIntervals) : 1.0;
   const Matrix8d expected = covariance_ + images * images * (innovation_ + least_);
   prior.information = expected.ldlt().solve(Matrix8d::Identity());
@@ -58,7 +59,8 @@ MotionPrior MotionFilter::predict(double stamp) const {
   return prior;
 }
 
-void MotionFilter::update(const MotionPrior& prior, const EsmResult& estimate, double stamp, bool learn) {
+void MotionFilter::update(const MotionPrior& prior, const EsmResult& estimate, double stamp, bool learn,
+                          const std::optional<Eigen::Matrix3d>& carried) {
   const double dt = stamp - last_stamp_;
   const geometry::Vector8d x = deviation(prior.predicted, estimate.state.g);
   if (learn && x.allFinite()) {
@@ -71,13 +73,16 @@ void MotionFilter::update(const MotionPrior& prior, const EsmResult& estimate, d
   const geometry::Vector8d motion = deviation(last_, estimate.state.g);
   restart(estimate, stamp);
   if (dt > 0.0 && motion.allFinite()) velocity_ = motion / dt;
+  if (!carried) return;
+  const geometry::Vector8d rest = deviation(*carried, estimate.state.g);
+  if (dt > 0.0 && rest.allFinite()) rest_ = rest / dt;
 }
 
 void MotionFilter::restart(const EsmResult& estimate, double stamp) {
   last_ = estimate.state.g;
   last_stamp_ = stamp;
   covariance_ = estimate.covariance;
-  velocity_.setZero();
+  stop();
 }
 
 }  // namespace laparoscope_servo::tracking

@@ -15,20 +15,6 @@ constexpr int kMaxStructureRounds = 3;
 constexpr double kGateShift = 2.0;  // px: masks drawn further from the estimate than this are drawn again
 constexpr double kBorder = 4.0;     // px of the coarsest level, of what smoothing takes in from beyond the ROI
 
-cv::Rect boundingBox(const geometry::Quadrilateral& q, double margin) {
-  Eigen::Vector2d low = q[0];
-  Eigen::Vector2d high = q[0];
-  for (const Eigen::Vector2d& corner : q) {
-    low = low.cwiseMin(corner);
-    high = high.cwiseMax(corner);
-  }
-  // Far outside any image; keeps the conversion to int defined.
-  const auto bounded = [](double x) { return static_cast<int>(std::clamp(x, -1e6, 1e6)); };
-  const cv::Point first(bounded(std::floor(low.x() - margin)), bounded(std::floor(low.y() - margin)));
-  const cv::Point last(bounded(std::ceil(high.x() + margin)), bounded(std::ceil(high.y() + margin)));
-  return {first, last + cv::Point(1, 1)};
-}
-
 // The combination of the channels whose gradient is strongest for its noise: the principal axis of sum grad_c grad_d. Scaled
 // so that the weights' magnitudes sum to one, which keeps the range of grey levels.
 image::ChannelWeights strongestChannel(const cv::Mat& patch) {
@@ -79,16 +65,21 @@ Eigen::Matrix3d imageFromPatch(const geometry::Rectangle& roi) {
   return m;
 }
 
-RegionAligner::RegionAligner(const TrackerConfig& config)
-    : config_(config.esm), occlusion_(config.occlusion), esm_(config.esm), gates_(config.occlusion, config.esm.saturation) {}
+RegionAligner::RegionAligner(const TrackerConfig& config, std::shared_ptr<const image::Lens> lens)
+    : config_(config.esm),
+      lens_(lens),
+      occlusion_(config.occlusion),
+      esm_(config.esm, lens),
+      gates_(config.occlusion, config.esm.saturation) {}
 
 void RegionAligner::setReference(const cv::Mat& image, const geometry::Rectangle& roi) {
-  const cv::Rect box = boundingBox(roi.corners(), 0.0);
+  const cv::Rect box = image::seenBox(lens_.get(), roi.corners(), 0.0) & cv::Rect(cv::Point(0, 0), image.size());
   channels_ = chosenChannels(config_.channels, image(box));
-  pyramid_.build(image, boundingBox(roi.corners(), kBorder * (1 << config_.levels)), config_.levels, channels_);
+  const cv::Rect with_border = image::seenBox(lens_.get(), roi.corners(), kBorder * (1 << config_.levels));
+  pyramid_.build(image, with_border, config_.levels, channels_);
   esm_.setReference(pyramid_, roi);
   sample(image, Eigen::Matrix3d::Identity());
-  gates_.setReference(patch_, box.size());
+  gates_.setReference(patch_, cv::Size(static_cast<int>(roi.width), static_cast<int>(roi.height)));
   esm_.setWeights(weights());
 }
 
@@ -98,7 +89,12 @@ void RegionAligner::sample(const cv::Mat& image, const Eigen::Matrix3d& g) {
   const int step = samplingStep(size, occlusion_);
   Eigen::Matrix3d image_T_sample = g * imageFromPatch(roi());
   image_T_sample.leftCols<2>() *= step;
-  image::warpNearest(image, image_T_sample, cv::Size((size.width + step - 1) / step, (size.height + step - 1) / step), patch_);
+  const cv::Size samples((size.width + step - 1) / step, (size.height + step - 1) / step);
+  if (lens_) {
+    image::warpNearest(image, image_T_sample, *lens_, samples, patch_);
+  } else {
+    image::warpNearest(image, image_T_sample, samples, patch_);
+  }
 }
 
 void RegionAligner::look(const cv::Mat& image, const Eigen::Matrix3d& g) {
@@ -121,7 +117,7 @@ Alignment RegionAligner::align(const cv::Mat& image, const EsmState& start, cons
   result.esm.state = start;
   result.esm.status = EsmStatus::kOutOfView;
   const double margin = reach + kBorder * (1 << (esm_.levels() - 1));
-  const cv::Rect box = boundingBox(geometry::apply(start.g, roi().corners()), margin);
+  const cv::Rect box = image::seenBox(lens_.get(), geometry::apply(start.g, roi().corners()), margin);
   result.in_image = !(box & cv::Rect(cv::Point(0, 0), image.size())).empty();
   if (!result.in_image) return result;
   pyramid_.build(image, box, config_.levels, channels_);

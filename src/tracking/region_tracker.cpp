@@ -6,6 +6,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "laparoscope_servo/geometry/sl3.h"
+#include "laparoscope_servo/image/warp.h"
 #include "laparoscope_servo/tracking/feature_search.h"
 #include "laparoscope_servo/tracking/keyframes.h"
 #include "laparoscope_servo/tracking/motion_filter.h"
@@ -55,12 +57,17 @@ const char* stateName(State state) {
 
 class RegionTracker::Implementation {
  public:
-  explicit Implementation(const TrackerConfig& config)
-      : config_(config), aligner_(config), filter_(config.velocity_damping), keyframes_(config.search.keyframes),
-        feature_search_(config.search) {}
+  explicit Implementation(const TrackerConfig& config, std::shared_ptr<const image::Lens> lens = nullptr)
+      : config_(config),
+        lens_(lens),
+        aligner_(config, lens),
+        filter_(config.velocity_damping),
+        keyframes_(config.search.keyframes, lens),
+        feature_search_(config.search, lens) {}
 
+  void setLens(const std::optional<image::Lens>& lens);
   TrackResult select(const cv::Mat& image, double stamp, const geometry::Rectangle& roi);
-  const TrackResult& track(const cv::Mat& image, double stamp);
+  const TrackResult& track(const cv::Mat& image, double stamp, const std::optional<Eigen::Matrix3d>& motion);
   void reset();
   cv::Mat occlusionMask() const;
   bool hasRoi() const { return state_ != State::kIdle; }
@@ -73,6 +80,8 @@ class RegionTracker::Implementation {
   };
 
   geometry::Rectangle checkedRoi(const cv::Mat& image, const geometry::Rectangle& roi) const;
+  bool shows(const cv::Mat& image, const geometry::Rectangle& roi) const;
+  std::optional<Eigen::Matrix3d> carriedBy(const std::optional<Eigen::Matrix3d>& motion) const;
   Attempt attempt(const cv::Mat& image, const EsmState& start, const MotionPrior* prior);
   Attempt search(const cv::Mat& image);
   std::vector<Eigen::Matrix3d> searchCoarsely(const cv::Mat& image);
@@ -83,6 +92,8 @@ class RegionTracker::Implementation {
   const TrackResult& idle(double stamp, const std::string& reason);
 
   TrackerConfig config_;
+  std::shared_ptr<const image::Lens> lens_;  // null: none
+  std::string reset_reason_;                 // for the next image
   RegionAligner aligner_;
   MotionFilter filter_;
   Keyframes keyframes_;
@@ -93,6 +104,7 @@ class RegionTracker::Implementation {
   double reference_stamp_ = 0.0;
   double last_stamp_ = 0.0;
   EsmState last_;                      // last estimate that was believed
+  std::optional<Eigen::Matrix3d> carried_;  // the same, moved as a robot says: where the last attempt started from
   TrackRecord record_;
   int confirmations_ = 0;
   EsmState candidate_;                 // while searching: what is being confirmed
@@ -107,11 +119,43 @@ geometry::Rectangle RegionTracker::Implementation::checkedRoi(const cv::Mat& ima
     throw std::invalid_argument(name + " is too small, expected at least " + std::to_string(config_.min_roi_side) +
                                 " px in width and height");
   }
-  const bool inside = roi.x >= 0.0 && roi.y >= 0.0 && roi.x + roi.width <= image.cols && roi.y + roi.height <= image.rows;
-  if (!inside) {  // also for NaN
-    throw std::invalid_argument(name + " is not inside the image of " + size + " px");
+  const geometry::Rectangle whole{std::floor(roi.x), std::floor(roi.y), std::floor(roi.width), std::floor(roi.height)};
+  if (!shows(image, whole)) {
+    throw std::invalid_argument(name + " is not inside the image of " + size + " px" +
+                                (lens_ ? ", as its lens shows it: the ROI is in rectified pixels" : ""));
   }
-  return {std::floor(roi.x), std::floor(roi.y), std::floor(roi.width), std::floor(roi.height)};
+  return whole;
+}
+
+// False for NaN.
+bool RegionTracker::Implementation::shows(const cv::Mat& image, const geometry::Rectangle& roi) const {
+  if (!lens_) {
+    return roi.x >= 0.0 && roi.y >= 0.0 && roi.x + roi.width <= image.cols && roi.y + roi.height <= image.rows;
+  }
+  const double longest_side = 65536.0;
+  if (!(roi.width <= longest_side && roi.height <= longest_side)) return false;
+  const auto seen = [&](double x, double y) {
+    const auto raw = lens_->toRaw(Eigen::Vector2d(x, y));
+    return raw && raw->x() >= 0.0 && raw->y() >= 0.0 && raw->x() <= image.cols - 1.0 && raw->y() <= image.rows - 1.0;
+  };
+  // What is one to one takes the inside of the border to the inside.
+  const double right = roi.x + roi.width - 1.0;
+  const double bottom = roi.y + roi.height - 1.0;
+  for (double x = roi.x; x <= right; x += 1.0) {
+    if (!seen(x, roi.y) || !seen(x, bottom)) return false;
+  }
+  for (double y = roi.y; y <= bottom; y += 1.0) {
+    if (!seen(roi.x, y) || !seen(right, y)) return false;
+  }
+  return std::isfinite(right) && std::isfinite(bottom);
+}
+
+void RegionTracker::Implementation::setLens(const std::optional<image::Lens>& lens) {
+  const bool same = lens ? lens_ && *lens_ == *lens : !lens_;
+  if (same) return;
+  const bool had_roi = hasRoi();
+  *this = Implementation(config_, lens ? std::make_shared<const image::Lens>(*lens) : nullptr);
+  if (had_roi) reset_reason_ = "the lens changed since the ROI was selected: select it again";
 }
 
 TrackResult RegionTracker::Implementation::select(const cv::Mat& image, double stamp, const geometry::Rectangle& wanted) {
@@ -119,7 +163,7 @@ TrackResult RegionTracker::Implementation::select(const cv::Mat& image, double s
   const geometry::Rectangle roi = checkedRoi(image, wanted);
 
   // Everything is built aside, so that a ROI that is refused leaves the tracker as it was.
-  Implementation fresh(config_);
+  Implementation fresh(config_, lens_);
   fresh.aligner_.setReference(image, roi);
   const double error = fresh.aligner_.referenceCornerError(kTypicalNoise);
   if (!(error <= config_.min_texture)) {
@@ -147,9 +191,14 @@ TrackResult RegionTracker::Implementation::select(const cv::Mat& image, double s
   return result;
 }
 
-const TrackResult& RegionTracker::Implementation::track(const cv::Mat& image, double stamp) {
+const TrackResult& RegionTracker::Implementation::track(const cv::Mat& image, double stamp,
+                                                 const std::optional<Eigen::Matrix3d>& motion) {
   checkImage(image);
-  if (state_ == State::kIdle) return idle(stamp, "no region of interest selected");
+  if (state_ == State::kIdle) {
+    const TrackResult& result = idle(stamp, reset_reason_.empty() ? "no region of interest selected" : reset_reason_);
+    reset_reason_.clear();
+    return result;
+  }
   if (!std::isfinite(stamp)) throw std::invalid_argument("image stamp is not finite");
   std::ostringstream why;
   if (stamp < last_stamp_) {
@@ -162,12 +211,21 @@ const TrackResult& RegionTracker::Implementation::track(const cv::Mat& image, do
     reset();
     return idle(stamp, why.str());
   }
-  const MotionPrior prior = filter_.predict(stamp);
+  carried_ = carriedBy(motion);
+  MotionPrior prior = filter_.predict(stamp, carried_);
   Attempt best;
   if (state_ == State::kTracking) {
     EsmState start = last_;
     start.g = prior.predicted;
     best = attempt(image, start, &prior);
+    if (carried_ && !best.doubt.empty()) {
+      // A robot that is wrong must not lose what is found without it; what was seen where it led says nothing.
+      carried_.reset();
+      aligner_.startAfresh();
+      prior = filter_.predict(stamp);
+      start.g = prior.predicted;
+      best = attempt(image, start, &prior);
+    }
   } else {
     best = search(image);
   }
@@ -176,6 +234,17 @@ const TrackResult& RegionTracker::Implementation::track(const cv::Mat& image, do
   aligner_.advance();
   last_stamp_ = stamp;
   return report(best);
+}
+
+// Where the last estimate is by what a robot says; empty when that is no motion that could be one.
+std::optional<Eigen::Matrix3d> RegionTracker::Implementation::carriedBy(
+    const std::optional<Eigen::Matrix3d>& motion) const {
+  if (!motion || !motion->allFinite() || !(motion->determinant() > 1e-12)) return std::nullopt;
+  const Eigen::Matrix3d g = geometry::normaliseDeterminant(*motion * last_.g);
+  const geometry::Quadrilateral corners = geometry::apply(g, aligner_.roi().corners());
+  const double ratio = geometry::signedArea(corners) / geometry::signedArea(aligner_.roi().corners());
+  const bool possible = geometry::isConvex(corners) && std::max(ratio, 1.0 / ratio) <= config_.quality.max_area_ratio;
+  return possible ? std::optional<Eigen::Matrix3d>(g) : std::nullopt;
 }
 
 // With a prior when the ROI was tracked until the image before; without when it is searched for.
@@ -217,7 +286,14 @@ RegionTracker::Implementation::Attempt RegionTracker::Implementation::search(con
     }
     return false;
   };
+  const std::optional<Eigen::Matrix3d> moved = carried_;
+  carried_.reset();
   if (confirmations_ > 0 && tryAt(candidate_)) return best;
+  if (moved) {
+    carried_ = moved;
+    if (tryEach({*moved})) return best;
+    carried_.reset();
+  }
   if (tryAt(last_)) return best;
   const SearchConfig& stages = config_.search;
   const bool features = stages.features && (!stages.correlation || search_turn_ % 2 == 0);
@@ -252,10 +328,24 @@ std::vector<Eigen::Matrix3d> RegionTracker::Implementation::searchCoarsely(const
   image::RegionPyramid whole;
   whole.build(image, cv::Rect(0, 0, image.cols, image.rows), l + 1, aligner_.channels().weights[0]);
   const EsmLevel& level = aligner_.esm().level(l);
+  cv::Mat1f coarse = whole.level(l);
+  Eigen::Matrix3d from_coarse = Eigen::Matrix3d::Identity();  // its first pixel to that of the image
+  if (lens_) {
+    const cv::Rect box = image::rectifiedBox(*lens_, image.size());
+    from_coarse.topRightCorner<2, 1>() << box.x, box.y;
+    Eigen::Matrix3d sampling = from_coarse;
+    sampling.topLeftCorner<2, 2>() *= level.scale;
+    const cv::Size size(static_cast<int>(box.width / level.scale) + 1, static_cast<int>(box.height / level.scale) + 1);
+    coarse = cv::Mat1f(size);
+    cv::Mat1f valid(size);
+    image::warpBilinear(whole.level(l), sampling, *lens_, {cv::Point(0, 0), level.scale}, coarse, valid);
+    coarse.setTo(0.0f, valid == 0.0f);
+  }
   std::vector<Eigen::Matrix3d> places;
-  for (const Candidate& candidate : searchByCorrelation(level.planes[0].value.view(), level.image_T_patch, whole.level(l), level.scale,
-                                                        aligner_.roi(), last_.g, kSearchCandidates)) {
-    places.push_back(candidate.g);
+  for (const Candidate& candidate :
+       searchByCorrelation(level.planes[0].value.view(), level.image_T_patch, coarse, level.scale, aligner_.roi(),
+                           from_coarse.inverse() * last_.g, kSearchCandidates)) {
+    places.push_back(from_coarse * candidate.g);
   }
   return places;
 }
@@ -291,7 +381,7 @@ void RegionTracker::Implementation::decide(const Attempt& best, const MotionPrio
     filter_.restart(e.esm, stamp);
   } else {
     record_.add(e.zncc, e.esm.sigma, farthestCorner(e.predicted, e.esm.state.g, aligner_.roi()), e.visible_fraction);
-    filter_.update(prior, e.esm, stamp, e.visible_fraction >= kRecordVisible);
+    filter_.update(prior, e.esm, stamp, e.visible_fraction >= kRecordVisible, carried_);
   }
   confirmations_ = 0;
   last_ = e.esm.state;
@@ -311,6 +401,7 @@ const TrackResult& RegionTracker::Implementation::report(const Attempt& attempt)
   result.iterations = attempt.evidence.esm.iterations;
   result.corner_error = attempt.evidence.esm.corner_error;
   result.sigma = attempt.evidence.esm.sigma;
+  result.motion_used = carried_ && attempt.doubt.empty();
   result.gain = attempt.evidence.esm.state.gain;
   result.bias = attempt.evidence.esm.state.bias;
   const OcclusionGates& gates = aligner_.gates();
@@ -331,7 +422,7 @@ const TrackResult& RegionTracker::Implementation::idle(double stamp, const std::
   return result_;
 }
 
-void RegionTracker::Implementation::reset() { *this = Implementation(config_); }
+void RegionTracker::Implementation::reset() { *this = Implementation(config_, lens_); }
 
 cv::Mat RegionTracker::Implementation::occlusionMask() const {
   if (state_ == State::kIdle) return {};
@@ -341,14 +432,13 @@ cv::Mat RegionTracker::Implementation::occlusionMask() const {
   for (int j = 0; j < grid.height(); ++j) {
     for (int i = 0; i < grid.width(); ++i) areas(j, i) = gates.occluded(grid.areaOf(i, j)) ? 255 : 0;
   }
-  const Eigen::Matrix3d g =
-      (state_ == State::kTracking || confirmations_ == 0 ? last_.g : candidate_.g) * imageFromPatch(aligner_.roi());
-  cv::Matx33d warp;
-  for (int r = 0; r < 3; ++r) {
-    for (int c = 0; c < 3; ++c) warp(r, c) = g(r, c);
-  }
-  cv::Mat mask;
-  cv::warpPerspective(areas, mask, warp, image_size_, cv::INTER_NEAREST, cv::BORDER_CONSTANT, cv::Scalar(0));
+  const Eigen::Matrix3d g = state_ == State::kTracking || confirmations_ == 0 ? last_.g : candidate_.g;
+  const geometry::Quadrilateral corners = geometry::apply(g, aligner_.roi().corners());
+  cv::Mat1b mask = cv::Mat1b::zeros(image_size_);
+  const cv::Rect box = image::seenBox(lens_.get(), corners, 1.0) & cv::Rect(cv::Point(0, 0), image_size_);
+  if (box.empty()) return mask;
+  cv::Mat1b part = mask(box);
+  image::drawMask(areas, g * imageFromPatch(aligner_.roi()), lens_.get(), box, part);
   return mask;
 }
 
@@ -366,10 +456,14 @@ RegionTracker::~RegionTracker() = default;
 RegionTracker::RegionTracker(RegionTracker&&) noexcept = default;
 RegionTracker& RegionTracker::operator=(RegionTracker&&) noexcept = default;
 
+void RegionTracker::setLens(const std::optional<image::Lens>& lens) { implementation_->setLens(lens); }
+
 TrackResult RegionTracker::select(const cv::Mat& image, double stamp, const geometry::Rectangle& roi) {
   return implementation_->select(image, stamp, roi);
 }
-const TrackResult& RegionTracker::track(const cv::Mat& image, double stamp) { return implementation_->track(image, stamp); }
+const TrackResult& RegionTracker::track(const cv::Mat& image, double stamp, const std::optional<Eigen::Matrix3d>& motion) {
+  return implementation_->track(image, stamp, motion);
+}
 void RegionTracker::reset() { implementation_->reset(); }
 cv::Mat RegionTracker::occlusionMask() const { return implementation_->occlusionMask(); }
 bool RegionTracker::hasRoi() const { return implementation_->hasRoi(); }

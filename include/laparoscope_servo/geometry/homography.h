@@ -51,6 +51,11 @@ Eigen::Matrix3d fromCorners(const Quadrilateral& from, const Quadrilateral& to);
 // reference camera's frame, d > 0 the distance [m] of the plane from its centre. Its median singular value is 1.
 Eigen::Matrix3d fromPlane(const Eigen::Isometry3d& current_T_reference, const Eigen::Vector3d& n, double d);
 
+// G = K (R + t n'/d) K^-1, determinant 1: where the pixels of that plane go between the two images of `camera`. Throws
+// std::invalid_argument when d is not positive, a value is not finite, or the camera has passed through the plane.
+Eigen::Matrix3d pixelsFromPlane(const Eigen::Isometry3d& current_T_reference, const Eigen::Vector3d& n, double d,
+                                const PinholeCamera& camera);
+
 // H scaled so that it is R + t n'/d: divided by its median singular value, with the sign that keeps `m` in front of the
 // camera, m'H m > 0. Throws std::invalid_argument when H is not finite or has rank below 2.
 Eigen::Matrix3d euclideanScale(const Eigen::Matrix3d& h, const Eigen::Vector3d& m);

@@ -4,6 +4,8 @@
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
 
+#include "laparoscope_servo/image/lens.h"
+
 namespace laparoscope_servo::image {
 
 // One plane a channel; an image without colour has `blue` alone. 255 in `valid` where the pixel lies in the image, else 0, and the
@@ -18,6 +20,11 @@ struct ColourPatch {
 // patch(j, i) = the image's pixel nearest to the point that `g` takes (i, j, 1) to. `image` is CV_8UC1 or CV_8UC3, blue first; another
 // type throws std::invalid_argument. Where the denominator of g is not positive, nothing is valid.
 void warpNearest(const cv::Mat& image, const Eigen::Matrix3d& g, const cv::Size& size, ColourPatch& patch);
+
+// The same through a lens: `g` takes (i, j, 1) to rectified pixels, `image` is the whole raw image. What lies outside
+// the lens's field is not valid.
+void warpNearest(const cv::Mat& image, const Eigen::Matrix3d& g, const Lens& lens, const cv::Size& size,
+                 ColourPatch& patch);
 
 // 255 where any channel is at least `threshold` (grey levels), grown by `grow` px (0 to 64, else std::invalid_argument) in every direction; 0
 // elsewhere. Highlights move

@@ -14,7 +14,8 @@ namespace laparoscope_servo::skin {
 // Times are seconds of any steady clock.
 class TrackerDiagnostics {
  public:
-  explicit TrackerDiagnostics(const tracking::TrackerConfig& config) : config_(config) {}
+  explicit TrackerDiagnostics(const tracking::TrackerConfig& config, bool with_robot_motion = false)
+      : config_(config), with_robot_motion_(with_robot_motion) {}
 
   void processed(double now, const Processed& processed, bool ignores_distortion);
   // An image came that could not be used.
@@ -27,15 +28,21 @@ class TrackerDiagnostics {
  private:
   void summarise(double now, diagnostic_updater::DiagnosticStatusWrapper& status) const;
   std::string colourGate() const;
+  std::string robotMotion() const;
 
   struct Window {
     double start = 0.0;
     int images = 0;
     double total_time = 0.0;
     double longest_time = 0.0;
+    int motion_wanted = 0;
+    int motion_given = 0;
+    int motion_used = 0;
   };
 
   tracking::TrackerConfig config_;
+  bool with_robot_motion_;
+  std::string motion_error_;
   Window window_;
   std::uint64_t images_ = 0;
   std::uint64_t refused_ = 0;
@@ -49,6 +56,7 @@ class TrackerDiagnostics {
   bool has_camera_ = false;
   bool has_colour_ = true;
   bool ignores_distortion_ = false;
+  bool rectifies_ = false;
 };
 
 }  // namespace laparoscope_servo::skin

@@ -15,6 +15,7 @@ struct OfflineOptions {
   std::string input;  // see image_source.h
   SourceOptions source;
   TrackerParameters parameters;  // with a ROI
+  std::string camera_info;       // file, see readCameraInfo; empty: that of the bag
   // Files to write; empty: none.
   std::string csv;  // see tracker_csv.h
   std::string

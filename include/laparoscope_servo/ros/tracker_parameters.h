@@ -9,6 +9,7 @@
 
 #include "laparoscope_servo/geometry/homography.h"
 #include "laparoscope_servo/ros/camera_info.h"
+#include "laparoscope_servo/ros/robot_motion.h"
 #include "laparoscope_servo/tracking/tracker_config.h"
 
 namespace laparoscope_servo::skin {
@@ -17,6 +18,7 @@ struct TrackerParameters {
   tracking::TrackerConfig tracking;
   std::optional<geometry::Rectangle> roi;  // px, selected in the first image
   ImageKind image_kind = ImageKind::kRaw;
+  RobotMotionConfig robot_motion;
   double select_timeout = 5.0;  // s, 0.1 to 60: how long the service select_roi waits for an image
 };
 

@@ -7,6 +7,8 @@
 #include <sensor_msgs/Image.h>
 #include <std_msgs/Header.h>
 
+#include <functional>
+#include <memory>
 #include <opencv2/core.hpp>
 #include <optional>
 #include <string>
@@ -19,6 +21,11 @@
 
 namespace laparoscope_servo::skin {
 
+// Where the camera was, for the tracker's prediction: the motion of `frame` from the image at `from` to that at `to`,
+// or why not.
+using CameraMotion = std::function<std::optional<Eigen::Isometry3d>(const std::string& frame, const ros::Time& from,
+                                                                    const ros::Time& to, std::string& why)>;
+
 // What is known of one image.
 struct Processed {
   std_msgs::Header header;  // the image's
@@ -27,6 +34,9 @@ struct Processed {
   ros::Time reference_stamp;
   std::optional<geometry::PinholeCamera> camera;  // empty when H cannot be given
   std::string camera_error;                       // why it cannot
+  std::shared_ptr<const image::Lens> lens;        // through which the image is seen; null: none
+  bool motion_wanted = false;                     // the camera's motion was asked for
+  std::string motion_error;                       // why it was not given
   std::string selection_error;                    // a ROI should have been selected in this image and was not: why
   double processing_time = 0.0;                   // s, from the decoded image to the result
 };
@@ -38,8 +48,15 @@ class TrackerSession {
   // selected or reset() is called.
   explicit TrackerSession(const TrackerParameters& parameters);
 
-  // Holds for the images that follow.
-  void setCameraInfo(const sensor_msgs::CameraInfo& info) { intrinsics_.set(info); }
+  // Holds for the images that follow. While the tracker rectifies, a lens that differs from the one before ends
+  // tracking; camera_info that cannot be used leaves the lens as it is, and takes H away.
+  void setCameraInfo(const sensor_msgs::CameraInfo& info) {
+    intrinsics_.set(info);
+    lens_source_.set(info);
+  }
+
+  // Asked while a ROI is tracked or searched for, at most once an image.
+  void setCameraMotion(const CameraMotion& motion) { camera_motion_ = motion; }
 
   // Processes the next image; `request` is a ROI to select in it. Throws ImageError or std::invalid_argument when the
   // image cannot be used: the session then goes on as if it had not come. The message has to outlive the result's
@@ -61,16 +78,23 @@ class TrackerSession {
 
  private:
   tracking::TrackResult track(Processed& processed, const std::optional<geometry::Rectangle>& request);
+  void updateLens(const cv::Size& size);
+  std::optional<Eigen::Matrix3d> motionBefore(Processed& processed) const;
   void complete(Processed& processed, const std::optional<geometry::Rectangle>& request);
 
   TrackerParameters parameters_;
   tracking::RegionTracker tracker_;
   Intrinsics intrinsics_;
+  LensSource lens_source_;
+  std::shared_ptr<const image::Lens> lens_;  // in force
+  std::string lens_error_;                   // why the newest camera_info gives none, and nothing can be selected
   bool start_roi_pending_ = false;   // the parameters' ROI waits for its image
   bool start_roi_in_force_ = false;  // nobody has chosen another one
   std::optional<ros::Time> last_stamp_;
   cv::Size image_size_;
   ros::Time reference_stamp_;
+  CameraMotion camera_motion_;
+  std::optional<ros::Time> believed_stamp_;  // of the last image that the state was TRACKING in
 };
 
 }  // namespace laparoscope_servo::skin

@@ -9,11 +9,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <opencv2/core.hpp>
 #include <vector>
 
 #include "laparoscope_servo/geometry/homography.h"
 #include "laparoscope_servo/geometry/sl3.h"
+#include "laparoscope_servo/image/lens.h"
 #include "laparoscope_servo/image/pyramid.h"
 #include "laparoscope_servo/tracking/esm_level.h"
 #include "laparoscope_servo/tracking/normal_equations.h"
@@ -60,7 +62,9 @@ struct MotionPrior {
 
 class Esm {
  public:
-  explicit Esm(const EsmConfig& config) : config_(config) {}
+  // With a lens the pyramids are of raw images, and every other pixel that is spoken of is a rectified one.
+  explicit Esm(const EsmConfig& config, std::shared_ptr<const image::Lens> lens = nullptr)
+      : config_(config), lens_(std::move(lens)) {}
 
   // Takes the ROI of the pyramid's image for the reference, in as many channels as the pyramid has. The pyramid's region must hold the
   // ROI; levels that would be smaller than 8 px in the ROI's smaller side are not used. The ROI is in whole pixels.
@@ -110,6 +114,7 @@ class Esm {
   double cornerError(const Eigen::Matrix3d& g, const Matrix8d& covariance) const;
 
   EsmConfig config_;
+  std::shared_ptr<const image::Lens> lens_;
   geometry::Rectangle roi_;
   Eigen::Matrix3d n_ = Eigen::Matrix3d::Identity();      // N: reference pixels to normalised template coordinates
   Eigen::Matrix3d n_inv_ = Eigen::Matrix3d::Identity();

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "laparoscope_servo/geometry/homography.h"
+#include "laparoscope_servo/image/lens.h"
 #include "laparoscope_servo/image/patch.h"
 #include "laparoscope_servo/image/pyramid.h"
 #include "laparoscope_servo/tracking/tracker_config.h"
@@ -27,8 +28,9 @@ struct EsmPlane {
 };
 
 struct EsmLevel {
-  // Of the pyramid's level `l`; `roi` in whole pixels. No planes when the ROI's smaller side has fewer than 8 px there.
-  EsmLevel(const image::RegionPyramid& reference, const geometry::Rectangle& roi, int l);
+  // Of the pyramid's level `l`; `roi` in whole pixels. No planes when the ROI's smaller side has fewer than 8 px there. With a lens
+  // (null: none) the pyramid is of a raw image, and the ROI in rectified pixels.
+  EsmLevel(const image::RegionPyramid& reference, const geometry::Rectangle& roi, int l, const image::Lens* lens = nullptr);
 
   // Fills in the blocks' means, which are 0 without.
   void centreLight();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <opencv2/core.hpp>
 #include <opencv2/features2d.hpp>
 #include <vector>
@@ -19,7 +20,8 @@ struct FeatureCandidate {
 
 class FeatureSearch {
  public:
-  explicit FeatureSearch(const SearchConfig& config);
+  // With a lens the images are raw, homographies and the ROI rectified.
+  explicit FeatureSearch(const SearchConfig& config, std::shared_ptr<const image::Lens> lens = nullptr);
 
   // Where the views say that the ROI may be in `image` (CV_8UC1 or CV_8UC3), best first; none when nothing agrees. The
   // reference is asked every time, the other views one a call in turn, so that the time is bounded whatever is stored.
@@ -37,6 +39,7 @@ class FeatureSearch {
              std::vector<FeatureCandidate>& found) const;
 
   SearchConfig config_;
+  std::shared_ptr<const image::Lens> lens_;
   cv::Ptr<cv::ORB> many_;  // of the image, thinned out afterwards
   cv::Ptr<cv::ORB> few_;   // of a view
   int turn_ = 0;

@@ -4,16 +4,18 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <opencv2/core.hpp>
 #include <vector>
 
 #include "laparoscope_servo/geometry/homography.h"
+#include "laparoscope_servo/image/lens.h"
 
 namespace laparoscope_servo::tracking {
 
 // Points with binary descriptors, a row of CV_8U each.
 struct Features {
-  std::vector<cv::Point2f> points;  // px, of the image that the keyframe was cut from
+  std::vector<cv::Point2f> points;  // px, of the image that the keyframe was cut from; with a lens rectified ones
   cv::Mat descriptors;
 };
 
@@ -33,8 +35,10 @@ double viewDistance(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b, const ge
 
 class Keyframes {
  public:
-  // capacity: how many views are kept beside the reference, 0 or more.
-  explicit Keyframes(int capacity) : capacity_(capacity) {}
+  // capacity: how many views are kept beside the reference, 0 or more. With a lens the images are raw, homographies and
+  // the ROI rectified.
+  explicit Keyframes(int capacity, std::shared_ptr<const image::Lens> lens = nullptr)
+      : capacity_(capacity), lens_(std::move(lens)) {}
 
   // Forgets every view; the reference becomes the first. `weights` is CV_32F of the ROI's size, 0 where it cannot be
   // trusted.
@@ -59,6 +63,7 @@ class Keyframes {
   Keyframe cut(const cv::Mat& image, const Eigen::Matrix3d& g, const cv::Mat1f& weights) const;
 
   int capacity_;
+  std::shared_ptr<const image::Lens> lens_;
   geometry::Rectangle roi_;
   std::vector<Keyframe> views_;
 };

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "laparoscope_servo/geometry/homography.h"
 #include "laparoscope_servo/geometry/sl3.h"
@@ -22,16 +23,21 @@ class MotionFilter {
   // The reference: G is the identity, exactly. `normalisation`: N of Esm, which must be that of `roi`.
   void start(const geometry::Rectangle& roi, const Eigen::Matrix3d& normalisation, double stamp);
 
-  // G at `stamp` [s], and how sure that is.
-  MotionPrior predict(double stamp) const;
+  // G at `stamp` [s], and how sure that is. `carried`: the last estimate, moved by what somebody else knows of the motion since; what
+  // remained beside that then goes on, instead of the whole motion.
+  MotionPrior predict(double stamp, const std::optional<Eigen::Matrix3d>& carried = std::nullopt) const;
 
   // An estimate that is believed, of the image at `stamp`, found from `prior`. `learn`: so much is seen of the ROI that its deviation
-  // tells how the target moves.
-  void update(const MotionPrior& prior, const EsmResult& estimate, double stamp, bool learn);
+  // tells how the target moves. `carried`: as it was given for the prediction.
+  void update(const MotionPrior& prior, const EsmResult& estimate, double stamp, bool learn,
+              const std::optional<Eigen::Matrix3d>& carried = std::nullopt);
   // The ROI has been found again: G is known afresh, its velocity is not.
   void restart(const EsmResult& estimate, double stamp);
   // The ROI was not seen: it is no longer expected to go on moving.
-  void stop() { velocity_.setZero(); }
+  void stop() {
+    velocity_.setZero();
+    rest_.setZero();
+  }
 
   const Eigen::Matrix3d& last() const { return last_; }
   double lastStamp() const { return last_stamp_; }
@@ -46,6 +52,7 @@ class MotionFilter {
   Eigen::Matrix3d last_ = Eigen::Matrix3d::Identity();
   double last_stamp_ = 0.0;
   geometry::Vector8d velocity_ = geometry::Vector8d::Zero();  // 1/s
+  geometry::Vector8d rest_ = geometry::Vector8d::Zero();      // 1/s, of what remained beside a motion that was given
   Matrix8d covariance_ = Matrix8d::Zero();                    // of last_
   Matrix8d innovation_ = Matrix8d::Zero();                    // covariance of deviations from predictions
   Matrix8d least_ = Matrix8d::Zero();                         // that innovation_ is never believed to be below

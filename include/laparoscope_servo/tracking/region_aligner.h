@@ -3,10 +3,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <opencv2/core.hpp>
 
 #include "laparoscope_servo/geometry/homography.h"
 #include "laparoscope_servo/image/colour_patch.h"
+#include "laparoscope_servo/image/lens.h"
 #include "laparoscope_servo/image/pyramid.h"
 #include "laparoscope_servo/tracking/esm.h"
 #include "laparoscope_servo/tracking/occlusion_gates.h"
@@ -23,9 +25,10 @@ struct Alignment {
 
 class RegionAligner {
  public:
-  explicit RegionAligner(const TrackerConfig& config);
+  // With a lens images are raw; the ROI and homographies are in rectified pixels.
+  explicit RegionAligner(const TrackerConfig& config, std::shared_ptr<const image::Lens> lens = nullptr);
 
-  // `roi`: whole pixels, inside the image (CV_8UC1 or CV_8UC3). Everything is visible in the reference but its highlights.
+  // `roi`: whole pixels, shown by the image (CV_8UC1 or CV_8UC3). Everything is visible in the reference but its highlights.
   void setReference(const cv::Mat& image, const geometry::Rectangle& roi);
 
   // Starts at `start`. `reach` [px]: by how much a corner may have moved from there without the image's crop being left.
@@ -55,6 +58,7 @@ class RegionAligner {
   int observeStructure(const EsmResult& estimate);
 
   EsmConfig config_;
+  std::shared_ptr<const image::Lens> lens_;
   OcclusionConfig occlusion_;
   Esm esm_;
   OcclusionGates gates_;

@@ -8,10 +8,12 @@
 #include <Eigen/Core>
 #include <memory>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "laparoscope_servo/geometry/homography.h"
+#include "laparoscope_servo/image/lens.h"
 #include "laparoscope_servo/tracking/tracker_config.h"
 
 namespace laparoscope_servo::tracking {
@@ -45,6 +47,7 @@ struct TrackResult {
   bool colour_used = false;                         // false: the image has no colour, the colour gate stands aside
   AreaReport areas;
   bool selected_now = false;                        // this image is the reference
+  bool motion_used = false;                         // the motion that was given led to this estimate
 };
 
 class RegionTracker {
@@ -55,21 +58,29 @@ class RegionTracker {
   RegionTracker(RegionTracker&&) noexcept;
   RegionTracker& operator=(RegionTracker&&) noexcept;
 
+  // From now on images are raw ones, seen through `lens`: the ROI and G are in rectified pixels, of a pinhole camera,
+  // and the lens is put between them and the image where pixels are read. Without one (the default) images are what a
+  // pinhole camera sees. A lens that differs from the one before resets to IDLE, and the next image says so.
+  void setLens(const std::optional<image::Lens>& lens);
+
   // Takes `image` for the reference. Throws std::invalid_argument, with the ROI and what was expected, when the ROI is empty,
   // too small, mostly outside the image or without texture; the tracker then goes on as before.
   TrackResult select(const cv::Mat& image, double stamp, const geometry::Rectangle& roi);
 
-  // Processes the next image. A stamp before the last one, or an image of another size than the reference, resets to IDLE,
-  // with the reason. Throws std::invalid_argument for an image that is empty or of another type than those above; the
-  // tracker then goes on as if the image had not come. Asks for no memory while it tracks, but for a view that it stores now and then.
-  // The result is the tracker's own: it lasts until the next call of select(), track() or reset(), or until the tracker is moved from.
-  const TrackResult& track(const cv::Mat& image, double stamp);
+  // Processes the next image. A stamp before the last one, or an image of another size than the reference, resets to
+  // IDLE, with the reason. Throws std::invalid_argument for an image that is empty or of another type than those above;
+  // the tracker then goes on as if the image had not come. `motion`: where something else than the images, a robot,
+  // says that the tissue has gone: takes pixels of the last image in which the state was TRACKING to pixels of this
+  // one, any scale. It gives a place to start from, beside which only what remains is expected to go on; one that is no
+  // homography, or that leads nowhere, does no harm. Asks for no memory while it tracks, but for a view that it stores now and then. The result
+  // is the tracker's own: it lasts until the next call of select(), track() or reset(), or until the tracker is moved from.
+  const TrackResult& track(const cv::Mat& image, double stamp, const std::optional<Eigen::Matrix3d>& motion = std::nullopt);
 
   // Forgets the ROI.
   void reset();
 
-  // 255 where a pixel of the ROI, as seen in the image that was processed last, is taken for occluded, 0 elsewhere; empty
-  // before the first image. Drawn only when asked for.
+  // 255 where a pixel of the ROI, as seen in the image that was processed last, is taken for occluded, 0 elsewhere;
+  // empty before the first image. Of that image's size and pixels, also with a lens. Drawn only when asked for.
   cv::Mat occlusionMask() const;
 
   bool hasRoi() const;

@@ -107,6 +107,8 @@ class CameraBench {
     infos_.publish(info);
   }
 
+  void publishInfo(const sensor_msgs::CameraInfo& info) { infos_.publish(info); }
+
   // Calls the service in a thread of its own: it answers when an image has come.
   std::future<SelectRoiResponse> select(const geometry::Rectangle& roi) {
     SelectRoi call;

@@ -151,6 +151,43 @@ TEST(FromCorners, TakesCornersToCorners) {
   }
 }
 
+TEST(PixelsFromPlane, TakesEachPointOfThePlaneToWhereItIsSeen) {
+  std::mt19937 random(8);
+  for (int n = 0; n < 50; ++n) {
+    const Eigen::Isometry3d current_T_reference = anyMotion(random);
+    const Eigen::Vector3d normal = anyNormal(random);
+    const Eigen::Matrix3d g = pixelsFromPlane(current_T_reference, normal, 0.08, kCamera);
+    EXPECT_NEAR(g.determinant(), 1.0, 1e-9);
+    for (const Eigen::Vector2d& p : Rectangle{270, 190, 100, 100}.corners()) {
+      const Eigen::Vector3d ray = kCamera.inverseMatrix() * p.homogeneous();
+      const Eigen::Vector3d point = current_T_reference * Eigen::Vector3d(0.08 / normal.dot(ray) * ray);
+      const Eigen::Vector2d seen = (kCamera.matrix() * point).hnormalized();
+      EXPECT_TRUE(geometry::apply(g, p).isApprox(seen, 1e-9));
+    }
+  }
+}
+
+TEST(PixelsFromPlane, MovesThePictureAgainstTheCamera) {
+  // 1 cm to the right, 8 cm in front of the plane: what was in the middle is now 1/8 of the focal length to the left.
+  Eigen::Isometry3d current_T_reference = Eigen::Isometry3d::Identity();
+  current_T_reference.translation().x() = -0.01;
+  const Eigen::Matrix3d g = pixelsFromPlane(current_T_reference, Eigen::Vector3d::UnitZ(), 0.08, kCamera);
+  const Eigen::Vector2d seen = geometry::apply(g, Eigen::Vector2d(kCamera.cx, kCamera.cy));
+  EXPECT_NEAR(seen.x(), kCamera.cx - kCamera.fx / 8.0, 1e-9);
+  EXPECT_NEAR(seen.y(), kCamera.cy, 1e-9);
+}
+
+TEST(PixelsFromPlane, RefusesWhatNoPlaneIsSeenBy) {
+  const Eigen::Vector3d n = Eigen::Vector3d::UnitZ();
+  Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
+  for (const double bad : {0.0, -0.08, kNan})
+    EXPECT_THROW(pixelsFromPlane(motion, n, bad, kCamera), std::invalid_argument);
+  motion.translation().z() = -0.09;
+  EXPECT_THROW(pixelsFromPlane(motion, n, 0.08, kCamera), std::invalid_argument) << "through the plane";
+  motion.translation().z() = kNan;
+  EXPECT_THROW(pixelsFromPlane(motion, n, 0.08, kCamera), std::invalid_argument);
+}
+
 TEST(FromCorners, RecoversTheHomography) {
   std::mt19937 random(6);
   for (int n = 0; n < 100; ++n) {

@@ -2,11 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace laparoscope_servo::skin {
 namespace {
@@ -154,6 +157,119 @@ TEST(IntrinsicsTest, TellOfDistortionThatNobodyCorrects) {
   rectified.set(message);
   rectified.update(kSize, true);
   EXPECT_FALSE(rectified.ignoresDistortion());
+}
+
+sensor_msgs::CameraInfo lensInfo() {
+  sensor_msgs::CameraInfo result = info();
+  result.distortion_model = "plumb_bob";
+  result.D = {-0.3, 0.1, 0.001, -0.001, 0.02};
+  result.R = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
+  return result;
+}
+
+std::string lensErrorOf(const sensor_msgs::CameraInfo& message) {
+  try {
+    lensFromInfo(message, kSize);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(LensFromInfo, TakesEveryMatrixAndModel) {
+  const image::LensParameters lens = lensFromInfo(lensInfo(), kSize).parameters();
+  EXPECT_EQ(lens.distortion, image::Distortion::kPlumbBob);
+  EXPECT_EQ(lens.coefficients, (std::array<double, 8>{-0.3, 0.1, 0.001, -0.001, 0.02, 0.0, 0.0, 0.0}));
+  EXPECT_EQ(lens.raw.fx, 400.0);
+  EXPECT_EQ(lens.rectified.fx, 390.0);
+  EXPECT_EQ(lens.rectified.cy, 230.0);
+  sensor_msgs::CameraInfo message = lensInfo();
+  message.distortion_model = "rational_polynomial";
+  message.D = {0.3, 0.1, 0.001, -0.001, 0.02, 0.6, 0.1, 0.01};
+  EXPECT_EQ(lensFromInfo(message, kSize).parameters().distortion, image::Distortion::kRationalPolynomial);
+  EXPECT_EQ(lensFromInfo(message, kSize).parameters().coefficients[7], 0.01);
+  message.distortion_model = "equidistant";
+  message.D = {0.01, 0.0, 0.0, 0.002};
+  EXPECT_EQ(lensFromInfo(message, kSize).parameters().distortion, image::Distortion::kEquidistant);
+}
+
+TEST(LensFromInfo, TurnsAsTheMessageSays) {
+  sensor_msgs::CameraInfo message = lensInfo();
+  const double c = std::cos(0.1);
+  const double s = std::sin(0.1);
+  message.R = {c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0};
+  const auto rectified = lensFromInfo(message, kSize).toRectified({400.0, 240.0});  // to the right of the centre
+  ASSERT_TRUE(rectified);
+  EXPECT_GT(rectified->y(), message.P[6] + 5.0);
+}
+
+TEST(LensFromInfo, MakesDoWithWhatDriversLeaveOut) {
+  sensor_msgs::CameraInfo message = lensInfo();
+  message.P.fill(0.0);
+  message.R.fill(0.0);
+  message.D.pop_back();
+  const image::LensParameters lens = lensFromInfo(message, kSize).parameters();
+  EXPECT_EQ(lens.rectified.fx, lens.raw.fx);
+  EXPECT_TRUE(lens.rotation.isIdentity());
+  EXPECT_EQ(lens.coefficients[4], 0.0);
+  message.distortion_model.clear();
+  message.D.assign(3, 0.0);
+  EXPECT_EQ(lensErrorOf(message), "");
+  EXPECT_EQ(cameraFromInfo(message, ImageKind::kToRectify, kSize).fx, 400.0);
+}
+
+TEST(LensFromInfo, FollowsBinning) {
+  sensor_msgs::CameraInfo message = lensInfo();
+  message.width = 1280;
+  message.height = 960;
+  message.binning_x = message.binning_y = 2;
+  const image::LensParameters lens = lensFromInfo(message, kSize).parameters();
+  EXPECT_EQ(lens.raw.fx, 200.0);
+  EXPECT_EQ(lens.rectified.fx, 195.0);
+}
+
+TEST(LensFromInfo, RefusesWhatIsNoLensAndSaysWhy) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<std::pair<std::function<void(sensor_msgs::CameraInfo&)>, std::string>> cases = {
+      {[](auto& m) { m.distortion_model = "thin_prism"; }, "distortion_model 'thin_prism'"},
+      {[](auto& m) { m.distortion_model.clear(); }, "distortion_model ''"},
+      {[](auto& m) { m.D.resize(3); }, "3 coefficients, expected 5 for plumb_bob"},
+      {[](auto& m) { m.distortion_model = "rational_polynomial"; }, "5 coefficients, expected 8"},
+      {[](auto& m) { m.distortion_model = "equidistant"; }, "5 coefficients, expected 4"},
+      {[](auto& m) { m.D.resize(100000); }, "100000 coefficients"},
+      {[nan](auto& m) { m.D[1] = nan; }, "coefficient nan"},
+      {[nan](auto& m) { m.K[0] = nan; }, "K: "},
+      {[nan](auto& m) { m.P[6] = nan; }, "P: "},
+      {[nan](auto& m) { m.R[0] = nan; }, "R: "},
+      {[](auto& m) { m.R[0] = 3.0; }, "R: "},
+      {[](auto& m) { m.width = 1920; }, "1920x480, the image has 640x480"},
+  };
+  for (const auto& [spoil, expected] : cases) {
+    sensor_msgs::CameraInfo message = lensInfo();
+    spoil(message);
+    EXPECT_NE(lensErrorOf(message).find("camera_info"), std::string::npos) << expected;
+    EXPECT_NE(lensErrorOf(message).find(expected), std::string::npos) << lensErrorOf(message);
+  }
+}
+
+TEST(LensSourceTest, GivesTheSameLensUntilTheCalibrationChanges) {
+  LensSource source;
+  EXPECT_FALSE(source.lensFor(kSize));
+  EXPECT_NE(source.error().find("no camera_info"), std::string::npos);
+  sensor_msgs::CameraInfo message = lensInfo();
+  source.set(message);
+  const auto lens = source.lensFor(kSize);
+  ASSERT_TRUE(lens);
+  message.header.stamp.sec = 7;
+  source.set(message);
+  EXPECT_EQ(source.lensFor(kSize), lens) << "it would be worked out for every image";
+  EXPECT_FALSE(source.lensFor(cv::Size(320, 240)));
+  EXPECT_NE(source.error(), "");
+  EXPECT_TRUE(source.lensFor(kSize));
+  message.D[0] = std::numeric_limits<double>::quiet_NaN();
+  source.set(message);
+  EXPECT_FALSE(source.lensFor(kSize));
+  EXPECT_NE(source.error().find("nan"), std::string::npos) << source.error();
 }
 
 }  // namespace

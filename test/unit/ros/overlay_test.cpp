@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 namespace laparoscope_servo::skin {
@@ -91,6 +92,30 @@ TEST(Overlay, BearsHomographiesThatCannotBeDrawn) {
   tracking::TrackResult short_report = tracked();
   short_report.areas.occluded.clear();
   EXPECT_EQ(drawOverlay(image(), short_report).at<cv::Vec3b>(130, 170), kGrey);
+}
+
+TEST(Overlay, BendsTheEdgesAsTheLensDoes) {
+  image::LensParameters parameters;
+  parameters.coefficients = {-0.3};
+  parameters.raw = parameters.rectified = {200.0, 200.0, 160.0, 120.0};
+  const image::Lens lens(parameters);
+  tracking::TrackResult result = tracked();
+  result.roi = {40.0, 20.0, 241.0, 201.0};
+  result.g.setIdentity();
+  const cv::Mat picture = drawOverlay(image(), result, &lens);
+  const auto at = [&](double u, double v) {
+    const auto raw = lens.toRaw({u, v});
+    return raw ? picture.at<cv::Vec3b>(static_cast<int>(std::lround(raw->y())), static_cast<int>(std::lround(raw->x())))
+               : cv::Vec3b();
+  };
+  EXPECT_EQ(at(280.0, 120.0), kRed) << "the right edge's middle";
+  EXPECT_EQ(at(280.0, 70.0), kRed);
+  EXPECT_EQ(at(280.0, 40.0), kRed);
+  EXPECT_NE(picture.at<cv::Vec3b>(70, 280), kRed) << "where it would be without the lens";
+  EXPECT_GT(at(100.0, 180.0)[0], 150) << "the occluded area";
+  EXPECT_EQ(at(200.0, 180.0), kGrey);
+  result.g(0, 2) = 1e6;
+  EXPECT_EQ(drawOverlay(image(), result, &lens).size(), image().size());
 }
 
 TEST(Overlay, BearsATinyImage) {

@@ -3,6 +3,7 @@
 #include <diagnostic_msgs/DiagnosticStatus.h>
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <string>
 
 namespace laparoscope_servo::skin {
@@ -121,6 +122,38 @@ TEST(TrackerDiagnosticsTest, TellsWhenTheColourGateStandsAsideAndWhenDistortionI
   diagnostics.fill(1.5, status);
   EXPECT_NE(value(status, "colour gate").find("no colour"), std::string::npos);
   EXPECT_NE(value(status, "lens distortion").find("not corrected"), std::string::npos);
+}
+
+TEST(TrackerDiagnosticsTest, CountsHowOftenTheRobotsMotionWasThere) {
+  TrackerDiagnostics diagnostics(tracking::TrackerConfig(), true);
+  Processed with = processed(State::kTracking);
+  with.motion_wanted = true;
+  with.result.motion_used = true;
+  Processed without = processed(State::kTracking);
+  without.motion_wanted = true;
+  without.motion_error = "tf does not know";
+  for (const Processed& each : {with, with, without, processed(State::kIdle)}) diagnostics.processed(1.0, each, false);
+  DiagnosticStatusWrapper status;
+  diagnostics.fill(1.5, status);
+  EXPECT_EQ(value(status, "robot motion"), "given for 2 of 3 images, used for 2; last missing: tf does not know");
+  DiagnosticStatusWrapper later;
+  diagnostics.fill(2.5, later);
+  EXPECT_EQ(value(later, "robot motion"), "given for 0 of 0 images, used for 0");
+  DiagnosticStatusWrapper off;
+  TrackerDiagnostics(tracking::TrackerConfig()).fill(1.0, off);
+  EXPECT_EQ(value(off, "robot motion"), "not asked for");
+}
+
+TEST(TrackerDiagnosticsTest, SaysWhoTakesTheLensOut) {
+  TrackerDiagnostics diagnostics{tracking::TrackerConfig()};
+  Processed rectified = processed(State::kTracking);
+  image::LensParameters lens;
+  lens.raw = lens.rectified = {1.0, 1.0, 0.0, 0.0};
+  rectified.lens = std::make_shared<const image::Lens>(lens);
+  diagnostics.processed(1.0, rectified, false);
+  DiagnosticStatusWrapper status;
+  diagnostics.fill(1.5, status);
+  EXPECT_EQ(value(status, "lens distortion"), "corrected by the tracker");
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "laparoscope_servo/ros/tracker_offline.h"
 
+#include <camera_calibration_parsers/parse.h>
 #include <cv_bridge/cv_bridge.h>
 #include <gtest/gtest.h>
 #include <laparoscope_servo/AreaSelection.h>
@@ -17,6 +18,7 @@
 #include <vector>
 
 #include "laparoscope_servo/tracking/region_tracker.h"
+#include "support/lens_info.h"
 #include "support/synthetic_sequence.h"
 #include "support/temporary_folder.h"
 
@@ -80,6 +82,18 @@ class TrackerOfflineTest : public testing::Test {
     header.frame_id = "optical";
     header.stamp = ros::Time(static_cast<double>(k) / 25.0);  // as those of a folder
     return header;
+  }
+
+  // Raw images of a lens, and a calibration file of it.
+  void writeRawFolder(const image::Lens& lens, const std::string& calibration) {
+    const test::LensView view(lens, cv::Size(320, 240));
+    const cv::Mat texture = test_support::texture(cv::Size(420, 320));
+    images_.clear();
+    for (const Eigen::Matrix3d& g : test_support::motion(kImages, kRoi, 5.0)) images_.push_back(view(texture, g));
+    writeFolder();
+    options_.parameters.image_kind = ImageKind::kToRectify;
+    ASSERT_TRUE(camera_calibration_parsers::writeCalibration(calibration, "scope",
+                                                             test_support::lensInfo(lens, cv::Size(320, 240))));
   }
 
   test_support::TemporaryFolder in_;
@@ -233,6 +247,51 @@ TEST_F(TrackerOfflineTest, DoesNotOverwriteItsInput) {
   EXPECT_THROW(run(), std::invalid_argument);
   options_.bag.clear();
   EXPECT_EQ(run().images, static_cast<std::size_t>(kImages));
+}
+
+TEST_F(TrackerOfflineTest, RectifiesByACalibrationFile) {
+  for (const image::LensParameters& lens :
+       {test::laparoscope(cv::Size(320, 240), 220.0), test::rational(cv::Size(320, 240), 220.0),
+        test::equidistant(cv::Size(320, 240), 160.0)}) {
+    options_.camera_info = out_.file("scope.yaml");
+    writeRawFolder(image::Lens(lens), options_.camera_info);
+    const OfflineSummary summary = run();
+    EXPECT_EQ(summary.by_state[1], static_cast<std::size_t>(kImages));
+    const std::vector<std::string> table = lines(options_.csv);
+    ASSERT_EQ(table.size(), kImages + 1u);
+    const auto motion = test_support::motion(kImages, kRoi, 5.0);
+    for (int k = 0; k < kImages; ++k) {
+      std::istringstream row(table[static_cast<std::size_t>(k) + 1]);
+      std::vector<double> values;
+      for (std::string cell; std::getline(row, cell, ',');) values.push_back(std::stod(cell));
+      Eigen::Matrix3d g;
+      for (int i = 0; i < 9; ++i) g(i / 3, i % 3) = values[static_cast<std::size_t>(3 + i)];
+      for (const Eigen::Vector2d& corner : kRoi.corners()) {
+        EXPECT_LT((geometry::apply(g, corner) - geometry::apply(motion[static_cast<std::size_t>(k)], corner)).norm(),
+                  0.2);
+      }
+    }
+  }
+}
+
+TEST_F(TrackerOfflineTest, SaysWhatIsMissingToRectify) {
+  writeRawFolder(image::Lens(test::laparoscope(cv::Size(320, 240), 220.0)), out_.file("scope.yaml"));
+  const auto error = [this]() -> std::string {
+    try {
+      run();
+    } catch (const std::exception& e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_NE(error().find("camera_info"), std::string::npos) << error();
+  options_.camera_info = out_.file("none.yaml");
+  EXPECT_NE(error().find("none.yaml"), std::string::npos) << error();
+  options_.camera_info = out_.file("other_size.yaml");
+  ASSERT_TRUE(camera_calibration_parsers::writeCalibration(
+      options_.camera_info, "scope",
+      test_support::lensInfo(image::Lens(test::laparoscope(cv::Size(640, 480), 220.0)), cv::Size(640, 480))));
+  EXPECT_NE(error().find("640x480"), std::string::npos) << error();
 }
 
 }  // namespace

@@ -35,6 +35,9 @@ TEST(DefaultFile, EqualsTheDefaultsOfTheStructs) {
   EXPECT_EQ(file.roi.has_value(), code.roi.has_value());
   EXPECT_EQ(file.image_kind, code.image_kind);
   EXPECT_EQ(file.select_timeout, code.select_timeout);
+  EXPECT_EQ(file.robot_motion.enabled, code.robot_motion.enabled);
+  EXPECT_EQ(file.robot_motion.fixed_frame, code.robot_motion.fixed_frame);
+  EXPECT_EQ(file.robot_motion.depth, code.robot_motion.depth);
   const tracking::TrackerConfig& f = file.tracking;
   const tracking::TrackerConfig& c = code.tracking;
   EXPECT_EQ(f.velocity_damping, c.velocity_damping);
@@ -66,6 +69,10 @@ TEST(DefaultFile, EqualsTheDefaultsOfTheStructs) {
 TEST(DefaultFile, NamesEveryParameter) {
   const ParameterReader file(parametersFromYaml(kDefaults), "/tracker");
   for (const char* path : {"rectified_images",
+                           "rectify",
+                           "robot_motion/enabled",
+                           "robot_motion/fixed_frame",
+                           "robot_motion/depth",
                            "select_timeout",
                            "tracking/velocity_damping",
                            "tracking/min_roi_side",
@@ -120,6 +127,28 @@ TEST(TrackerParametersTest, ReadEveryKindOfValue) {
   EXPECT_EQ(parameters.tracking.esm.levels, 2);
   EXPECT_FALSE(parameters.tracking.esm.robust);
   EXPECT_EQ(parameters.tracking.quality.min_zncc, 0.5);
+}
+
+TEST(TrackerParametersTest, RectifyRawImagesOnly) {
+  XmlRpc::XmlRpcValue tree;
+  tree["rectify"] = true;
+  std::vector<std::string> errors;
+  EXPECT_EQ(readTrackerParameters(tree, "/tracker", errors).image_kind, ImageKind::kToRectify);
+  EXPECT_TRUE(errors.empty()) << errorReport(errors);
+  tree["rectified_images"] = true;
+  EXPECT_TRUE(mentions(errorsOf(tree), "/tracker/rectify")) << errorReport(errorsOf(tree));
+}
+
+TEST(TrackerParametersTest, NameWhatIsWrongWithTheRobotsMotion) {
+  XmlRpc::XmlRpcValue tree;
+  tree["robot_motion"]["enabled"] = true;
+  tree["robot_motion"]["fixed_frame"] = "/aesop_base";
+  tree["robot_motion"]["depth"] = 0.0;
+  tree["robot_motion"]["dept"] = 0.1;
+  const std::vector<std::string> errors = errorsOf(tree);
+  EXPECT_EQ(errors.size(), 3u) << errorReport(errors);
+  for (const char* field : {"fixed_frame", "robot_motion/depth", "robot_motion/dept"})
+    EXPECT_TRUE(mentions(errors, field)) << field;
 }
 
 TEST(TrackerParametersTest, KnowEveryName) {

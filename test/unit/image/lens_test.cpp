@@ -1,0 +1,366 @@
+#include "laparoscope_servo/image/lens.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <opencv2/calib3d.hpp>
+#include <stdexcept>
+
+#include "../../support/synthetic_lens.h"
+#include "laparoscope_servo/image/colour_patch.h"
+#include "laparoscope_servo/image/warp.h"
+
+namespace laparoscope_servo::image {
+namespace {
+
+const cv::Size kSize(640, 480);
+
+std::vector<LensParameters> models() {
+  LensParameters turned = test::rational(kSize, 500.0);
+  turned.rotation = Eigen::AngleAxisd(0.05, Eigen::Vector3d(0.2, 1.0, -0.4).normalized()).toRotationMatrix();
+  return {test::laparoscope(kSize, 500.0), test::rational(kSize, 500.0), test::equidistant(kSize, 300.0), turned};
+}
+
+std::string name(const LensParameters& p) {
+  return "model " + std::to_string(static_cast<int>(p.distortion));
+}
+
+cv::Matx33d matrix(const geometry::PinholeCamera& c) {
+  return {c.fx, 0.0, c.cx, 0.0, c.fy, c.cy, 0.0, 0.0, 1.0};
+}
+
+cv::Matx33d matrix(const Eigen::Matrix3d& m) {
+  return {m(0, 0), m(0, 1), m(0, 2), m(1, 0), m(1, 1), m(1, 2), m(2, 0), m(2, 1), m(2, 2)};
+}
+
+std::vector<double> coefficients(const LensParameters& p) {
+  const std::size_t counts[] = {5, 8, 4};
+  return {p.coefficients.begin(), p.coefficients.begin() + static_cast<long>(counts[static_cast<int>(p.distortion)])};
+}
+
+TEST(Lens, ThereAndBackAgainEndsWhereItBegan) {
+  for (const LensParameters& p : models()) {
+    const Lens lens(p);
+    int seen = 0;
+    for (int v = 0; v < kSize.height; v += 7) {
+      for (int u = 0; u < kSize.width; u += 7) {
+        const auto rectified = lens.toRectified(Eigen::Vector2d(u, v));
+        if (!rectified) continue;
+        ++seen;
+        const auto raw = lens.toRaw(*rectified);
+        ASSERT_TRUE(raw);
+        EXPECT_LT((*raw - Eigen::Vector2d(u, v)).norm(), 1e-5) << name(p) << " at " << u << ", " << v;
+      }
+    }
+    EXPECT_EQ(seen, 69 * 92) << name(p);
+  }
+}
+
+TEST(Lens, BendsAsOpenCvProjectsPoints) {
+  for (const LensParameters& p : models()) {
+    const Lens lens(p);
+    const cv::Matx33d rotation = matrix(Eigen::Matrix3d(p.rotation.transpose()));
+    cv::Vec3d turn;
+    cv::Rodrigues(rotation, turn);
+    std::vector<cv::Point3d> rays;
+    for (int v = 0; v < kSize.height; v += 20) {
+      for (int u = 0; u < kSize.width; u += 20) {
+        rays.emplace_back((u - p.rectified.cx) / p.rectified.fx, (v - p.rectified.cy) / p.rectified.fy, 1.0);
+      }
+    }
+    std::vector<cv::Point2d> raw;
+    if (p.distortion == Distortion::kEquidistant) {
+      cv::fisheye::projectPoints(rays, raw, turn, cv::Vec3d(0.0, 0.0, 0.0), matrix(p.raw), coefficients(p));
+    } else {
+      cv::projectPoints(rays, turn, cv::Vec3d(0.0, 0.0, 0.0), matrix(p.raw), coefficients(p), raw);
+    }
+    for (std::size_t k = 0; k < rays.size(); ++k) {
+      const Eigen::Vector2d rectified(p.rectified.fx * rays[k].x + p.rectified.cx,
+                                      p.rectified.fy * rays[k].y + p.rectified.cy);
+      const auto mine = lens.toRaw(rectified);
+      ASSERT_TRUE(mine) << name(p) << rectified.transpose();
+      EXPECT_NEAR(mine->x(), raw[k].x, 1e-6) << name(p);
+      EXPECT_NEAR(mine->y(), raw[k].y, 1e-6) << name(p);
+    }
+  }
+}
+
+TEST(Lens, StraightensAsOpenCvUndistortsPoints) {
+  for (const LensParameters& p : models()) {
+    const Lens lens(p);
+    std::vector<cv::Point2d> raw, rectified;
+    for (int v = 0; v < kSize.height; v += 20) {
+      for (int u = 0; u < kSize.width; u += 20) raw.emplace_back(u, v);
+    }
+    if (p.distortion == Distortion::kEquidistant) {
+      cv::fisheye::undistortPoints(raw, rectified, matrix(p.raw), coefficients(p), matrix(p.rotation),
+                                   matrix(p.rectified));
+    } else {
+      cv::undistortPoints(raw, rectified, matrix(p.raw), coefficients(p), matrix(p.rotation), matrix(p.rectified),
+                          cv::TermCriteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 200, 1e-12));
+    }
+    for (std::size_t k = 0; k < raw.size(); ++k) {
+      const auto mine = lens.toRectified(Eigen::Vector2d(raw[k].x, raw[k].y));
+      ASSERT_TRUE(mine) << name(p);
+      EXPECT_NEAR(mine->x(), rectified[k].x, 1e-3) << name(p);
+      EXPECT_NEAR(mine->y(), rectified[k].y, 1e-3) << name(p);
+    }
+  }
+}
+
+TEST(Lens, TheLoopOverPixelsFindsTheSamePlaces) {
+  Eigen::Matrix3d g;
+  g << 1.1, 0.05, 60.0, -0.03, 0.95, 40.0, 1e-4, -5e-5, 1.0;
+  for (const LensParameters& p : models()) {
+    const Lens lens(p);
+    const RawWindow window{cv::Point(30, 20), 2.0};
+    const Eigen::Matrix3d rays = lens.raysFromRectified() * g;
+    double worst = 0.0;
+    for (int j = 0; j < 300; j += 13) {
+      const Eigen::Vector3d start = rays.col(1) * j + rays.col(2);
+      const ProjectiveRow row = {static_cast<float>(start[0]), static_cast<float>(rays(0, 0)),
+                                 static_cast<float>(start[1]), static_cast<float>(rays(1, 0)),
+                                 static_cast<float>(start[2]), static_cast<float>(rays(2, 0))};
+      float u[400], v[400];
+      locateRaw(lens.loop(window), row, 0, 400, u, v);
+      for (int i = 0; i < 400; ++i) {
+        const auto raw = lens.toRaw(geometry::apply(g, Eigen::Vector2d(i, j)));
+        ASSERT_TRUE(raw);
+        worst = std::max({worst, std::abs(window.scale * u[i] + window.origin.x - raw->x()),
+                          std::abs(window.scale * v[i] + window.origin.y - raw->y())});
+      }
+    }
+    EXPECT_LT(worst, 1e-3) << name(p);
+  }
+}
+
+TEST(Lens, NothingIsSeenWhereThePolynomialTurnsBack) {
+  // r (1 - 0.5 r^2) grows up to r^2 = 2 / 3 only; a pixel farther out would be seen nearer to the centre again.
+  LensParameters p;
+  p.coefficients = {-0.5};
+  p.raw = p.rectified = {400.0, 400.0, 320.0, 240.0};
+  const Lens lens(p);
+  EXPECT_NEAR(lens.field(), 2.0 / 3.0, 0.01);
+  EXPECT_TRUE(lens.toRaw({320.0 + 0.80 * 400.0, 240.0}));
+  EXPECT_FALSE(lens.toRaw({320.0 + 0.83 * 400.0, 240.0}));
+  EXPECT_FALSE(lens.toRaw({320.0 + 1.40 * 400.0, 240.0})) << "which would fold back to the centre";
+  EXPECT_FALSE(lens.toRectified({320.0 + 0.56 * 400.0, 240.0})) << "beyond the largest radius that is seen";
+  float u[1200], v[1200];
+  const Eigen::Matrix3d& rays = lens.raysFromRectified();
+  const Eigen::Vector3d start = rays * Eigen::Vector3d(0.0, 240.0, 1.0);
+  const ProjectiveRow row = {static_cast<float>(start[0]), static_cast<float>(rays(0, 0)),
+                             static_cast<float>(start[1]), static_cast<float>(rays(1, 0)),
+                             static_cast<float>(start[2]), static_cast<float>(rays(2, 0))};
+  locateRaw(lens.loop({}), row, 0, 1200, u, v);
+  for (int i = 0; i < 1200; ++i) {
+    const bool seen = lens.toRaw(Eigen::Vector2d(i, 240.0)).has_value();
+    EXPECT_EQ(std::isfinite(u[i]) && std::isfinite(v[i]), seen) << i;
+  }
+}
+
+TEST(Lens, APoleEndsTheField) {
+  LensParameters p;
+  p.distortion = Distortion::kRationalPolynomial;
+  p.coefficients = {0.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0};  // r / (1 - r^2)
+  p.raw = p.rectified = {400.0, 400.0, 320.0, 240.0};
+  EXPECT_LT(Lens(p).field(), 1.0);
+  EXPECT_GT(Lens(p).field(), 0.95);
+}
+
+TEST(Lens, RefusesWhatIsNoLens) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto error = [](const LensParameters& p) -> std::string {
+    try {
+      const Lens lens(p);
+    } catch (const std::invalid_argument& e) {
+      return e.what();
+    }
+    return "";
+  };
+  LensParameters p = test::laparoscope(kSize, 500.0);
+  EXPECT_EQ(error(p), "");
+  p.coefficients[1] = nan;
+  EXPECT_NE(error(p).find("coefficient nan"), std::string::npos) << error(p);
+  p = test::laparoscope(kSize, 500.0);
+  p.raw.fx = 0.0;
+  EXPECT_NE(error(p).find("K: "), std::string::npos) << error(p);
+  p = test::laparoscope(kSize, 500.0);
+  p.rectified.fy = nan;
+  EXPECT_NE(error(p).find("P: "), std::string::npos) << error(p);
+  p = test::laparoscope(kSize, 500.0);
+  p.rotation.setZero();
+  EXPECT_NE(error(p).find("R: "), std::string::npos) << error(p);
+}
+
+TEST(Lens, NoPointIsSeenFromNowhere) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const LensParameters& p : models()) {
+    const Lens lens(p);
+    EXPECT_FALSE(lens.toRaw({nan, 3.0}));
+    EXPECT_FALSE(lens.toRectified({nan, 3.0}));
+    EXPECT_FALSE(lens.toRectified({1e300, 1e300}));
+    EXPECT_FALSE(lens.toRaw({1e12, 0.0}));
+    const geometry::Quadrilateral none = {Eigen::Vector2d(nan, nan), {nan, nan}, {nan, nan}, {nan, nan}};
+    EXPECT_TRUE(rawBox(lens, none, 10.0).empty());
+  }
+}
+
+TEST(RawBox, HoldsEveryPixelOfTheQuadrilateral) {
+  const geometry::Quadrilateral corners = {Eigen::Vector2d(20, 30), {600, 60}, {580, 440}, {60, 400}};
+  const Eigen::Matrix3d g = geometry::fromCorners(geometry::Rectangle{0, 0, 101, 101}.corners(), corners);
+  for (const LensParameters& p : models()) {
+    const Lens lens(p);
+    const cv::Rect box = rawBox(lens, corners, 1.5);
+    for (int j = 0; j <= 100; ++j) {
+      for (int i = 0; i <= 100; ++i) {
+        const auto raw = lens.toRaw(geometry::apply(g, Eigen::Vector2d(i, j)));
+        ASSERT_TRUE(raw);
+        EXPECT_TRUE(raw->x() >= box.x && raw->y() >= box.y && raw->x() <= box.br().x - 1 && raw->y() <= box.br().y - 1);
+      }
+    }
+  }
+}
+
+TEST(RectifiedMap, FollowsTheLens) {
+  for (const LensParameters& p : models()) {
+    const Lens lens(p);
+    const cv::Rect box(101, 53, 250, 211);
+    const cv::Mat2f map = rectifiedMap(lens, box);
+    for (int j = 0; j < box.height; j += 3) {
+      for (int i = 0; i < box.width; i += 3) {
+        const auto exact = lens.toRectified(Eigen::Vector2d(box.x + i, box.y + j));
+        ASSERT_TRUE(exact);
+        EXPECT_NEAR(map(j, i)[0], exact->x(), 0.25);
+        EXPECT_NEAR(map(j, i)[1], exact->y(), 0.25);
+      }
+    }
+  }
+}
+
+class LensWarp : public ::testing::Test {
+ protected:
+  LensWarp() {
+    cv::randu(image_, 0.0f, 255.0f);
+    cv::GaussianBlur(image_, image_, cv::Size(), 2.0);
+    image_.convertTo(colour_, CV_8U);
+    cv::cvtColor(colour_, colour_, cv::COLOR_GRAY2BGR);
+    g_ << 1.05, 0.02, 90.3, -0.04, 1.0, 70.7, 1e-4, 2e-5, 1.0;
+  }
+
+  cv::Mat1f image_{kSize};
+  cv::Mat colour_;
+  Eigen::Matrix3d g_;
+};
+
+TEST_F(LensWarp, IsThePlainOneWhenAllCoefficientsAreZero) {
+  for (const Distortion model : {Distortion::kPlumbBob, Distortion::kRationalPolynomial}) {
+    LensParameters p;
+    p.distortion = model;
+    p.raw = p.rectified = {500.0, 500.0, 320.0, 240.0};
+    const Lens lens(p);
+    Patch plain, plain_valid, patch, valid;
+    for (Patch* each : {&plain, &plain_valid, &patch, &valid}) each->resize(300, 170);
+    EXPECT_TRUE(warpBilinear(image_, g_, plain, plain_valid));
+    EXPECT_TRUE(warpBilinear(image_, g_, lens, {}, patch, valid));
+    for (int j = 0; j < patch.height(); ++j) {
+      for (int i = 0; i < patch.width(); ++i) {
+        EXPECT_NEAR(patch(j, i), plain(j, i), 0.02);
+        EXPECT_EQ(valid(j, i), plain_valid(j, i));
+      }
+    }
+    ColourPatch near, plain_near;
+    warpNearest(colour_, g_, cv::Size(300, 170), plain_near);
+    warpNearest(colour_, g_, lens, cv::Size(300, 170), near);
+    EXPECT_EQ(cv::countNonZero(near.valid != plain_near.valid), 0);
+    EXPECT_LT(cv::countNonZero(near.green != plain_near.green), 300 * 170 / 500)
+        << "but for pixels half-way between two";
+  }
+}
+
+TEST_F(LensWarp, ShowsWhatOpenCvRemaps) {
+  for (const LensParameters& p : models()) {
+    const Lens lens(p);
+    cv::Mat1f u(170, 300), v(170, 300), expected;
+    for (int j = 0; j < u.rows; ++j) {
+      for (int i = 0; i < u.cols; ++i) {
+        const auto raw = lens.toRaw(geometry::apply(g_, Eigen::Vector2d(i, j)));
+        ASSERT_TRUE(raw);
+        u(j, i) = static_cast<float>(raw->x());
+        v(j, i) = static_cast<float>(raw->y());
+      }
+    }
+    cv::remap(image_, expected, u, v, cv::INTER_LINEAR);
+    cv::Mat1f patch(u.size()), valid(u.size());
+    EXPECT_TRUE(warpBilinear(image_, g_, lens, {}, patch, valid));
+    EXPECT_LT(cv::norm(patch, expected, cv::NORM_INF), 1.5) << name(p) << ": OpenCV interpolates in steps of 1/32 px";
+    // A crop knows its place.
+    const cv::Rect crop(40, 30, 560, 420);
+    cv::Mat1f of_crop(u.size()), crop_valid(u.size());
+    EXPECT_TRUE(warpBilinear(image_(crop), g_, lens, {crop.tl(), 1.0}, of_crop, crop_valid));
+    EXPECT_LT(cv::norm(patch, of_crop, cv::NORM_INF), 0.02) << name(p);
+    const cv::Mat1f sharp = rectify(image_(crop), g_, lens, {crop.tl(), 1.0}, u.size());
+    EXPECT_LT(cv::norm(patch, sharp, cv::NORM_L2) / std::sqrt(sharp.total()), 1.0) << name(p);
+    ColourPatch near;
+    warpNearest(colour_, g_, lens, u.size(), near);
+    EXPECT_EQ(cv::countNonZero(near.valid), static_cast<int>(u.total()));
+    cv::Mat red;
+    cv::Mat planes[3];
+    cv::split(colour_, planes);
+    cv::remap(planes[2], red, u, v, cv::INTER_NEAREST);
+    EXPECT_LT(cv::countNonZero(near.red != red), static_cast<int>(u.total()) / 20) << "OpenCV rounds to 1/32 px first";
+  }
+}
+
+TEST_F(LensWarp, MarksWhatIsOutsideTheImageOrTheField) {
+  LensParameters p;
+  p.coefficients = {-0.5};
+  p.raw = p.rectified = {400.0, 400.0, 320.0, 240.0};
+  const Lens lens(p);
+  cv::Mat1f patch(480, 1300), valid(480, 1300);
+  Eigen::Matrix3d left = Eigen::Matrix3d::Identity();
+  left(0, 2) = -300.0;
+  EXPECT_FALSE(warpBilinear(image_, left, lens, {}, patch, valid));
+  ColourPatch near;
+  warpNearest(colour_, left, lens, patch.size(), near);
+  for (int j = 0; j < patch.rows; j += 5) {
+    for (int i = 0; i < patch.cols; i += 5) {
+      const auto raw = lens.toRaw(Eigen::Vector2d(i - 300.0, j));
+      const bool in = raw && raw->x() > 0.01 && raw->y() > 0.01 && raw->x() < 638.99 && raw->y() < 478.99;
+      if (raw && !in && raw->x() > -1.0 && raw->y() > -1.0 && raw->x() < 640.0 && raw->y() < 480.0)
+        continue;  // on the border
+      EXPECT_EQ(valid(j, i), in ? 1.0f : 0.0f) << i << ", " << j;
+      EXPECT_EQ(near.valid(j, i), in ? 255 : 0) << i << ", " << j;
+    }
+  }
+}
+
+TEST(DrawMask, ShowsTheMaskWhereTheImageShowsTheRegion) {
+  cv::Mat1b mask(60, 80, static_cast<unsigned char>(0));
+  mask(cv::Rect(0, 0, 40, 60)).setTo(255);
+  Eigen::Matrix3d g;
+  g << 1.2, 0.1, 200.0, -0.1, 1.1, 150.0, 0.0, 1e-4, 1.0;
+  const cv::Rect window(150, 100, 220, 200);
+  for (const LensParameters& p : models()) {
+    const Lens lens(p);
+    cv::Mat1b drawn;
+    drawMask(mask, g, &lens, window, drawn);
+    int compared = 0;
+    for (int v = 0; v < window.height; ++v) {
+      for (int u = 0; u < window.width; ++u) {
+        const auto rectified = lens.toRectified(Eigen::Vector2d(window.x + u, window.y + v));
+        ASSERT_TRUE(rectified);
+        const Eigen::Vector2d at = geometry::apply(g.inverse(), *rectified);
+        const auto near = [](double x, double border) { return std::abs(x - border) < 1.0; };
+        if (near(at.x(), 0.0) || near(at.x(), 39.5) || near(at.y(), 0.0) || near(at.y(), 59.5)) continue;
+        const bool inside = at.x() > 0.0 && at.x() < 39.5 && at.y() > 0.0 && at.y() < 59.5;
+        EXPECT_EQ(drawn(v, u), inside ? 255 : 0);
+        compared += inside ? 1 : 0;
+      }
+    }
+    EXPECT_GT(compared, 500);
+  }
+}
+
+}  // namespace
+}  // namespace laparoscope_servo::image
