@@ -28,6 +28,7 @@ constexpr double kSlowest = 0.9;         // steps that shrink by less do not con
 constexpr double kCoarseAccuracy = 0.1;  // px of the level, enough for the next finer one
 constexpr int kPatience = 10;            // iterations on levels that are reached from a coarser one, for the steps to become short
 constexpr double kFar = 0.5;             // px of the level, a step after which the region may still be elsewhere
+constexpr int kHurry = 2;                // iterations on the first level for the steps to become short, or the region is far
 constexpr int kShifts = 4;               // first steps on a coarse level, if far
 constexpr double kSameLight = 0.5;       // of the residual's scale, for its mean
 constexpr int kTrials = 8;               // iterations with the light of the start, if far
@@ -421,7 +422,7 @@ EsmStatus Esm::alignLevel(const image::RegionPyramid& current, int l, bool first
     if (status != EsmStatus::kMaxIterations) return status;
   }
   if (light_known_ || result.last_step <= kFar * levels_[l].scale) {
-    const EsmStatus status = settle(current, l, 0, prior, result);
+    const EsmStatus status = settle(current, l, kHurry, prior, result);
     if (status != EsmStatus::kMaxIterations) return status;
   }
   result.state = start.state;
