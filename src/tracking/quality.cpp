@@ -21,7 +21,7 @@ struct Tolerance {
 constexpr Tolerance kTracking = {2.0, 0.10, 2.0, 1.0};
 constexpr Tolerance kSearching = {1.5, 0.05, 1.5, 0.3};
 
-constexpr double kMaxGainChange = 2.0;  // between the last estimate that was believed and one that a search has found
+constexpr double kMaxGainChange = 1.5;  // between the last estimate that was believed and one that a search has found
 
 std::string text(const char* what, double value, const char* limit, double bound) {
   std::ostringstream stream;

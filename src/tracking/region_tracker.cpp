@@ -8,6 +8,7 @@
 
 #include "laparoscope_servo/geometry/sl3.h"
 #include "laparoscope_servo/image/warp.h"
+#include "laparoscope_servo/geometry/sl3.h"
 #include "laparoscope_servo/tracking/feature_search.h"
 #include "laparoscope_servo/tracking/keyframes.h"
 #include "laparoscope_servo/tracking/motion_filter.h"
@@ -27,6 +28,8 @@ constexpr double kKeyframeZncc = 0.85;
 // px, by how much a corner is searched for around its prediction: so many times what is usual, and never less than this.
 constexpr double kReach = 4.0;
 constexpr double kLeastReach = 12.0;
+// Of the ROI's diagonal: how far a region that has been found may have gone by the next image, its motion being unknown.
+constexpr double kUnknownMotion = 0.15;
 constexpr double kSearchReach = 0.25;  // of the ROI's larger side, when it has been lost
 
 std::string roiText(const geometry::Rectangle& roi) {
@@ -86,6 +89,7 @@ class RegionTracker::Implementation {
   Attempt search(const cv::Mat& image);
   std::vector<Eigen::Matrix3d> searchCoarsely(const cv::Mat& image);
   std::string doubtWhatWasFound(const Attempt& found);
+  Eigen::Matrix3d expectedCandidate() const { return geometry::normaliseDeterminant(candidate_.g * candidate_step_); }
   void keepView(const cv::Mat& image, const Attempt& seen);
   void decide(const Attempt& best, const MotionPrior& prior, double stamp);
   const TrackResult& report(const Attempt& attempt);
@@ -108,6 +112,7 @@ class RegionTracker::Implementation {
   TrackRecord record_;
   int confirmations_ = 0;
   EsmState candidate_;                 // while searching: what is being confirmed
+  Eigen::Matrix3d candidate_step_ = Eigen::Matrix3d::Identity();  // by which it came from the image before
   unsigned search_turn_ = 0;           // images searched since the ROI was lost
   TrackResult result_;                 // of the last image
 };
@@ -288,7 +293,11 @@ RegionTracker::Implementation::Attempt RegionTracker::Implementation::search(con
   };
   const std::optional<Eigen::Matrix3d> moved = carried_;
   carried_.reset();
-  if (confirmations_ > 0 && tryAt(candidate_)) return best;
+  if (confirmations_ > 0) {
+    EsmState start = candidate_;
+    start.g = expectedCandidate();
+    if (tryAt(start)) return best;
+  }
   if (moved) {
     carried_ = moved;
     if (tryEach({*moved})) return best;
@@ -371,10 +380,16 @@ void RegionTracker::Implementation::decide(const Attempt& best, const MotionPrio
     return;
   }
   if (state_ != State::kTracking) {
-    // False fits do not come back to the same place.
-    const double apart = confirmations_ == 0 ? 0.0 : farthestCorner(candidate_.g, e.esm.state.g, aligner_.roi());
-    const bool agrees = apart <= allowedJump(record_, quality, aligner_.roi(), 0.0, e.esm.corner_error);
-    confirmations_ = agrees ? confirmations_ + 1 : 1;
+    // False fits do not come back to the same place, nor go on as they went; the target may have been moving all the time.
+    if (confirmations_ > 0) {
+      const double apart = farthestCorner(expectedCandidate(), e.esm.state.g, aligner_.roi());
+      const double share = confirmations_ == 1 ? kUnknownMotion : 0.0;
+      const double unknown = share * std::hypot(aligner_.roi().width, aligner_.roi().height);
+      const double allowed = allowedJump(record_, quality, aligner_.roi(), 0.0, e.esm.corner_error);
+      if (!(apart <= std::max(allowed, unknown))) confirmations_ = 0;
+    }
+    candidate_step_ = confirmations_ > 0 ? Eigen::Matrix3d(candidate_.g.inverse() * e.esm.state.g) : Eigen::Matrix3d::Identity();
+    ++confirmations_;
     candidate_ = e.esm.state;
     if (confirmations_ < quality.confirmations) return;
     state_ = State::kTracking;
