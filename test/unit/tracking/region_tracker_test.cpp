@@ -132,6 +132,29 @@ TEST_F(RegionTrackerTest, SaysSearchingThenLostWhenTheViewIsGoneAndComesBackConf
   EXPECT_LT(test::cornerDistance(r.g, elsewhere, kRoi), 0.5);
 }
 
+// It has gone on while nobody saw it, and goes on while it is being confirmed.
+TEST_F(RegionTrackerTest, ComesBackWhileItIsMoving) {
+  tracker_.select(test::view(scene_, Eigen::Matrix3d::Identity(), 1.0, 0.0, 2.0, 1), 0.0, kRoi);
+  const cv::Mat smoke(kSize, CV_8UC3, cv::Scalar(120, 120, 120));
+  const auto at = [](int frame) {
+    Eigen::Matrix3d g = Eigen::Matrix3d::Identity();
+    g(0, 2) = -40.0 + 9.0 * std::max(0, frame - 20);
+    return g;
+  };
+  int frame = 1;
+  for (; frame <= 20; ++frame) tracker_.track(test::view(scene_, Eigen::Matrix3d::Identity(), 1.0, 0.0, 2.0, frame), 0.04 * frame);
+  for (; frame <= 25; ++frame) ASSERT_NE(tracker_.track(smoke, 0.04 * frame).state, State::kTracking);
+  int seen = 0;
+  for (; seen < 6; ++seen, ++frame) {
+    const TrackResult r = tracker_.track(test::view(scene_, at(frame), 1.0, 0.0, 2.0, frame), 0.04 * frame);
+    if (r.state != State::kTracking) continue;
+    EXPECT_LT(test::cornerDistance(r.g, at(frame), kRoi), 0.5);
+    break;
+  }
+  EXPECT_LT(seen, 6);
+  EXPECT_GE(seen, 2);  // three images in a row
+}
+
 TEST_F(RegionTrackerTest, OtherTissueIsNotTakenForTheRegion) {
   select();
   const cv::Mat other = test::tissue(kSize, 77);
