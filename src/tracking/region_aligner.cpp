@@ -139,7 +139,9 @@ Alignment RegionAligner::align(const cv::Mat& image, const EsmState& start, cons
   }
   result.esm.iterations = iterations;
   if (usable(result.esm)) {
+    const EsmLevel& level = esm_.level(0);
     result.visible_fraction = gates_.visibleFraction();
+    if (!level.all_valid) result.share_in_image = cv::mean(level.valid.view())[0];
     result.zncc = gates_.correlation();
   }
   return result;

@@ -85,8 +85,8 @@ class RegionTracker::Implementation {
   geometry::Rectangle checkedRoi(const cv::Mat& image, const geometry::Rectangle& roi) const;
   bool shows(const cv::Mat& image, const geometry::Rectangle& roi) const;
   std::optional<Eigen::Matrix3d> carriedBy(const std::optional<Eigen::Matrix3d>& motion) const;
-  Attempt attempt(const cv::Mat& image, const EsmState& start, const MotionPrior* prior);
-  Attempt search(const cv::Mat& image);
+  Attempt attempt(const cv::Mat& image, double stamp, const EsmState& start, const MotionPrior* prior);
+  Attempt search(const cv::Mat& image, double stamp);
   std::vector<Eigen::Matrix3d> searchCoarsely(const cv::Mat& image);
   std::string doubtWhatWasFound(const Attempt& found);
   Eigen::Matrix3d expectedCandidate() const { return geometry::normaliseDeterminant(candidate_.g * candidate_step_); }
@@ -222,17 +222,17 @@ const TrackResult& RegionTracker::Implementation::track(const cv::Mat& image, do
   if (state_ == State::kTracking) {
     EsmState start = last_;
     start.g = prior.predicted;
-    best = attempt(image, start, &prior);
+    best = attempt(image, stamp, start, &prior);
     if (carried_ && !best.doubt.empty()) {
       // A robot that is wrong must not lose what is found without it; what was seen where it led says nothing.
       carried_.reset();
       aligner_.startAfresh();
       prior = filter_.predict(stamp);
       start.g = prior.predicted;
-      best = attempt(image, start, &prior);
+      best = attempt(image, stamp, start, &prior);
     }
   } else {
-    best = search(image);
+    best = search(image, stamp);
   }
   decide(best, prior, stamp);
   keepView(image, best);
@@ -253,7 +253,8 @@ std::optional<Eigen::Matrix3d> RegionTracker::Implementation::carriedBy(
 }
 
 // With a prior when the ROI was tracked until the image before; without when it is searched for.
-RegionTracker::Implementation::Attempt RegionTracker::Implementation::attempt(const cv::Mat& image, const EsmState& start,
+RegionTracker::Implementation::Attempt RegionTracker::Implementation::attempt(const cv::Mat& image, double stamp,
+                                                                              const EsmState& start,
                                                                               const MotionPrior* prior) {
   const geometry::Rectangle& roi = aligner_.roi();
   const double reach = prior != nullptr ? std::max(kLeastReach, kReach * record_.innovation())
@@ -265,9 +266,11 @@ RegionTracker::Implementation::Attempt RegionTracker::Implementation::attempt(co
   e.predicted = start.g;
   e.from_track = prior != nullptr;
   e.last_gain = last_.gain;
+  e.unseen = stamp - filter_.lastStamp();
   e.record = record_;
   e.esm = found.esm;
   e.visible_fraction = found.visible_fraction;
+  e.in_image = found.share_in_image;
   e.zncc = found.zncc;
   result.doubt = found.in_image ? doubt(e, config_.quality) : "the ROI is outside the image";
   return result;
@@ -275,11 +278,11 @@ RegionTracker::Implementation::Attempt RegionTracker::Implementation::attempt(co
 
 // What the last image suggested comes first, then where the ROI was last seen, then what points suggest, or, in turn with them,
 // what correlates anywhere in the image: one of both an image, so that the time is bounded.
-RegionTracker::Implementation::Attempt RegionTracker::Implementation::search(const cv::Mat& image) {
+RegionTracker::Implementation::Attempt RegionTracker::Implementation::search(const cv::Mat& image, double stamp) {
   Attempt best;
   const auto tryAt = [&](const EsmState& start) {
     aligner_.startAfresh();
-    best = attempt(image, start, nullptr);
+    best = attempt(image, stamp, start, nullptr);
     if (best.doubt.empty()) best.doubt = doubtWhatWasFound(best);
     return best.doubt.empty();
   };

@@ -20,6 +20,7 @@ struct Alignment {
   EsmResult esm;                  // iterations: of all alignments together
   bool in_image = true;           // false: the ROI is expected outside the image, nothing was aligned
   double visible_fraction = 0.0;  // 0 to 1, share of the ROI's pixels that were used
+  double share_in_image = 1.0;    // 0 to 1, of the ROI's pixels
   double zncc = 0.0;              // see OcclusionGates::correlation
 };
 

@@ -39,6 +39,8 @@ TEST(Doubt, NamesEachFlawByItself) {
       {"moving nan", "moving", [=](Evidence& e) { e.esm.status = EsmStatus::kMaxIterations; e.esm.last_step = nan; }},
       {"covered", "visible", [](Evidence& e) { e.visible_fraction = 0.05; }},
       {"covered nan", "visible", [=](Evidence& e) { e.visible_fraction = nan; }},
+      {"mostly covered", "visible fraction of what is in the image", [](Evidence& e) { e.visible_fraction = 0.14; }},
+      {"in image nan", "visible", [=](Evidence& e) { e.visible_fraction = e.in_image = nan; }},
       {"folded", "convex", [](Evidence& e) { e.esm.state.g(0, 0) = -1.0; }},
       {"nan", "convex", [=](Evidence& e) { e.esm.state.g(0, 0) = nan; }},
       {"large", "area", [](Evidence& e) { e.esm.state.g(0, 0) = e.esm.state.g(1, 1) = 3.0; }},
@@ -76,6 +78,26 @@ TEST(Doubt, AsksMoreOfASearch) {
     e.from_track = false;
     EXPECT_NE(doubt(e, QualityConfig()).find(flaw.word), std::string::npos) << flaw.name;
   }
+}
+
+// Of a ROI that has left the image by half, less has to be visible.
+TEST(Doubt, WhatIsOutsideTheImageIsNotCovered) {
+  Evidence e = good();
+  e.visible_fraction = 0.14;
+  EXPECT_NE(doubt(e, QualityConfig()), "");
+  e.in_image = 0.5;
+  EXPECT_EQ(doubt(e, QualityConfig()), "");
+}
+
+TEST(Doubt, TheLightMayChangeMoreTheLongerItHasNotBeenSeen) {
+  Evidence e = good();
+  e.from_track = false;
+  e.esm.state.gain = 1.8 * e.last_gain;
+  EXPECT_NE(doubt(e, QualityConfig()).find("gain"), std::string::npos);
+  e.unseen = 1.0;
+  EXPECT_EQ(doubt(e, QualityConfig()), "");
+  e.esm.state.gain = e.last_gain / 1.8;
+  EXPECT_EQ(doubt(e, QualityConfig()), "");
 }
 
 TEST(Doubt, WhatIsTooBadDependsOnTheRecord) {
