@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <opencv2/imgproc.hpp>
 
 #include "laparoscope_servo/tracking/detail.h"
@@ -55,7 +56,11 @@ double farthestCorner(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b, const 
   const geometry::Quadrilateral p = geometry::apply(a, roi.corners());
   const geometry::Quadrilateral q = geometry::apply(b, roi.corners());
   double distance = 0.0;
-  for (int k = 0; k < 4; ++k) distance = std::max(distance, (p[k] - q[k]).norm());
+  for (int k = 0; k < 4; ++k) {
+    const double of_corner = (p[k] - q[k]).norm();
+    if (!std::isfinite(of_corner)) return std::numeric_limits<double>::infinity();
+    distance = std::max(distance, of_corner);
+  }
   return distance;
 }
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "../../support/synthetic_tissue.h"
 
 namespace laparoscope_servo::tracking {
@@ -22,6 +24,15 @@ class RegionAlignerTest : public ::testing::Test {
     return aligner;
   }
 };
+
+TEST(FarthestCorner, IsInfiniteWhereThereIsNoImage) {
+  Eigen::Matrix3d shift = Eigen::Matrix3d::Identity();
+  shift.topRightCorner<2, 1>() << 3.0, -4.0;
+  EXPECT_NEAR(farthestCorner(Eigen::Matrix3d::Identity(), shift, kRoi), 5.0, 1e-12);
+  Eigen::Matrix3d through_infinity = Eigen::Matrix3d::Identity();
+  through_infinity(2, 0) = -1.0 / 150.0;  // the line x = 150 crosses the ROI
+  EXPECT_EQ(farthestCorner(Eigen::Matrix3d::Identity(), through_infinity, kRoi), std::numeric_limits<double>::infinity());
+}
 
 TEST_F(RegionAlignerTest, FindsTheMotionInWhateverChannels) {
   const Eigen::Matrix3d truth = test::randomHomography(kRoi, 3.0, rng_);
