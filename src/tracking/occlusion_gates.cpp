@@ -17,11 +17,15 @@ constexpr int kSamples = 14 * 14;
 
 LAPAROSCOPE_SERVO_CLONES
 void combine(const unsigned char* __restrict bright, const unsigned char* __restrict bright_reference,
-             const unsigned char* __restrict valid, int count, float* __restrict usable) {
+             const unsigned char* __restrict valid, int count, unsigned char* __restrict usable) {
 #pragma omp simd
-  for (int i = 0; i < count; ++i) {
-    usable[i] = static_cast<float>(static_cast<int>((bright[i] | bright_reference[i] | (valid[i] ^ 255)) == 0));
-  }
+  for (int i = 0; i < count; ++i) usable[i] = static_cast<unsigned char>(valid[i] & ~(bright[i] | bright_reference[i]));
+}
+
+LAPAROSCOPE_SERVO_CLONES
+void toWeights(const unsigned char* __restrict usable, int count, float* __restrict weight) {
+#pragma omp simd
+  for (int i = 0; i < count; ++i) weight[i] = static_cast<float>(usable[i] & 1);
 }
 
 LAPAROSCOPE_SERVO_CLONES
@@ -41,6 +45,7 @@ OcclusionGates::OcclusionGates(const OcclusionConfig& config, int saturation)
     : config_(config),
       saturation_(saturation),
       reference_(config.colour, config.bins),
+      clipped_reference_(config.colour, config.bins),
       current_(config.colour, config.bins) {}
 
 void OcclusionGates::setReference(const image::ColourPatch& patch, const cv::Size& size) {
@@ -49,6 +54,7 @@ void OcclusionGates::setReference(const image::ColourPatch& patch, const cv::Siz
   samples_ = image::AreaGrid(patch.size().width, patch.size().height, config_.rows, config_.columns);
   reference_has_colour_ = patch.has_colour && config_.colour != ColourGate::kNone;
   if (reference_has_colour_) reference_.compute(patch, samples_);
+  clipped_reference_ = reference_;
   markSaturated(patch, reference_saturated_);
   usable_.resize(size.width, size.height);
   areas_.resize(size.width);
@@ -66,11 +72,14 @@ void OcclusionGates::markSaturated(const image::ColourPatch& patch, cv::Mat1b& m
 // From the samples to all pixels.
 void OcclusionGates::spread(const cv::Mat1b& saturated, const cv::Mat1b& valid) {
   row_.resize(samples_.width());
+  usable_samples_.create(samples_.height(), samples_.width());
   for (int j = 0; j < samples_.height(); ++j) {
+    unsigned char* const usable = usable_samples_.ptr<unsigned char>(j);
+    combine(saturated.ptr<unsigned char>(j), reference_saturated_.ptr<unsigned char>(j), valid.ptr<unsigned char>(j),
+            samples_.width(), usable);
     float* const first = usable_.row(j * step_);
     float* const samples = step_ == 1 ? first : row_.data();
-    combine(saturated.ptr<unsigned char>(j), reference_saturated_.ptr<unsigned char>(j), valid.ptr<unsigned char>(j),
-            samples_.width(), samples);
+    toWeights(usable, samples_.width(), samples);
     if (step_ == 1) continue;
     for (int i = 0; i < samples_.width(); ++i) {
       std::fill(first + i * step_, first + std::min((i + 1) * step_, grid_.width()), samples[i]);
@@ -92,6 +101,21 @@ void OcclusionGates::observeColour(const image::ColourPatch& patch) {
   areaDistances(reference_, current_, samples_, config_.bins, distances_);
   for (int area = 0; area < grid_.count(); ++area) {
     colour_rejects_[area] = distances_[area] > static_cast<float>(config_.threshold);  // d > tau_b; false for NaN
+  }
+  if (config_.colour == ColourGate::kNormalised) forgiveClipping();
+}
+
+// More light clips what was bright already, which changes its colour. Areas that differ are compared again without what is saturated in
+// image or reference, if half of them is left.
+void OcclusionGates::forgiveClipping() {
+  if (std::find(colour_rejects_.begin(), colour_rejects_.end(), 1) == colour_rejects_.end()) return;
+  current_.count(usable_samples_, samples_);
+  clipped_reference_.count(usable_samples_, samples_);
+  areaDistances(clipped_reference_, current_, samples_, config_.bins, clipped_distances_);
+  for (int area = 0; area < grid_.count(); ++area) {
+    if (!(clipped_distances_[area] <= static_cast<float>(config_.threshold))) continue;  // also where there is too little to compare
+    colour_rejects_[area] = 0;
+    distances_[area] = std::min(distances_[area], clipped_distances_[area]);
   }
 }
 

@@ -30,6 +30,8 @@ class ColourHistograms {
 
   // `patch` has colour and the grid's size; pixels with valid = 0 do not count.
   void compute(const image::ColourPatch& patch, const image::AreaGrid& grid);
+  // Counts the pixels of the last patch again, this time where `mask` is 255; it is 0 elsewhere.
+  void count(const cv::Mat1b& mask, const image::AreaGrid& grid);
 
   // The area's histogram, eq. (1), `bins` numbers that sum to 1 when pixels(area) > 0.
   const float* histogram(int area) const { return histograms_.data() + static_cast<std::size_t>(area) * bins_; }
@@ -40,7 +42,8 @@ class ColourHistograms {
   ColourGate mode_;
   int bins_;
   std::vector<int> counts_;  // like histograms_
-  std::vector<int> bin_of_;  // of a row
+  std::vector<int> row_;     // of bins
+  cv::Mat1b bin_of_;         // per pixel
   std::vector<float> histograms_;
   std::vector<int> pixels_;
 };

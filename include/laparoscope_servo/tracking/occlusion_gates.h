@@ -55,20 +55,24 @@ class OcclusionGates {
 
  private:
   void markSaturated(const image::ColourPatch& patch, cv::Mat1b& mask) const;
+  void forgiveClipping();
   void spread(const cv::Mat1b& saturated, const cv::Mat1b& valid);
 
   OcclusionConfig config_;
   int saturation_;
   image::AreaGrid grid_;
   ColourHistograms reference_;
+  ColourHistograms clipped_reference_;  // counted where neither is saturated
   ColourHistograms current_;
   bool reference_has_colour_ = false;
   bool colour_used_ = false;
   int step_ = 1;
   image::AreaGrid samples_;                    // of the patches
   cv::Mat1b reference_saturated_, saturated_;  // 255 or 0 per sample
+  cv::Mat1b usable_samples_;                   // 255 or 0 per sample: not saturated in image or reference, and valid
   image::Patch usable_;                        // 1 per pixel of the ROI, or 0: saturated in image or reference, or not valid
   std::vector<float> distances_;       // (2) per area
+  std::vector<float> clipped_distances_;
   std::vector<char> colour_rejects_;   // per area, in this image
   std::vector<int> held_;              // per area: images for which the structure gate keeps it out
   StructureStatistics statistics_;

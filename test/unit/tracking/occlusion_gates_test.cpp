@@ -89,6 +89,29 @@ TEST_F(OcclusionGatesTest, TheColourGateDecidesAfreshInEachImage) {
   EXPECT_FALSE(gates.occluded(0));
 }
 
+// A lamp that comes nearer clips what was bright already: that is no occluder.
+TEST_F(OcclusionGatesTest, WhatSaturatesChangesNoColour) {
+  cv::Mat3b reference(kSize), brighter(kSize);
+  for (int j = 0; j < kSize.height; ++j) {
+    for (int i = 0; i < kSize.width; ++i) {
+      const int level = 60 + (i * 7 + j * 13) % 100;  // of the areas' pixels some two fifths clip
+      const auto grey = [](double x) { return cv::saturate_cast<unsigned char>(x); };
+      reference(j, i) = cv::Vec3b(grey(0.5 * level), grey(level), grey(level + 60));
+      brighter(j, i) = cv::Vec3b(grey(0.65 * level), grey(1.3 * level), grey(1.3 * (level + 60)));
+    }
+  }
+  int rejected[2];
+  for (int k = 0; k < 2; ++k) {
+    config_.colour = k == 0 ? ColourGate::kPublished : ColourGate::kNormalised;
+    OcclusionGates gates(config_, 250);
+    gates.setReference(seen(reference), kSize);
+    gates.observeColour(seen(brighter));
+    rejected[k] = occludedIn(gates);
+  }
+  EXPECT_GT(rejected[0], 100);
+  EXPECT_LT(rejected[1], 40);
+}
+
 TEST_F(OcclusionGatesTest, TheStructureGateHoldsForTheConfiguredImages) {
   config_.hold = 2;
   OcclusionGates gates(config_, 256);
