@@ -33,9 +33,6 @@ constexpr int kShifts = 4;               // first steps on a coarse level, if fa
 constexpr double kSameLight = 0.5;       // of the residual's scale, for its mean
 constexpr int kTrials = 8;               // iterations with the light of the start, if far
 
-// Variance of the gradients' sum over that of the residual, both of noise alone that has been smoothed as level 0 is.
-constexpr double kGradientNoise = 0.45;
-
 // Surprise, chi squared with 8 degrees of freedom, at which a prior begins to count less: Student's t with as many of its own.
 constexpr double kFreedom = 8.0;
 
@@ -314,7 +311,7 @@ void Esm::judge(const MotionPrior* prior, EsmResult& result) {
     scores += sums.score * sums.score.transpose();
     ++blocks;
   }
-  const Factors<10> factors(equations_.matrix(kGradientNoise * result.sigma * result.sigma));
+  const Factors<10> factors(equations_.matrix());
   result.noise = result.sigma * result.sigma;
   result.corner_error = std::numeric_limits<double>::infinity();
   Matrix8d information = Matrix8d::Zero();

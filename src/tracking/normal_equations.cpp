@@ -74,7 +74,6 @@ void NormalEquations::addCell(const CellSums& cell, double u, double v) {
       moments_.xx[k] += power * cell.xx;
       moments_.xy[k] += power * cell.xy;
       moments_.yy[k] += power * cell.yy;
-      moments_.w[k] += power * cell.w;
     }
   }
   addRow(f * cell.xr, f * cell.yr, u, v, vector_);
@@ -100,18 +99,13 @@ void NormalEquations::endBlock() {
   }
 }
 
-Matrix10d NormalEquations::matrix(double noise) const {
-  Moments moments = moments_;
-  for (int k = 0; k < kSecond; ++k) {
-    moments.xx[k] -= noise * moments_.w[k];
-    moments.yy[k] -= noise * moments_.w[k];
-  }
+Matrix10d NormalEquations::matrix() const {
   Matrix10d m = matrix_;
   m.col(8).head<8>() += gain_column_.head<8>();
   for (int k = 0; k < 8; ++k) {
     for (int l = k; l < 8; ++l) {
-      m(k, l) += product(kP[k], kP[l], moments.xx) + product(kP[k], kQ[l], moments.xy) + product(kQ[k], kP[l], moments.xy) +
-                 product(kQ[k], kQ[l], moments.yy);
+      m(k, l) += product(kP[k], kP[l], moments_.xx) + product(kP[k], kQ[l], moments_.xy) + product(kQ[k], kP[l], moments_.xy) +
+                 product(kQ[k], kQ[l], moments_.yy);
     }
   }
   if (light_ == Light::kConstant) m(8, 8) = 1.0;

@@ -44,9 +44,8 @@ class NormalEquations {
   // other unknowns at the bias that is best for them.
   void endBlock();
 
-  // J'WJ and J'Wr of all blocks. Unknowns that `light` does not have get a row of the identity, and 0. `noise`: variance of a component
-  // of the gradients, as they are in the cells, that is the images' noise rather than the tissue; it is taken out.
-  Matrix10d matrix(double noise = 0.0) const;
+  // J'WJ and J'Wr of all blocks. Unknowns that `light` does not have get a row of the identity, and 0.
+  Matrix10d matrix() const;
   const Vector10d& vector() const { return vector_; }
   // Of the last block that ended: sum w, sum w r, and sum w J. The bias of the block after a step x changes by -(sum w r + sum w J x) / sum w.
   double blockWeight() const { return block_weight_; }
@@ -58,7 +57,7 @@ class NormalEquations {
  private:
   static constexpr int kSecond = 15;  // monomials u^a v^b with a + b <= 4
   struct Moments {
-    double xx[kSecond], xy[kSecond], yy[kSecond], w[kSecond];
+    double xx[kSecond], xy[kSecond], yy[kSecond];
   };
   Moments moments_ = {};  // of all cells
   Light light_ = Light::kConstant;

@@ -172,32 +172,5 @@ TEST(NormalEquations, ResetStartsAfresh) {
   EXPECT_EQ((used.matrix() - fresh.matrix()).norm(), 0.0);
 }
 
-// What is noise of the gradients is taken out of their squares, and of nothing else.
-TEST(NormalEquations, TakeTheGradientsNoiseOut) {
-  const Pixels p = randomPixels(7);
-  constexpr double kNoise = 30.0;
-  NormalEquations with, without;
-  with.reset(Light::kGlobal, kScale);
-  without.reset(Light::kGlobal, kScale);
-  for (int k = 0; k < p.width * p.height; ++k) {
-    CellSums cell = {};
-    cell.w = p.weight[k];
-    cell.xx = cell.w * p.gx[k] * p.gx[k];
-    cell.xy = cell.w * p.gx[k] * p.gy[k];
-    cell.yy = cell.w * p.gy[k] * p.gy[k];
-    cell.xm = cell.w * p.gx[k] * p.intensity[k];
-    with.addCell(cell, p.u(k % p.width), p.v(k / p.width));
-    cell.xx -= static_cast<float>(kNoise * cell.w);
-    cell.yy -= static_cast<float>(kNoise * cell.w);
-    without.addCell(cell, p.u(k % p.width), p.v(k / p.width));
-  }
-  with.endBlock();
-  without.endBlock();
-  // The gradients are in units of the cells; the tolerance is that of the float above.
-  const Matrix10d expected = without.matrix();
-  EXPECT_LT((with.matrix(kNoise) - expected).cwiseAbs().maxCoeff(), 1e-4 * expected.cwiseAbs().maxCoeff());
-  EXPECT_GT((with.matrix() - expected).cwiseAbs().maxCoeff(), 1e-2 * expected.cwiseAbs().maxCoeff());
-}
-
 }  // namespace
 }  // namespace laparoscope_servo::tracking
