@@ -13,6 +13,10 @@ namespace {
 // Grey levels added to the intensity, so that the colour of dark pixels, which is noise, does not fill the histogram.
 constexpr float kDark = 16.0f;
 
+// Range of the normalised feature.
+constexpr float kNormalisedLow = -1.5f;
+constexpr float kNormalisedHigh = 3.0f;
+
 // Eq. (4) and (5); inline, for the loop over pixels below.
 inline float feature(float r, float g, float b) {
   const float s0 = std::max(r, std::max(g, b)) - std::min(r, std::min(g, b));  // S0 of (4)
@@ -44,6 +48,11 @@ float hueSaturationFeature(float r, float g, float b) { return feature(r, g, b);
 
 float normalisedFeature(float r, float g, float b) { return feature(r, g, b) / intensity(r, g, b); }
 
+int normalisedBin(float feature, int bins) {
+  const float scale = static_cast<float>(bins) / (kNormalisedHigh - kNormalisedLow);
+  return std::clamp(static_cast<int>((feature - kNormalisedLow) * scale), 0, bins - 1);
+}
+
 float bhattacharyyaDistance(const float* a, const float* b, int bins) {
   float coefficient = 0.0f;
   for (int l = 0; l < bins; ++l) coefficient += std::sqrt(a[l] * b[l]);  // eq. (3)
@@ -51,31 +60,22 @@ float bhattacharyyaDistance(const float* a, const float* b, int bins) {
 }
 
 void ColourHistograms::compute(const image::ColourPatch& patch, const image::AreaGrid& grid) {
-  bin_of_.create(grid.height(), grid.width());
-  row_.resize(grid.width());
-  const bool normalised = mode_ == ColourGate::kNormalised;
-  const float low = normalised ? -1.5f : -255.0f;
-  const float high = normalised ? 3.0f : 255.0f;
-  const float scale = static_cast<float>(bins_) / (high - low);
-  for (int j = 0; j < grid.height(); ++j) {
-    binsOfRow(patch.blue.ptr<unsigned char>(j), patch.green.ptr<unsigned char>(j), patch.red.ptr<unsigned char>(j), grid.width(),
-              normalised, low, scale, bins_ - 1, row_.data());
-    std::copy(row_.begin(), row_.end(), bin_of_.ptr<unsigned char>(j));
-  }
-  count(patch.valid, grid);
-}
-
-void ColourHistograms::count(const cv::Mat1b& mask, const image::AreaGrid& grid) {
   counts_.assign(static_cast<std::size_t>(grid.count()) * bins_, 0);
   histograms_.resize(counts_.size());
   pixels_.assign(grid.count(), 0);
+  bin_of_.resize(grid.width());
+  const bool normalised = mode_ == ColourGate::kNormalised;
+  const float low = normalised ? kNormalisedLow : -255.0f;
+  const float high = normalised ? kNormalisedHigh : 255.0f;
+  const float scale = static_cast<float>(bins_) / (high - low);
   for (int j = 0; j < grid.height(); ++j) {
-    const unsigned char* bin_of = bin_of_.ptr<unsigned char>(j);
-    const unsigned char* counted = mask.ptr<unsigned char>(j);
+    binsOfRow(patch.blue.ptr<unsigned char>(j), patch.green.ptr<unsigned char>(j), patch.red.ptr<unsigned char>(j), grid.width(),
+              normalised, low, scale, bins_ - 1, bin_of_.data());
+    const unsigned char* valid = patch.valid.ptr<unsigned char>(j);
     for (int column = 0; column < grid.columns(); ++column) {
       const int area = grid.rowOf(j) * grid.columns() + column;
       int* counts = counts_.data() + static_cast<std::size_t>(area) * bins_;
-      for (int i = grid.columnBegin(column); i < grid.columnBegin(column + 1); ++i) counts[bin_of[i]] += counted[i] & 1;
+      for (int i = grid.columnBegin(column); i < grid.columnBegin(column + 1); ++i) counts[bin_of_[i]] += valid[i] & 1;
     }
   }
   for (int area = 0; area < grid.count(); ++area) {  // eq. (1)

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
+#include <string>
 
 #include "laparoscope_servo/image/multiversion.h"
 
@@ -17,21 +19,21 @@ constexpr int kSamples = 14 * 14;
 
 LAPAROSCOPE_SERVO_CLONES
 void combine(const unsigned char* __restrict bright, const unsigned char* __restrict bright_reference,
-             const unsigned char* __restrict valid, int count, unsigned char* __restrict usable) {
+             const unsigned char* __restrict valid, int count, float* __restrict usable) {
 #pragma omp simd
-  for (int i = 0; i < count; ++i) usable[i] = static_cast<unsigned char>(valid[i] & ~(bright[i] | bright_reference[i]));
-}
-
-LAPAROSCOPE_SERVO_CLONES
-void toWeights(const unsigned char* __restrict usable, int count, float* __restrict weight) {
-#pragma omp simd
-  for (int i = 0; i < count; ++i) weight[i] = static_cast<float>(usable[i] & 1);
+  for (int i = 0; i < count; ++i) {
+    usable[i] = static_cast<float>(static_cast<int>((bright[i] | bright_reference[i] | (valid[i] ^ 255)) == 0));
+  }
 }
 
 LAPAROSCOPE_SERVO_CLONES
 void multiply(const float* __restrict a, const float* __restrict b, int count, float* __restrict product) {
 #pragma omp simd
   for (int i = 0; i < count; ++i) product[i] = a[i] * b[i];
+}
+
+std::string text(const cv::Size& size) {
+  return std::to_string(size.width) + 'x' + std::to_string(size.height);
 }
 
 }  // namespace
@@ -45,16 +47,24 @@ OcclusionGates::OcclusionGates(const OcclusionConfig& config, int saturation)
     : config_(config),
       saturation_(saturation),
       reference_(config.colour, config.bins),
-      clipped_reference_(config.colour, config.bins),
       current_(config.colour, config.bins) {}
 
 void OcclusionGates::setReference(const image::ColourPatch& patch, const cv::Size& size) {
   grid_ = image::AreaGrid(size.width, size.height, config_.rows, config_.columns);
   step_ = samplingStep(size, config_);
+  const cv::Size sampled((size.width + step_ - 1) / step_, (size.height + step_ - 1) / step_);
+  if (patch.size() != sampled) {
+    throw std::invalid_argument("patch of " + text(patch.size()) + " px for a region of " + text(size) +
+                                " px, expected every " + std::to_string(step_) + ". pixel of it: " + text(sampled) +
+                                " px");
+  }
   samples_ = image::AreaGrid(patch.size().width, patch.size().height, config_.rows, config_.columns);
   reference_has_colour_ = patch.has_colour && config_.colour != ColourGate::kNone;
-  if (reference_has_colour_) reference_.compute(patch, samples_);
-  clipped_reference_ = reference_;
+  if (reference_has_colour_) {
+    reference_.compute(patch, samples_);
+    reference_patch_ = patch.clone();
+    light_change_ = LightChange(config_.bins, samples_);
+  }
   markSaturated(patch, reference_saturated_);
   usable_.resize(size.width, size.height);
   areas_.resize(size.width);
@@ -72,19 +82,17 @@ void OcclusionGates::markSaturated(const image::ColourPatch& patch, cv::Mat1b& m
 // From the samples to all pixels.
 void OcclusionGates::spread(const cv::Mat1b& saturated, const cv::Mat1b& valid) {
   row_.resize(samples_.width());
-  usable_samples_.create(samples_.height(), samples_.width());
   for (int j = 0; j < samples_.height(); ++j) {
-    unsigned char* const usable = usable_samples_.ptr<unsigned char>(j);
-    combine(saturated.ptr<unsigned char>(j), reference_saturated_.ptr<unsigned char>(j), valid.ptr<unsigned char>(j),
-            samples_.width(), usable);
     float* const first = usable_.row(j * step_);
     float* const samples = step_ == 1 ? first : row_.data();
-    toWeights(usable, samples_.width(), samples);
+    combine(saturated.ptr<unsigned char>(j), reference_saturated_.ptr<unsigned char>(j), valid.ptr<unsigned char>(j),
+            samples_.width(), samples);
     if (step_ == 1) continue;
     for (int i = 0; i < samples_.width(); ++i) {
       std::fill(first + i * step_, first + std::min((i + 1) * step_, grid_.width()), samples[i]);
     }
-    for (int k = 1; k < step_ && j * step_ + k < grid_.height(); ++k) std::copy_n(first, grid_.width(), usable_.row(j * step_ + k));
+    for (int k = 1; k < step_ && j * step_ + k < grid_.height(); ++k)
+      std::copy_n(first, grid_.width(), usable_.row(j * step_ + k));
   }
 }
 
@@ -102,24 +110,23 @@ void OcclusionGates::observeColour(const image::ColourPatch& patch) {
   for (int area = 0; area < grid_.count(); ++area) {
     colour_rejects_[area] = distances_[area] > static_cast<float>(config_.threshold);  // d > tau_b; false for NaN
   }
-  if (config_.colour == ColourGate::kNormalised) forgiveClipping();
+  if (config_.colour == ColourGate::kNormalised) forgiveClipping(patch);
 }
 
-// More light clips what was bright already, which changes its colour. Areas that differ are compared again without what is saturated in
-// image or reference, if half of them is left.
-void OcclusionGates::forgiveClipping() {
-  if (std::find(colour_rejects_.begin(), colour_rejects_.end(), 1) == colour_rejects_.end()) return;
-  current_.count(usable_samples_, samples_);
-  clipped_reference_.count(usable_samples_, samples_);
-  areaDistances(clipped_reference_, current_, samples_, config_.bins, clipped_distances_);
+// An area of another colour is compared again as the light that it shows would have clipped the reference, or the
+// reference's light it.
+void OcclusionGates::forgiveClipping(const image::ColourPatch& patch) {
   for (int area = 0; area < grid_.count(); ++area) {
-    if (!(clipped_distances_[area] <= static_cast<float>(config_.threshold))) continue;  // also where there is too little to compare
+    if (!colour_rejects_[area]) continue;
+    const float distance = light_change_.distance(reference_patch_, patch, area);
+    if (!(distance <= static_cast<float>(config_.threshold))) continue;  // also where there is nothing to compare
     colour_rejects_[area] = 0;
-    distances_[area] = std::min(distances_[area], clipped_distances_[area]);
+    distances_[area] = distance;
   }
 }
 
-int OcclusionGates::observeStructure(const PatchPair* channels, int count, const image::Patch& valid, double gain, double sigma) {
+int OcclusionGates::observeStructure(const PatchPair* channels, int count, const image::Patch& valid, double gain,
+                                     double sigma) {
   unsaturated_.resize(grid_.width(), grid_.height());
   for (int j = 0; j < grid_.height(); ++j) multiply(valid.row(j), usable_.row(j), grid_.width(), unsaturated_.row(j));
   statistics_.compute(channels, count, unsaturated_, grid_);
@@ -155,7 +162,9 @@ double OcclusionGates::visibleFraction() const {
   return pixels / (static_cast<double>(grid_.width()) * grid_.height());
 }
 
-void OcclusionGates::forget() { std::fill(held_.begin(), held_.end(), 0); }
+void OcclusionGates::forget() {
+  std::fill(held_.begin(), held_.end(), 0);
+}
 
 void OcclusionGates::advance() {
   for (int& images : held_) images = std::max(0, images - 1);

@@ -15,6 +15,7 @@ struct ColourPatch {
   bool has_colour = false;
 
   cv::Size size() const { return valid.size(); }
+  ColourPatch clone() const { return {blue.clone(), green.clone(), red.clone(), valid.clone(), has_colour}; }
 };
 
 // patch(j, i) = the image's pixel nearest to the point that `g` takes (i, j, 1) to. `image` is CV_8UC1 or CV_8UC3, blue first; another

@@ -21,6 +21,9 @@ float hueSaturationFeature(float r, float g, float b);
 // colour is noise, go towards 0.
 float normalisedFeature(float r, float g, float b);
 
+// The bin of a value of normalisedFeature among `bins` over its range, from 0.
+int normalisedBin(float feature, int bins);
+
 // Eq. (2) and (3), in [0, 1]: 0 for equal histograms, 1 for histograms without a common bin. Both sum to 1.
 float bhattacharyyaDistance(const float* a, const float* b, int bins);
 
@@ -30,8 +33,6 @@ class ColourHistograms {
 
   // `patch` has colour and the grid's size; pixels with valid = 0 do not count.
   void compute(const image::ColourPatch& patch, const image::AreaGrid& grid);
-  // Counts the pixels of the last patch again, this time where `mask` is 255; it is 0 elsewhere.
-  void count(const cv::Mat1b& mask, const image::AreaGrid& grid);
 
   // The area's histogram, eq. (1), `bins` numbers that sum to 1 when pixels(area) > 0.
   const float* histogram(int area) const { return histograms_.data() + static_cast<std::size_t>(area) * bins_; }
@@ -42,8 +43,7 @@ class ColourHistograms {
   ColourGate mode_;
   int bins_;
   std::vector<int> counts_;  // like histograms_
-  std::vector<int> row_;     // of bins
-  cv::Mat1b bin_of_;         // per pixel
+  std::vector<int> bin_of_;  // of a row
   std::vector<float> histograms_;
   std::vector<int> pixels_;
 };

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -90,26 +91,33 @@ TEST_F(OcclusionGatesTest, TheColourGateDecidesAfreshInEachImage) {
 }
 
 // A lamp that comes nearer clips what was bright already: that is no occluder.
-TEST_F(OcclusionGatesTest, WhatSaturatesChangesNoColour) {
+TEST_F(OcclusionGatesTest, WhatClipsIsNoOccluder) {
   cv::Mat3b reference(kSize), brighter(kSize);
   for (int j = 0; j < kSize.height; ++j) {
     for (int i = 0; i < kSize.width; ++i) {
-      const int level = 60 + (i * 7 + j * 13) % 100;  // of the areas' pixels some two fifths clip
-      const auto grey = [](double x) { return cv::saturate_cast<unsigned char>(x); };
-      reference(j, i) = cv::Vec3b(grey(0.5 * level), grey(level), grey(level + 60));
-      brighter(j, i) = cv::Vec3b(grey(0.65 * level), grey(1.3 * level), grey(1.3 * (level + 60)));
+      const double level = 80 + (i * 7 + j * 13) % 60;
+      reference(j, i) = cv::Vec3b(cv::saturate_cast<uchar>(0.6 * level), cv::saturate_cast<uchar>(0.6 * level),
+                                  cv::saturate_cast<uchar>(2.0 * level));
+      brighter(j, i) = reference(j, i) * 1.6;
     }
   }
-  int rejected[2];
-  for (int k = 0; k < 2; ++k) {
-    config_.colour = k == 0 ? ColourGate::kPublished : ColourGate::kNormalised;
-    OcclusionGates gates(config_, 250);
-    gates.setReference(seen(reference), kSize);
-    gates.observeColour(seen(brighter));
-    rejected[k] = occludedIn(gates);
-  }
-  EXPECT_GT(rejected[0], 100);
-  EXPECT_LT(rejected[1], 40);
+  OcclusionGates gates(config_, 250);
+  gates.setReference(seen(reference), kSize);
+  ColourHistograms before(ColourGate::kNormalised, config_.bins), now(ColourGate::kNormalised, config_.bins);
+  before.compute(seen(reference), gates.grid());
+  now.compute(seen(brighter), gates.grid());
+  std::vector<float> distances;
+  areaDistances(before, now, gates.grid(), config_.bins, distances);
+  EXPECT_GT(std::count_if(distances.begin(), distances.end(), [&](float d) { return d > config_.threshold; }), 150);
+  gates.observeColour(seen(brighter));
+  EXPECT_EQ(occludedIn(gates), 0);
+  for (const float d : gates.distances()) EXPECT_LE(d, config_.threshold);
+}
+
+TEST_F(OcclusionGatesTest, RefuseAPatchThatIsNotSampledAsTheyNeedIt) {
+  OcclusionGates gates(config_, 250);
+  EXPECT_THROW(gates.setReference(seen(patch_), cv::Size(450, 450)), std::invalid_argument);
+  EXPECT_THROW(gates.setReference(seen(patch_), cv::Size(141, 140)), std::invalid_argument);
 }
 
 TEST_F(OcclusionGatesTest, TheStructureGateHoldsForTheConfiguredImages) {
