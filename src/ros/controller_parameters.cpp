@@ -18,6 +18,40 @@ void readVelocity(ParameterReader& reader, const std::string& group, servo::Scop
   readNumber(reader, group + "/insertion", value.insertion);
 }
 
+void readLaw(ParameterReader& reader, servo::ControllerConfig& config) {
+  std::string law = "features", spin = "servo";
+  reader.read("law", law, {"features", "paper"});
+  config.law = law == "paper" ? servo::LawKind::kPaper : servo::LawKind::kFeatures;
+  reader.read("spin", spin, {"servo", "released"});
+  config.spin = spin == "released" ? servo::SpinMode::kReleased : servo::SpinMode::kServo;
+  readNumber(reader, "gains/pan", config.gains.pan);
+  readNumber(reader, "gains/tilt", config.gains.tilt);
+  readNumber(reader, "gains/spin", config.gains.spin);
+  readNumber(reader, "gains/insertion", config.gains.insertion);
+  readNumber(reader, "features/centre", config.features.centre);
+  readNumber(reader, "features/depth", config.features.depth);
+  readNumber(reader, "features/orientation", config.features.orientation);
+  readNumber(reader, "features/desired_depth", config.features.desired_depth);
+}
+
+void readTarget(ParameterReader& reader, servo::ControllerConfig& config) {
+  reader.read("predictor/enabled", config.predictor.enabled);
+  readNumber(reader, "predictor/delay", config.predictor.delay);
+  reader.read("predictor/feed_forward", config.predictor.feed_forward);
+  readNumber(reader, "target/centre_noise", config.target.centre_noise);
+  readNumber(reader, "target/depth_noise", config.target.depth_noise);
+  readNumber(reader, "target/orientation_noise", config.target.orientation_noise);
+  readNumber(reader, "target/centre_wander", config.target.centre_wander);
+  readNumber(reader, "target/depth_wander", config.target.depth_wander);
+  readNumber(reader, "target/orientation_wander", config.target.orientation_wander);
+  readNumber(reader, "target/centre_acceleration", config.target.centre_acceleration);
+  readNumber(reader, "target/depth_acceleration", config.target.depth_acceleration);
+  readNumber(reader, "target/orientation_acceleration", config.target.orientation_acceleration);
+  readNumber(reader, "target/calibration", config.target.calibration);
+  readNumber(reader, "target/significance", config.target.significance);
+  readNumber(reader, "target/damping", config.target.damping);
+}
+
 void readSafety(ParameterReader& reader, servo::SafetyConfig& safety) {
   readNumber(reader, "safety/max_task_error_age", safety.max_task_error_age);
   readNumber(reader, "safety/max_depth_age", safety.max_depth_age);
@@ -39,14 +73,28 @@ void readFrame(ParameterReader& reader, const std::string& path, std::string& fr
 
 servo::ControllerConfig controllerConfig(ParameterReader& reader) {
   servo::ControllerConfig config;
-  readNumber(reader, "gains/pan", config.gains.pan);
-  readNumber(reader, "gains/tilt", config.gains.tilt);
-  readNumber(reader, "gains/spin", config.gains.spin);
-  readNumber(reader, "gains/insertion", config.gains.insertion);
+  readLaw(reader, config);
+  readTarget(reader, config);
   reader.read("dead_zone/inverse", config.dead_zone.inverse);
   readVelocity(reader, "dead_zone/width", config.dead_zone.width);
-  readVelocity(reader, "dead_zone/stop", config.dead_zone.stop);
-  readVelocity(reader, "dead_zone/start", config.dead_zone.start);
+  reader.read("rest/enabled", config.rest.enabled);
+  readNumber(reader, "rest/centre_stop", config.rest.centre_stop);
+  readNumber(reader, "rest/centre_start", config.rest.centre_start);
+  readNumber(reader, "rest/depth_stop", config.rest.depth_stop);
+  readNumber(reader, "rest/depth_start", config.rest.depth_start);
+  readNumber(reader, "rest/orientation_stop", config.rest.orientation_stop);
+  readNumber(reader, "rest/orientation_start", config.rest.orientation_start);
+  readNumber(reader, "rest/hunting_time", config.rest.hunting_time);
+  readNumber(reader, "rest/widening", config.rest.widening);
+  readNumber(reader, "rest/widest", config.rest.widest);
+  reader.read("oscillation/enabled", config.oscillation.enabled);
+  readNumber(reader, "oscillation/half_period", config.oscillation.half_period);
+  reader.read("oscillation/changes", config.oscillation.changes, 1, 100);
+  readNumber(reader, "oscillation/centre", config.oscillation.centre);
+  readNumber(reader, "oscillation/depth", config.oscillation.depth);
+  readNumber(reader, "oscillation/orientation", config.oscillation.orientation);
+  readNumber(reader, "oscillation/step", config.oscillation.step);
+  readNumber(reader, "oscillation/least", config.oscillation.least);
   readVelocity(reader, "limits/velocity", config.limits.velocity);
   readVelocity(reader, "limits/acceleration", config.limits.acceleration);
   readSafety(reader, config.safety);

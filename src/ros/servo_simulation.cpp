@@ -3,13 +3,13 @@
 #include <cmath>
 #include <cstdint>
 #include <deque>
-#include <optional>
+#include <limits>
 #include <random>
 #include <stdexcept>
 
 #include "laparoscope_servo/ros/controller_conversions.h"
 #include "laparoscope_servo/servo/insertion_point.h"
-#include "laparoscope_servo/sim/scope_body.h"
+#include "laparoscope_servo/servo/scope_geometry.h"
 
 namespace laparoscope_servo::skin {
 
@@ -37,11 +37,14 @@ class Loop {
  public:
   Loop(const ControllerNodeConfig& controller, const SimulationConfig& config, unsigned seed)
       : config_(config),
+        shaft_R_camera_(servo::obliqueOptics(config.optics_angle, config.optics_roll).transpose()),
         controller_(controller.control),
         actuator_(config.robot),
+        patient_(config.patient, {0.0, 0.0, config.tissue_distance}),
         noise_(seed),
-        body_(startPose(config), {0.0, 0.0, -config.depth}, config.scope_length) {
-    if (!corners()) {
+        insertion_point_(shaft_R_camera_.transpose() * Eigen::Vector3d(0.0, 0.0, -config.depth)),
+        body_(startPose(), insertion_point_, config.scope_length, config.wrist) {
+    if (!(nearestToBorder(cornersAt(0.0)) >= 0.0)) {
       throw std::invalid_argument("the start pose does not see the region of interest");
     }
   }
@@ -50,9 +53,10 @@ class Loop {
     servo::TaskErrorInput input;
     input.problem.clear();
     input.valid = false;
-    if (std::optional<geometry::Quadrilateral> seen = corners()) {
-      for (Eigen::Vector2d& corner : *seen) corner += noise_.draw(config_.corner_noise);
-      const Eigen::Matrix3d g = geometry::fromCorners(config_.roi.corners(), *seen);
+    geometry::Quadrilateral seen = cornersAt(time);
+    if (nearestToBorder(seen) >= 0.0) {
+      for (Eigen::Vector2d& corner : seen) corner += noise_.draw(config_.corner_noise);
+      const Eigen::Matrix3d g = geometry::fromCorners(config_.roi.corners(), seen);
       input.error = servo::taskError(geometry::normalisedFromPixels(g, config_.camera), config_.roi, config_.camera);
       input.valid = true;
     }
@@ -70,15 +74,18 @@ class Loop {
     input.task_error.age = std::max(0.0, time - latest_.first);
     input.depth.problem.clear();
     input.depth.d2 = believedDepth();
+    input.depth.camera_R_shaft = shaft_R_camera_.transpose();
     input.depth.lateral_offset = body_.lateralOffset();
     if (!engaged_once_) engaged_once_ = controller_.engage(input).empty();
     const servo::ControllerOutput output = controller_.update(input);
     actuator_.command(time, output.command.vector());
+    executed_ = actuator_.velocity(time);
     return sample(time, output);
   }
 
   // The midpoint rule: d1 changes while the scope is pushed in.
   void move(double time) {
+    body_.moveInsertionPoint(insertion_point_ + patient_.trocarOffset(time));
     const servo::ScopeVelocity executed = servo::ScopeVelocity::fromVector(actuator_.velocity(time));
     sim::ScopeBody halfway = body_;
     halfway.move(endEffectorTwist(executed, believedDepth()), 0.5 * kStep);
@@ -86,32 +93,39 @@ class Loop {
   }
 
  private:
-  static Eigen::Isometry3d startPose(const SimulationConfig& config) {
-    const Eigen::Isometry3d world_T_insertion_point(Eigen::Translation3d(0.0, 0.0, -config.depth));
+  // world_T_tip; the world is the camera's frame at the reference.
+  Eigen::Isometry3d startPose() const {
+    Eigen::Isometry3d world_T_shaft = Eigen::Isometry3d::Identity();  // at O_A
+    world_T_shaft.linear() = shaft_R_camera_.transpose();
+    world_T_shaft.translation() = insertion_point_;
     Eigen::Isometry3d turned = Eigen::Isometry3d::Identity();
     turned.linear() =
-        geometry::so3Exp({config.start.tilt, config.start.pan, 0.0}) * geometry::so3Exp({0.0, 0.0, config.start.spin});
-    return world_T_insertion_point * turned * Eigen::Translation3d(0.0, 0.0, config.depth + config.start.insertion);
+        geometry::so3Exp({config_.start.tilt, config_.start.pan, 0.0}) * geometry::so3Exp({0.0, 0.0, config_.start.spin});
+    return world_T_shaft * turned * Eigen::Translation3d(0.0, 0.0, config_.depth + config_.start.insertion);
   }
 
-  Eigen::Matrix3d trueHomography() const {
+  Eigen::Matrix3d trueHomography(double time) const {
     const Eigen::Vector3d normal =
         geometry::so3Exp({config_.tissue_slant_x, config_.tissue_slant_y, 0.0}) * Eigen::Vector3d::UnitZ();
+    Eigen::Isometry3d tip_T_camera = Eigen::Isometry3d::Identity();
+    tip_T_camera.linear() = shaft_R_camera_;
+    const Eigen::Isometry3d camera_T_world = (body_.pose() * tip_T_camera).inverse();
     // The plane meets the reference camera's axis at tissue_distance.
-    return geometry::fromPlane(body_.pose().inverse(), normal, config_.tissue_distance * normal.z());
+    return geometry::fromPlane(camera_T_world * patient_.tissueMotion(time), normal, config_.tissue_distance * normal.z());
   }
 
-  // The ROI's corners, when they are all in the image.
-  std::optional<geometry::Quadrilateral> corners() const {
-    const Eigen::Matrix3d g = geometry::pixelsFromNormalised(trueHomography(), config_.camera);
-    const geometry::Quadrilateral seen = geometry::apply(g, config_.roi.corners());
-    if (!geometry::isConvex(seen)) return std::nullopt;
-    for (const Eigen::Vector2d& p : seen) {
-      if (!(p.x() >= 0.0 && p.x() <= config_.width - 1.0 && p.y() >= 0.0 && p.y() <= config_.height - 1.0)) {
-        return std::nullopt;
-      }
+  geometry::Quadrilateral cornersAt(double time) const {
+    return geometry::apply(geometry::pixelsFromNormalised(trueHomography(time), config_.camera), config_.roi.corners());
+  }
+
+  // px from the corner that is nearest to the image's border; negative when one is outside, or when nothing is to be seen.
+  double nearestToBorder(const geometry::Quadrilateral& corners) const {
+    if (!geometry::isConvex(corners)) return -1.0;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Eigen::Vector2d& p : corners) {
+      nearest = std::min({nearest, p.x(), p.y(), config_.width - 1.0 - p.x(), config_.height - 1.0 - p.y()});
     }
-    return seen;
+    return nearest;
   }
 
   double believedDepth() const { return config_.believed_depth_factor * body_.depth(); }
@@ -120,15 +134,16 @@ class Loop {
     return servo::endEffectorTwist(velocity, body_.length() - believed_depth);  // eq. (12)
   }
 
-  SimulationSample sample(double time, const servo::ControllerOutput& output) {
+  SimulationSample sample(double time, const servo::ControllerOutput& output) const {
     SimulationSample s;
     s.t = time;
     s.command = output.command;
-    const Eigen::Matrix3d h = trueHomography();
+    const Eigen::Matrix3d h = trueHomography(time);
     const Eigen::Vector2d centre =
         geometry::apply(geometry::pixelsFromNormalised(h, config_.camera), config_.roi.centre());
     s.u = centre.x();
     s.v = centre.y();
+    s.worst_corner = nearestToBorder(cornersAt(time));
     try {
       const servo::TaskError error = servo::taskError(h, config_.roi, config_.camera);
       s.log_depth = error.log_depth;
@@ -138,19 +153,24 @@ class Loop {
     }
     s.d2 = body_.depth();
     s.d1 = body_.length() - s.d2;
-    const auto executed = servo::ScopeVelocity::fromVector(actuator_.velocity(time));
-    const geometry::Vector6d camera = body_.cameraTwist(endEffectorTwist(executed, believedDepth()));
-    s.lateral_speed = servo::twistAtInsertionPoint(camera, s.d2).head<2>().norm();  // eq. (9)
+    const auto executed = servo::ScopeVelocity::fromVector(executed_);
+    const geometry::Vector6d tip = body_.tipTwist(endEffectorTwist(executed, believedDepth()));
+    s.lateral_speed = servo::twistAtInsertionPoint(tip, s.d2).head<2>().norm();                        // eq. (9)
+    s.commanded_lateral_speed = servo::twistAtInsertionPoint(tip, believedDepth()).head<2>().norm();  // eq. (9)
     s.lateral_offset = body_.lateralOffset();
     s.state = toMessage(output).state;
     return s;
   }
 
   SimulationConfig config_;
+  Eigen::Matrix3d shaft_R_camera_;
   servo::Controller controller_;
   sim::ScopeActuator actuator_;
+  sim::Patient patient_;
   Noise noise_;
+  Eigen::Vector3d insertion_point_;  // at rest, in the world
   sim::ScopeBody body_;
+  Eigen::Vector4d executed_ = Eigen::Vector4d::Zero();
   std::deque<std::pair<double, servo::TaskErrorInput>> images_;
   std::pair<double, servo::TaskErrorInput> latest_{0.0, servo::TaskErrorInput()};
   bool engaged_once_ = false;

@@ -31,6 +31,11 @@ void readScope(ParameterReader& reader, SimulationConfig& config) {
   reader.read(group + "scope/depth", config.depth, 0.005, 0.5);
   reader.read(group + "scope/length", config.scope_length, 0.01, 1.0);
   reader.read(group + "scope/believed_depth_factor", config.believed_depth_factor, 0.1, 10.0);
+  reader.read(group + "scope/optics_angle", config.optics_angle, -1.3, 1.3);
+  reader.read(group + "scope/optics_roll", config.optics_roll, -3.2, 3.2);
+  std::string wrist = "stiff";
+  reader.read(group + "scope/wrist", wrist, {"stiff", "passive"});
+  config.wrist = wrist == "passive" ? sim::Wrist::kPassive : sim::Wrist::kStiff;
   reader.read(group + "start/pan", config.start.pan, -1.2, 1.2);
   reader.read(group + "start/tilt", config.start.tilt, -1.2, 1.2);
   reader.read(group + "start/spin", config.start.spin, -3.2, 3.2);
@@ -41,12 +46,32 @@ void readScope(ParameterReader& reader, SimulationConfig& config) {
   for (const std::string& error : sim::validate(config.robot)) reader.addError("simulation/robot/" + error);
 }
 
+void readPatient(ParameterReader& reader, sim::PatientConfig& config) {
+  const std::string group = "simulation/patient/";
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();  // the ranges are sim::validate's to judge
+  reader.read(group + "breathing/frequency", config.breathing.frequency, -kInfinity, kInfinity);
+  reader.read(group + "breathing/second_harmonic", config.breathing.second_harmonic, -kInfinity, kInfinity);
+  reader.read(group + "breathing/third_harmonic", config.breathing.third_harmonic, -kInfinity, kInfinity);
+  reader.read(group + "breathing/start", config.breathing.start, -kInfinity, kInfinity);
+  reader.read(group + "breathing/end", config.breathing.end, -kInfinity, kInfinity);
+  reader.read(group + "breathing/tissue", config.breathing.tissue, 3, -kInfinity, kInfinity);
+  reader.read(group + "breathing/trocar", config.breathing.trocar, 3, -kInfinity, kInfinity);
+  reader.read(group + "drift", config.drift, 3, -kInfinity, kInfinity);
+  reader.read(group + "drift_end", config.drift_end, -kInfinity, kInfinity);
+  reader.read(group + "jump", config.jump, 3, -kInfinity, kInfinity);
+  reader.read(group + "jump_time", config.jump_time, -kInfinity, kInfinity);
+  reader.read(group + "tilt", config.tilt, -kInfinity, kInfinity);
+  reader.read(group + "tilt_frequency", config.tilt_frequency, -kInfinity, kInfinity);
+  for (const std::string& error : sim::validate(config)) reader.addError(group + error);
+}
+
 }  // namespace
 
 SimulationConfig simulationConfig(ParameterReader& reader) {
   SimulationConfig config;
   readScene(reader, config);
   readScope(reader, config);
+  readPatient(reader, config.patient);
   if (config.roi.x + config.roi.width > config.width || config.roi.y + config.roi.height > config.height) {
     reader.addError(
         "simulation/roi does not lie in the image, expected x + width and y + height within image/width, image/height");

@@ -56,11 +56,7 @@ std::string problemWith(const ControllerInput& input, const SafetyConfig& safety
   return problem.empty() ? problemWithDepth(input.depth, safety) : problem;
 }
 
-Controller::Controller(const ControllerConfig& config)
-    : config_(checked(config)),
-      law_(std::make_unique<PaperLaw>(config.gains)),
-      dead_zone_(config.dead_zone),
-      limiter_(config.limits) {}
+Controller::Controller(const ControllerConfig& config) : config_(checked(config)), servo_(config) {}
 
 std::string Controller::engage(const ControllerInput& input) {
   if (engaged_) return "";
@@ -70,8 +66,7 @@ std::string Controller::engage(const ControllerInput& input) {
   engaged_ = true;
   holding_ = false;
   has_time_ = false;  // the pause since the last step is no step
-  dead_zone_.reset();
-  limiter_.reset();
+  servo_.reset();
   return "";
 }
 
@@ -79,8 +74,7 @@ void Controller::disengage(const std::string& reason) {
   engaged_ = false;
   holding_ = false;
   reason_ = reason;
-  dead_zone_.reset();
-  limiter_.reset();
+  servo_.reset();
 }
 
 ControllerOutput Controller::update(const ControllerInput& input) {
@@ -107,18 +101,20 @@ ControllerOutput Controller::update(const ControllerInput& input) {
 }
 
 ScopeVelocity Controller::servo(const ControllerInput& input) {
-  const double dt = has_time_ ? std::min(input.time - last_time_, config_.safety.max_period) : 0.0;
-  const ScopeVelocity wanted = law_->velocity(input.task_error.error, input.depth.d2);
-  if (!wanted.vector().allFinite()) return wanted;
-  return limiter_.apply(dead_zone_.apply(wanted), dt);
+  ServoInput servo;
+  servo.time = input.time;
+  servo.image_time = input.time - input.task_error.age;
+  servo.error = input.task_error.error;
+  servo.scope = {input.depth.camera_R_shaft, input.depth.d2};
+  servo.period = has_time_ ? std::min(input.time - last_time_, config_.safety.max_period) : 0.0;
+  return servo_.command(servo, ServoLimits());
 }
 
 void Controller::hold(double time, const std::string& reason) {
   if (!holding_) hold_since_ = time;
   holding_ = true;
   reason_ = reason;
-  dead_zone_.reset();
-  limiter_.reset();
+  servo_.stop(time);
   if (time - hold_since_ >= config_.safety.resume_time) {
     disengage("held for " + seconds(config_.safety.resume_time) + ": " + reason + "; engage again");
   }

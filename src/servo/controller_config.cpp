@@ -33,12 +33,60 @@ class Checker : public validation::RangeChecker {
 
 void checkDeadZone(const DeadZoneConfig& config, Checker& check) {
   check.range("dead_zone/width", config.width, 0.0, 0.1, 0.02, "s");
-  check.range("dead_zone/stop", config.stop, 0.0, 0.1, 0.02, "s");
-  check.range("dead_zone/start", config.start, 0.0, 0.1, 0.02, "s");
-  check.atLeast("dead_zone/start/pan", config.start.pan, "dead_zone/stop/pan", config.stop.pan);
-  check.atLeast("dead_zone/start/tilt", config.start.tilt, "dead_zone/stop/tilt", config.stop.tilt);
-  check.atLeast("dead_zone/start/spin", config.start.spin, "dead_zone/stop/spin", config.stop.spin);
-  check.atLeast("dead_zone/start/insertion", config.start.insertion, "dead_zone/stop/insertion", config.stop.insertion);
+}
+
+void checkLaws(const ControllerConfig& config, Checker& check) {
+  // No negative gain: it would drive the arm away from the target.
+  check.range("gains/pan", config.gains.pan, 0.0, 5.0, "1/s");
+  check.range("gains/tilt", config.gains.tilt, 0.0, 5.0, "1/s");
+  check.range("gains/spin", config.gains.spin, 0.0, 5.0, "1/s");
+  check.range("gains/insertion", config.gains.insertion, 0.0, 0.5, "m/s");
+  check.range("features/centre", config.features.centre, 0.0, 20.0, "1/s");
+  check.range("features/depth", config.features.depth, 0.0, 20.0, "1/s");
+  check.range("features/orientation", config.features.orientation, 0.0, 20.0, "1/s");
+  check.range("features/desired_depth", config.features.desired_depth, 0.005, 0.5, "m");
+  check.range("predictor/delay", config.predictor.delay, 0.0, 1.0, "s");
+}
+
+void checkTarget(const TargetMotionConfig& config, Checker& check) {
+  // Not zero: without noise of its own a filter stops listening.
+  check.range("target/centre_noise", config.centre_noise, 1e-6, 1.0);
+  check.range("target/depth_noise", config.depth_noise, 1e-6, 1.0);
+  check.range("target/orientation_noise", config.orientation_noise, 1e-6, 1.0, "rad");
+  check.range("target/centre_wander", config.centre_wander, 1e-6, 1.0, "1/sqrt(s)");
+  check.range("target/depth_wander", config.depth_wander, 1e-6, 1.0, "1/sqrt(s)");
+  check.range("target/orientation_wander", config.orientation_wander, 1e-6, 1.0, "rad/sqrt(s)");
+  check.range("target/centre_acceleration", config.centre_acceleration, 0.0, 10.0, "1/s/sqrt(s)");
+  check.range("target/depth_acceleration", config.depth_acceleration, 0.0, 10.0, "1/s/sqrt(s)");
+  check.range("target/orientation_acceleration", config.orientation_acceleration, 0.0, 10.0, "rad/s/sqrt(s)");
+  check.range("target/calibration", config.calibration, 0.0, 2.0);
+  check.range("target/significance", config.significance, 0.0, 100.0);
+  check.range("target/damping", config.damping, 0.0, 10.0, "1/s");
+}
+
+void checkOscillation(const OscillationConfig& config, Checker& check) {
+  check.range("oscillation/half_period", config.half_period, 0.05, 5.0, "s");
+  check.range("oscillation/changes", config.changes, 1, 100);
+  check.range("oscillation/centre", config.centre, 0.0, 1.0);
+  check.range("oscillation/depth", config.depth, 0.0, 1.0);
+  check.range("oscillation/orientation", config.orientation, 0.0, 3.2, "rad");
+  check.range("oscillation/step", config.step, 0.1, 1.0);
+  check.range("oscillation/least", config.least, 0.01, 1.0);
+}
+
+void checkRest(const RestConfig& config, Checker& check) {
+  check.range("rest/centre_stop", config.centre_stop, 0.0, 0.1);
+  check.range("rest/centre_start", config.centre_start, 0.0, 0.1);
+  check.range("rest/depth_stop", config.depth_stop, 0.0, 0.1);
+  check.range("rest/depth_start", config.depth_start, 0.0, 0.1);
+  check.range("rest/orientation_stop", config.orientation_stop, 0.0, 0.1, "rad");
+  check.range("rest/orientation_start", config.orientation_start, 0.0, 0.1, "rad");
+  check.range("rest/hunting_time", config.hunting_time, 0.0, 10.0, "s");
+  check.range("rest/widening", config.widening, 1.0, 3.0);
+  check.range("rest/widest", config.widest, 1.0, 10.0);
+  check.atLeast("rest/centre_start", config.centre_start, "rest/centre_stop", config.centre_stop);
+  check.atLeast("rest/depth_start", config.depth_start, "rest/depth_stop", config.depth_stop);
+  check.atLeast("rest/orientation_start", config.orientation_start, "rest/orientation_stop", config.orientation_stop);
 }
 
 void checkSafety(const SafetyConfig& config, Checker& check) {
@@ -56,14 +104,18 @@ void checkSafety(const SafetyConfig& config, Checker& check) {
 
 std::vector<std::string> validate(const ControllerConfig& config) {
   Checker check;
-  // No negative gain: it would drive the arm away from the target.
-  check.range("gains/pan", config.gains.pan, 0.0, 5.0, "1/s");
-  check.range("gains/tilt", config.gains.tilt, 0.0, 5.0, "1/s");
-  check.range("gains/spin", config.gains.spin, 0.0, 5.0, "1/s");
-  check.range("gains/insertion", config.gains.insertion, 0.0, 0.5, "m/s");
+  checkLaws(config, check);
+  checkTarget(config.target, check);
+  checkOscillation(config.oscillation, check);
   checkDeadZone(config.dead_zone, check);
+  checkRest(config.rest, check);
   // Not zero: since all components are scaled together, it would stop the others too. A gain of zero keeps one still.
   check.range("limits/velocity", config.limits.velocity, 1e-6, 1.0, 0.1, "s");
+  // The dead zone's inverse stays within the limits.
+  const Eigen::Vector4d room = config.limits.velocity.vector() - config.dead_zone.width.vector();
+  if (config.dead_zone.inverse && !(room.array() > 0.0).all()) {
+    check.add("limits/velocity is not above dead_zone/width, expected more in each component");
+  }
   check.range("limits/acceleration", config.limits.acceleration, 1e-6, 100.0, 10.0, "s^2");
   checkSafety(config.safety, check);
   return check.errors();

@@ -1,22 +1,25 @@
 #include "laparoscope_servo/servo/dead_zone.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace laparoscope_servo::servo {
 
-ScopeVelocity DeadZoneInverse::apply(const ScopeVelocity& wanted) {
-  if (!config_.inverse) return wanted;
-  const Eigen::Vector4d width = config_.width.vector();
-  const Eigen::Vector4d stop = config_.stop.vector();
-  const Eigen::Vector4d start = config_.start.vector();
+ScopeVelocity throughDeadZone(const ScopeVelocity& wanted, const ScopeVelocity& width) {
+  constexpr double kSteep = 10.0;
   Eigen::Vector4d command = wanted.vector();
   for (int k = 0; k < 4; ++k) {
-    const double speed = std::abs(command[k]);
-    bool& moving = moving_[static_cast<std::size_t>(k)];
-    moving = speed > 0.0 && speed >= (moving ? stop[k] : start[k]);
-    command[k] = moving ? command[k] + std::copysign(width[k], command[k]) : 0.0;
+    command[k] += std::copysign(std::min(width.vector()[k], kSteep * std::abs(command[k])), command[k]);
   }
   return ScopeVelocity::fromVector(command);
+}
+
+ScopeVelocity afterDeadZone(const ScopeVelocity& command, const ScopeVelocity& width) {
+  Eigen::Vector4d executed = command.vector();
+  for (int k = 0; k < 4; ++k) {
+    executed[k] = std::copysign(std::max(0.0, std::abs(executed[k]) - width.vector()[k]), executed[k]);
+  }
+  return ScopeVelocity::fromVector(executed);
 }
 
 }  // namespace laparoscope_servo::servo

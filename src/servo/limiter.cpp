@@ -7,19 +7,29 @@ namespace laparoscope_servo::servo {
 
 namespace {
 
-// The largest factor, at most 1, that brings every component of `v` within its limit.
-double scaleWithin(const Eigen::Vector4d& v, const Eigen::Vector4d& limit) {
+// The largest factor, from 0 to 1, with which `v` added to `base`, which is within the limits, stays within them.
+double scaleWithin(const Eigen::Vector4d& v, const Eigen::Vector4d& limit, const Eigen::Vector4d& base = Eigen::Vector4d::Zero()) {
   double scale = 1.0;
   for (int k = 0; k < 4; ++k) {
-    if (std::abs(v[k]) > limit[k]) scale = std::min(scale, limit[k] / std::abs(v[k]));
+    if (std::abs(base[k] + v[k]) > limit[k]) {
+      scale = std::min(scale, std::max(0.0, limit[k] - std::copysign(1.0, v[k]) * base[k]) / std::abs(v[k]));
+    }
   }
   return scale;
 }
 
 }  // namespace
 
-ScopeVelocity Limiter::apply(const ScopeVelocity& wanted, double dt) {
-  const Eigen::Vector4d target = scaleWithin(wanted.vector(), limits_.velocity.vector()) * wanted.vector();
+ScopeVelocity Limiter::apply(std::initializer_list<ScopeVelocity> parts, double dt) {
+  const Eigen::Vector4d limit = limits_.velocity.vector();
+  Eigen::Vector4d sum = Eigen::Vector4d::Zero();
+  for (const ScopeVelocity& part : parts) sum += part.vector();
+  const double common = scaleWithin(sum, limit);
+  Eigen::Vector4d target = common * sum;
+  for (const ScopeVelocity& part : parts) {
+    if (common < 1.0) target += scaleWithin((1.0 - common) * part.vector(), limit, target) * (1.0 - common) * part.vector();
+    target = target.cwiseMax(-limit).cwiseMin(limit);  // of rounding
+  }
   const Eigen::Vector4d change = target - last_.vector();
   const double scale = scaleWithin(change, dt * limits_.acceleration.vector());
   // With nothing to slow down the target is taken as it is: last + (target - last) would leave rounding where a zero is

@@ -2,7 +2,8 @@
 // tissue.
 //
 // The camera sees the exact homography of the plane, its ROI's corners with noise; the robot executes what the
-// controller commands after a delay and with a dead zone, as the end-effector's velocity of eq. (12). Deterministic:
+// controller commands after a delay and with a dead zone, as the end-effector's velocity of eq. (12). Tissue and insertion point may move,
+// the optics may be oblique, and what the controller believes of depths and delay may be wrong. Deterministic:
 // the same configuration and seed give the same numbers. World frame: the camera's at the reference pose.
 #pragma once
 
@@ -12,7 +13,9 @@
 
 #include "laparoscope_servo/geometry/homography.h"
 #include "laparoscope_servo/ros/controller_parameters.h"
+#include "laparoscope_servo/sim/patient.h"
 #include "laparoscope_servo/sim/scope_actuator.h"
+#include "laparoscope_servo/sim/scope_body.h"
 
 namespace laparoscope_servo::skin {
 
@@ -30,9 +33,13 @@ struct SimulationConfig {
   double depth = 0.1;                                          // m, d2 at the reference pose
   double scope_length = 0.35;                                  // m, l = d1 + d2
   double believed_depth_factor = 1.0;                          // the d2 that the controller is told, over the true one
+  double optics_angle = 0.0;                                   // rad, between shaft and optical axis
+  double optics_roll = 0.0;                                    // rad, of the camera on the scope, about the shaft
+  sim::Wrist wrist = sim::Wrist::kStiff;
   // Where the loop starts, from the reference pose: turned about the insertion point [rad], then pushed in [m].
   servo::ScopeVelocity start{0.1511, 0.0873, 0.1745, 0.02};
   sim::ScopeActuatorConfig robot;
+  sim::PatientConfig patient;
 };
 
 // Reads the group `simulation`; errors go to the reader.
@@ -48,8 +55,11 @@ struct SimulationSample {
   double alpha = 0.0;            // rad, orientation of the ROI
   double d1 = 0.0;               // m
   double d2 = 0.0;               // m
-  double lateral_speed = 0.0;  // m/s, of the scope at the insertion point across the shaft: eq. (9) of what is executed
+  // m/s, of the scope across the shaft, eq. (9) of what is executed: at the insertion point, and where the controller believes it to be
+  double lateral_speed = 0.0;
+  double commanded_lateral_speed = 0.0;
   double lateral_offset = 0.0;  // m, from the insertion point to the shaft
+  double worst_corner = 0.0;    // px, of the ROI from the image's border, the nearest; negative: outside
   std::string state;            // of the controller
 };
 

@@ -2,38 +2,26 @@
 // zone and safety come after it.
 #pragma once
 
-#include <memory>
-
+#include "laparoscope_servo/servo/scope_geometry.h"
 #include "laparoscope_servo/servo/scope_velocity.h"
 #include "laparoscope_servo/servo/task_function.h"
 
 namespace laparoscope_servo::servo {
 
+// What a law asks for, in two parts that add up. They are limited apart, since a long way to turn need not slow down the centring; each
+// keeps its direction.
+struct LawVelocity {
+  ScopeVelocity turning;    // for the ROI's orientation
+  ScopeVelocity centring;   // for its place in the image, and its depth
+  ScopeVelocity sum() const { return ScopeVelocity::fromVector(turning.vector() + centring.vector()); }
+};
+
 class ControlLaw {
  public:
   virtual ~ControlLaw() = default;
 
-  // `d2` [m] > 0: from the insertion point to the camera. Finite when the arguments are.
-  virtual ScopeVelocity velocity(const TaskError& error, double d2) const = 0;
-};
-
-// Gains of the paper's experiment, (k_p, k_t, k_s, k_d). For pan and tilt they hold the 1/d2 of eq. (11).
-struct PaperGains {
-  double pan = 0.3;         // 1/s, k_p
-  double tilt = 0.3;        // 1/s, k_t
-  double spin = 0.3;        // 1/s, k_s
-  double insertion = 0.02;  // m/s, k_d
-};
-
-// Bourger et al. (2007), eq. (7) and (11). On the optical axis, before a plane across it at Z*, the errors decay with
-// k_p (1 + d2/Z*), k_t (1 + d2/Z*), 2 k_s and k_d / Z*: a wrong d2 or Z* changes how fast, not whether.
-class PaperLaw : public ControlLaw {
- public:
-  explicit PaperLaw(const PaperGains& gains) : gains_(gains) {}
-  ScopeVelocity velocity(const TaskError& error, double d2) const override;
-
- private:
-  PaperGains gains_;
+  // Not finite where the arguments are not, or where the ROI's place does not determine the motion.
+  virtual LawVelocity velocity(const TaskError& error, const ScopeGeometry& scope) const = 0;
 };
 
 }  // namespace laparoscope_servo::servo

@@ -6,10 +6,10 @@
 // zero, at once.
 #pragma once
 
-#include <memory>
 #include <string>
 
 #include "laparoscope_servo/servo/controller_config.h"
+#include "laparoscope_servo/servo/scope_servo.h"
 
 namespace laparoscope_servo::servo {
 
@@ -23,6 +23,7 @@ struct TaskErrorInput {
 struct DepthInput {
   std::string problem = "depth d2 is unknown";  // why it cannot be used; empty: it can
   double d2 = 0.0;                              // m, along the shaft from the insertion point to the camera
+  Eigen::Matrix3d camera_R_shaft = Eigen::Matrix3d::Identity();  // the optics, see scope_geometry.h
   double lateral_offset = 0.0;                  // m, of the insertion point from the shaft
   double age = 0.0;                             // s
 };
@@ -65,9 +66,7 @@ class Controller {
   ControllerOutput stopped() const;
 
   ControllerConfig config_;
-  std::unique_ptr<ControlLaw> law_;
-  DeadZoneInverse dead_zone_;
-  Limiter limiter_;
+  ScopeServo servo_;
   bool engaged_ = false;
   bool holding_ = false;
   bool has_time_ = false;

@@ -4,9 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "laparoscope_servo/servo/control_law.h"
 #include "laparoscope_servo/servo/dead_zone.h"
+#include "laparoscope_servo/servo/feature_law.h"
 #include "laparoscope_servo/servo/limiter.h"
+#include "laparoscope_servo/servo/oscillation_guard.h"
+#include "laparoscope_servo/servo/paper_law.h"
+#include "laparoscope_servo/servo/rest_band.h"
+#include "laparoscope_servo/servo/target_motion.h"
 
 namespace laparoscope_servo::servo {
 
@@ -20,8 +24,24 @@ struct SafetyConfig {
   double max_period = 0.1;            // s, the most that one step counts for the limit on acceleration
 };
 
+enum class LawKind { kFeatures, kPaper };
+
+// What is known of the time from now to the execution of a command.
+struct PredictorConfig {
+  bool enabled = true;       // false: the law sees the task error of the last image as it is
+  double delay = 0.16;       // s, from a command to its execution
+  bool feed_forward = true;  // the target's own velocity is added to the law's
+};
+
 struct ControllerConfig {
-  PaperGains gains;
+  LawKind law = LawKind::kFeatures;
+  PaperGains gains;        // of kPaper
+  FeatureGains features;   // of kFeatures; desired_depth for the predictor of both
+  SpinMode spin = SpinMode::kServo;  // of kFeatures
+  PredictorConfig predictor;
+  TargetMotionConfig target;
+  RestConfig rest;
+  OscillationConfig oscillation;
   DeadZoneConfig dead_zone;
   Limits limits;
   SafetyConfig safety;

@@ -1,10 +1,12 @@
 // Limits on velocity and acceleration that keep the direction of the motion.
 //
-// All four components are scaled together, so that the ROI takes the same path in the image, only slower. A velocity
-// beyond its limit scales the whole command; a change beyond the acceleration's limit scales the whole change, so that
-// the command goes straight from the last one to the wanted one. Both limits hold for each component, whatever is asked
-// for.
+// All four components of a part are scaled together, so that the ROI takes the same path in the image, only slower. What has to be limited
+// comes in parts: all of it is scaled until it fits, and then each part, the first ones first, grows into the room that is left. A change beyond the acceleration's limit
+// scales the whole change, so that the command goes straight from the last one to the wanted one. Both limits hold for each component,
+// whatever is asked for.
 #pragma once
+
+#include <initializer_list>
 
 #include "laparoscope_servo/servo/scope_velocity.h"
 
@@ -12,17 +14,18 @@ namespace laparoscope_servo::servo {
 
 struct Limits {
   ScopeVelocity velocity{0.1, 0.1, 0.1, 0.02};     // rad/s, rad/s, rad/s, m/s
-  ScopeVelocity acceleration{0.5, 0.5, 0.5, 0.1};  // rad/s², rad/s², rad/s², m/s²
+  ScopeVelocity acceleration{1.0, 1.0, 1.0, 0.2};  // rad/s², rad/s², rad/s², m/s²
 };
 
 class Limiter {
  public:
   explicit Limiter(const Limits& limits) : limits_(limits) {}
 
-  // The command for a time `dt` [s] >= 0 after the last one. `wanted` must be finite.
-  ScopeVelocity apply(const ScopeVelocity& wanted, double dt);
+  // The velocity for a time `dt` [s] >= 0 after the last one. `parts` must be finite; they add up to what is wanted.
+  ScopeVelocity apply(std::initializer_list<ScopeVelocity> parts, double dt);
+  ScopeVelocity apply(const ScopeVelocity& wanted, double dt) { return apply({wanted}, dt); }
 
-  // The last command is zero: a safety stop is not slowed down by the limit on acceleration.
+  // The last velocity is zero: a safety stop is not slowed down by the limit on acceleration.
   void reset() { last_ = ScopeVelocity(); }
 
  private:

@@ -1,40 +1,49 @@
 // A rigid scope in space, driven by the velocity of its end-effector, and where it passes an insertion point.
 //
-// Nothing holds it at the insertion point: whether it stays there is for who drives it, and is measured here. Frames
-// (0° optics, parallel axes, z along the shaft into the body): end-effector O_7, and the camera O_C a length l ahead of
-// it.
+// Frames (parallel axes, z along the shaft into the body): end-effector O_7, and the tip of the shaft, where the camera's centre O_C
+// is, a length l ahead of it. A stiff wrist holds the scope's direction: nothing keeps it at the insertion point, whether it stays there is
+// for who drives it, and is measured here. A passive wrist leaves the direction to the insertion point.
 #pragma once
 
 #include "laparoscope_servo/geometry/se3.h"
 
 namespace laparoscope_servo::sim {
 
+enum class Wrist { kStiff, kPassive };
+
 class ScopeBody {
  public:
   // `insertion_point` in world coordinates [m], `length` l > 0 [m].
-  ScopeBody(const Eigen::Isometry3d& world_T_camera, const Eigen::Vector3d& insertion_point, double length)
-      : world_T_camera_(world_T_camera), insertion_point_(insertion_point), length_(length) {}
+  ScopeBody(const Eigen::Isometry3d& world_T_tip, const Eigen::Vector3d& insertion_point, double length, Wrist wrist = Wrist::kStiff)
+      : world_T_tip_(world_T_tip), insertion_point_(insertion_point), length_(length), wrist_(wrist) {}
 
-  // Moves for `dt` [s] with a constant twist of the end-effector, expressed in its frame.
+  // Moves for `dt` [s] with a constant twist of the end-effector, expressed in its frame. A passive wrist takes no part of the twist but
+  // the end-effector's translation and the spin.
   void move(const geometry::Vector6d& end_effector_twist, double dt);
 
-  // The camera's twist, in the camera frame, when the end-effector has this one.
-  geometry::Vector6d cameraTwist(const geometry::Vector6d& end_effector_twist) const;
+  // The insertion point has moved, to world coordinates [m]; a passive wrist follows it.
+  void moveInsertionPoint(const Eigen::Vector3d& insertion_point);
 
-  const Eigen::Isometry3d& pose() const { return world_T_camera_; }
+  // The tip's twist, in its frame, when the end-effector has this one and the wrist is stiff.
+  geometry::Vector6d tipTwist(const geometry::Vector6d& end_effector_twist) const;
+
+  // world_T_tip.
+  const Eigen::Isometry3d& pose() const { return world_T_tip_; }
 
   // m, along the shaft from the insertion point to the camera.
-  double depth() const { return -insertionPointInCamera().z(); }
+  double depth() const { return -insertionPointAtTip().z(); }
   // m, from the insertion point to the shaft.
-  double lateralOffset() const { return insertionPointInCamera().head<2>().norm(); }
+  double lateralOffset() const { return insertionPointAtTip().head<2>().norm(); }
   double length() const { return length_; }
 
  private:
-  Eigen::Vector3d insertionPointInCamera() const { return world_T_camera_.inverse() * insertion_point_; }
+  Eigen::Vector3d insertionPointAtTip() const { return world_T_tip_.inverse() * insertion_point_; }
+  void aim();
 
-  Eigen::Isometry3d world_T_camera_;
+  Eigen::Isometry3d world_T_tip_;
   Eigen::Vector3d insertion_point_;
   double length_;
+  Wrist wrist_;
 };
 
 }  // namespace laparoscope_servo::sim

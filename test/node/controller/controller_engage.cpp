@@ -88,7 +88,7 @@ TEST_F(ControllerEngage, FollowsOnceEngagedAndStopsWhenDisengaged) {
 
 TEST_F(ControllerEngage, KeepsItsLimits) {
   engageAndMove();
-  cart_.set([](Feed& feed) { feed.message.e_v.x = 1e6; });
+  cart_.set([](Feed& feed) { feed.message.x = 1.0; });
   EXPECT_TRUE(waitFor([this] { return cart_.nextCommands(1).back().pan > 0.0999; }));
   for (const ScopeVelocity& command : cart_.nextCommands(30)) {
     EXPECT_LE(std::abs(command.pan), 0.1 * (1.0 + 1e-9));

@@ -54,6 +54,10 @@ inline TaskError offTarget() {
   message.e_v.y = -0.1;
   message.e_v.z = 0.1;
   message.e_w.z = -0.1;
+  message.x = 0.2 / 1.1;
+  message.y = -0.1 / 1.1;
+  message.log_depth = std::log(1.1);
+  message.alpha = -0.05;
   message.m_star.z = 1.0;
   return message;
 }

@@ -21,9 +21,48 @@ std::vector<double> numbers(const ControllerNodeConfig& config) {
                           c.gains.spin,         c.gains.insertion,    c.dead_zone.inverse ? 1.0 : 0.0,
                           s.max_task_error_age, s.max_depth_age,      s.min_depth,
                           s.max_depth,          s.max_lateral_offset, s.resume_time,
-                          s.max_period};
+                          s.max_period,
+                          static_cast<double>(c.law),
+                          static_cast<double>(c.spin),
+                          c.features.centre,
+                          c.features.depth,
+                          c.features.orientation,
+                          c.features.desired_depth,
+                          c.predictor.enabled ? 1.0 : 0.0,
+                          c.predictor.delay,
+                          c.predictor.feed_forward ? 1.0 : 0.0,
+                          c.target.centre_noise,
+                          c.target.depth_noise,
+                          c.target.orientation_noise,
+                          c.target.centre_wander,
+                          c.target.depth_wander,
+                          c.target.orientation_wander,
+                          c.target.centre_acceleration,
+                          c.target.depth_acceleration,
+                          c.target.orientation_acceleration,
+                          c.target.calibration,
+                          c.target.significance,
+                          c.target.damping,
+                          c.rest.enabled ? 1.0 : 0.0,
+                          c.rest.centre_stop,
+                          c.rest.centre_start,
+                          c.rest.depth_stop,
+                          c.rest.depth_start,
+                          c.rest.orientation_stop,
+                          c.rest.orientation_start,
+                          c.rest.hunting_time,
+                          c.rest.widening,
+                          c.rest.widest,
+                          c.oscillation.enabled ? 1.0 : 0.0,
+                          c.oscillation.half_period,
+                          static_cast<double>(c.oscillation.changes),
+                          c.oscillation.centre,
+                          c.oscillation.depth,
+                          c.oscillation.orientation,
+                          c.oscillation.step,
+                          c.oscillation.least};
   for (const servo::ScopeVelocity& v :
-       {c.dead_zone.width, c.dead_zone.stop, c.dead_zone.start, c.limits.velocity, c.limits.acceleration}) {
+       {c.dead_zone.width, c.limits.velocity, c.limits.acceleration}) {
     for (const double number : numbers(v)) all.push_back(number);
   }
   return all;
@@ -53,8 +92,23 @@ std::vector<double> numbers(const SimulationConfig& c) {
                           c.start.tilt,
                           c.start.spin,
                           c.start.insertion,
-                          c.robot.delay};
+                          c.robot.delay,
+                          c.optics_angle,
+                          c.optics_roll,
+                          static_cast<double>(c.wrist),
+                          c.patient.breathing.frequency,
+                          c.patient.breathing.second_harmonic,
+                          c.patient.breathing.third_harmonic,
+                          c.patient.breathing.start,
+                          c.patient.breathing.end,
+                          c.patient.drift_end,
+                          c.patient.jump_time,
+                          c.patient.tilt,
+                          c.patient.tilt_frequency};
   for (const double width : c.robot.dead_zone) all.push_back(width);
+  for (const std::vector<double>& v : {c.patient.breathing.tissue, c.patient.breathing.trocar, c.patient.drift, c.patient.jump}) {
+    all.insert(all.end(), v.begin(), v.end());
+  }
   return all;
 }
 
@@ -85,7 +139,7 @@ TEST(ControllerParameters, FileOfTheSimulationEqualsTheDefaults) {
   EXPECT_EQ(reader.report(), "");
   EXPECT_EQ(numbers(config), numbers(SimulationConfig()));
   EXPECT_EQ(config.robot.dead_zone_kind, SimulationConfig().robot.dead_zone_kind);
-  EXPECT_EQ(leaves(tree), numbers(config).size() - 4 + 2);  // the dead zone is one list; and its kind
+  EXPECT_EQ(leaves(tree), numbers(config).size() - 3 - 4 * 2 + 1);  // lists are one leaf; and the dead zone's kind
 }
 
 // Each leaf of the file, changed, changes the configuration: no parameter is read into the wrong field.
@@ -122,7 +176,7 @@ TEST(ControllerParameters, EveryNumberOfTheFileHasAFieldOfItsOwn) {
       }
     }
   }
-  EXPECT_EQ(changed, 31);
+  EXPECT_EQ(changed, 55);
 }
 
 TEST(ControllerParameters, NothingSetGivesTheDefaults) {

@@ -29,6 +29,38 @@ std::vector<Field> fields() {
       {"gains/tilt", [](ControllerConfig& c, double v) { c.gains.tilt = v; }},
       {"gains/spin", [](ControllerConfig& c, double v) { c.gains.spin = v; }},
       {"gains/insertion", [](ControllerConfig& c, double v) { c.gains.insertion = v; }},
+      {"features/centre", [](ControllerConfig& c, double v) { c.features.centre = v; }},
+      {"features/depth", [](ControllerConfig& c, double v) { c.features.depth = v; }},
+      {"features/orientation", [](ControllerConfig& c, double v) { c.features.orientation = v; }},
+      {"features/desired_depth", [](ControllerConfig& c, double v) { c.features.desired_depth = v; }},
+      {"predictor/delay", [](ControllerConfig& c, double v) { c.predictor.delay = v; }},
+      {"target/centre_noise", [](ControllerConfig& c, double v) { c.target.centre_noise = v; }},
+      {"target/depth_noise", [](ControllerConfig& c, double v) { c.target.depth_noise = v; }},
+      {"target/orientation_noise", [](ControllerConfig& c, double v) { c.target.orientation_noise = v; }},
+      {"target/centre_wander", [](ControllerConfig& c, double v) { c.target.centre_wander = v; }},
+      {"target/depth_wander", [](ControllerConfig& c, double v) { c.target.depth_wander = v; }},
+      {"target/orientation_wander", [](ControllerConfig& c, double v) { c.target.orientation_wander = v; }},
+      {"target/centre_acceleration", [](ControllerConfig& c, double v) { c.target.centre_acceleration = v; }},
+      {"target/depth_acceleration", [](ControllerConfig& c, double v) { c.target.depth_acceleration = v; }},
+      {"target/orientation_acceleration", [](ControllerConfig& c, double v) { c.target.orientation_acceleration = v; }},
+      {"target/calibration", [](ControllerConfig& c, double v) { c.target.calibration = v; }},
+      {"target/significance", [](ControllerConfig& c, double v) { c.target.significance = v; }},
+      {"target/damping", [](ControllerConfig& c, double v) { c.target.damping = v; }},
+      {"rest/centre_stop", [](ControllerConfig& c, double v) { c.rest.centre_stop = v; }},
+      {"rest/centre_start", [](ControllerConfig& c, double v) { c.rest.centre_start = v; }},
+      {"rest/depth_stop", [](ControllerConfig& c, double v) { c.rest.depth_stop = v; }},
+      {"rest/depth_start", [](ControllerConfig& c, double v) { c.rest.depth_start = v; }},
+      {"rest/orientation_stop", [](ControllerConfig& c, double v) { c.rest.orientation_stop = v; }},
+      {"rest/orientation_start", [](ControllerConfig& c, double v) { c.rest.orientation_start = v; }},
+      {"rest/hunting_time", [](ControllerConfig& c, double v) { c.rest.hunting_time = v; }},
+      {"rest/widening", [](ControllerConfig& c, double v) { c.rest.widening = v; }},
+      {"rest/widest", [](ControllerConfig& c, double v) { c.rest.widest = v; }},
+      {"oscillation/half_period", [](ControllerConfig& c, double v) { c.oscillation.half_period = v; }},
+      {"oscillation/centre", [](ControllerConfig& c, double v) { c.oscillation.centre = v; }},
+      {"oscillation/depth", [](ControllerConfig& c, double v) { c.oscillation.depth = v; }},
+      {"oscillation/orientation", [](ControllerConfig& c, double v) { c.oscillation.orientation = v; }},
+      {"oscillation/step", [](ControllerConfig& c, double v) { c.oscillation.step = v; }},
+      {"oscillation/least", [](ControllerConfig& c, double v) { c.oscillation.least = v; }},
       {"safety/max_task_error_age", [](ControllerConfig& c, double v) { c.safety.max_task_error_age = v; }},
       {"safety/max_depth_age", [](ControllerConfig& c, double v) { c.safety.max_depth_age = v; }},
       {"safety/min_depth", [](ControllerConfig& c, double v) { c.safety.min_depth = v; }},
@@ -38,8 +70,6 @@ std::vector<Field> fields() {
       {"safety/max_period", [](ControllerConfig& c, double v) { c.safety.max_period = v; }}};
   const auto add = [&all](const std::vector<Field>& more) { all.insert(all.end(), more.begin(), more.end()); };
   add(velocityFields("dead_zone/width", [](ControllerConfig& c) -> ScopeVelocity& { return c.dead_zone.width; }));
-  add(velocityFields("dead_zone/stop", [](ControllerConfig& c) -> ScopeVelocity& { return c.dead_zone.stop; }));
-  add(velocityFields("dead_zone/start", [](ControllerConfig& c) -> ScopeVelocity& { return c.dead_zone.start; }));
   add(velocityFields("limits/velocity", [](ControllerConfig& c) -> ScopeVelocity& { return c.limits.velocity; }));
   add(velocityFields("limits/acceleration",
                      [](ControllerConfig& c) -> ScopeVelocity& { return c.limits.acceleration; }));
@@ -77,9 +107,9 @@ TEST(ControllerConfig, NamesAllErrorsAtOnce) {
 
 TEST(ControllerConfig, ThresholdsHaveToBeInOrder) {
   ControllerConfig config;
-  config.dead_zone.stop.spin = 0.02;
-  config.dead_zone.start.spin = 0.01;
-  EXPECT_TRUE(names(validate(config), "dead_zone/start/spin"));
+  config.rest.centre_stop = 0.02;
+  config.rest.centre_start = 0.01;
+  EXPECT_TRUE(names(validate(config), "rest/centre_start"));
   config = ControllerConfig();
   config.safety.min_depth = 0.2;
   config.safety.max_depth = 0.1;
@@ -93,6 +123,15 @@ TEST(ControllerConfig, RefusesALimitOfZero) {
   EXPECT_TRUE(names(validate(config), "limits/velocity/spin"));
   config = ControllerConfig();
   config.gains.spin = 0.0;
+  EXPECT_TRUE(validate(config).empty());
+}
+
+TEST(ControllerConfig, TheInverseOfTheDeadZoneHasToFitIntoTheLimits) {
+  ControllerConfig config;
+  config.limits.velocity.insertion = config.dead_zone.width.insertion;
+  ASSERT_EQ(validate(config).size(), 1u);
+  EXPECT_EQ(validate(config)[0].rfind("limits/velocity", 0), 0u);
+  config.dead_zone.inverse = false;
   EXPECT_TRUE(validate(config).empty());
 }
 

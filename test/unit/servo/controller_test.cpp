@@ -22,6 +22,10 @@ ControllerInput good(double time) {
   input.task_error.valid = true;
   input.task_error.error.e_v = {0.2, -0.1, 0.1};
   input.task_error.error.e_w = {0.0, 0.0, -0.1};
+  input.task_error.error.x = 0.2 / 1.1;
+  input.task_error.error.y = -0.1 / 1.1;
+  input.task_error.error.log_depth = std::log(1.1);
+  input.task_error.error.alpha = -0.05;
   input.task_error.age = 0.05;
   input.depth.problem.clear();
   input.depth.d2 = 0.1;
@@ -155,7 +159,7 @@ TEST(Controller, ResumesAfterAShortHoldFromRest) {
   ControllerInput lost = good(0.0);
   lost.task_error.valid = false;
   for (int k = 0; k < 50; ++k) EXPECT_EQ(running.step(lost).state, ControllerState::kHold);  // 1 s
-  const Eigen::Vector4d limit = 0.02 * Limits().acceleration.vector() * (1.0 + 1e-9);
+  const Eigen::Vector4d limit = 0.02 * Limits().acceleration.vector() * (1.0 + 1e-9) + DeadZoneConfig().width.vector();
   const ControllerOutput output = running.step(good(0.0));
   EXPECT_EQ(output.state, ControllerState::kServo);
   EXPECT_TRUE((output.command.vector().cwiseAbs().array() <= limit.array()).all());
@@ -225,8 +229,11 @@ TEST(Controller, APauseIsNoLicenceForAJump) {
   Running running;
   ControllerInput input = good(running.time() + 1000.0);
   input.task_error.error.e_v = {-100.0, 100.0, 100.0};
+  input.task_error.error.x = -100.0;
+  input.task_error.error.y = 100.0;
   const Eigen::Vector4d change = running.controller.update(input).command.vector() - running.last.command.vector();
-  const Eigen::Vector4d limit = SafetyConfig().max_period * Limits().acceleration.vector() * (1.0 + 1e-9);
+  const Eigen::Vector4d limit =
+      SafetyConfig().max_period * Limits().acceleration.vector() * (1.0 + 1e-9) + 2.0 * DeadZoneConfig().width.vector();
   EXPECT_TRUE((change.cwiseAbs().array() <= limit.array()).all());
 }
 
@@ -250,6 +257,11 @@ TEST(Controller, LimitsHoldForAnyInput) {
       input.task_error.error.e_v[i] = size * uniform(random);
       input.task_error.error.e_w[i] = size * uniform(random);
     }
+    input.task_error.error.x = size * uniform(random);
+    input.task_error.error.y = size * uniform(random);
+    input.task_error.error.log_depth = size * uniform(random);
+    input.task_error.error.alpha = size * uniform(random);
+    input.task_error.age = 0.1 * (uniform(random) + 1.0);
     if (k % 17 == 0) all[static_cast<std::size_t>(k / 17) % all.size()].apply(input);
     if (!controller.engaged()) controller.engage(input);
     const ControllerOutput output = controller.update(input);
@@ -260,7 +272,8 @@ TEST(Controller, LimitsHoldForAnyInput) {
       ASSERT_TRUE(isZero(output));
     } else {
       const double step = std::min(dt, config.safety.max_period);
-      const Eigen::Vector4d limit = step * config.limits.acceleration.vector() * (1.0 + 1e-9);
+      // The dead zone's inverse may go from one side of it to the other, which the arm does not execute.
+      const Eigen::Vector4d limit = step * config.limits.acceleration.vector() * (1.0 + 1e-9) + 2.0 * config.dead_zone.width.vector();
       ASSERT_TRUE(((command - last).cwiseAbs().array() <= limit.array() + 1e-12).all());
       ++moved;
     }
@@ -269,14 +282,22 @@ TEST(Controller, LimitsHoldForAnyInput) {
   EXPECT_GT(moved, 10000);
 }
 
-TEST(Controller, RestsWhenItHasArrived) {
-  Running running;
+TEST(Controller, RestsAtTheTarget) {
+  Controller controller{ControllerConfig()};
   ControllerInput arrived = good(0.0);
-  arrived.task_error.error.e_v = {1e-3, 1e-3, 1e-3};  // 0.4 px at 400 px, 0.1 % of scale
-  arrived.task_error.error.e_w = {0.0, 0.0, 1e-3};
-  for (int k = 0; k < 50; ++k) running.step(arrived);
-  for (int k = 0; k < 50; ++k) EXPECT_TRUE(isZero(running.step(arrived)));
-  EXPECT_EQ(running.last.state, ControllerState::kServo);
+  TaskError& error = arrived.task_error.error;
+  error.e_v = {2e-4, 2e-4, 8e-4};  // 0.1 px at 400 px, 0.1 % of scale
+  error.e_w = {0.0, 0.0, 2e-3};
+  error.x = error.y = 2e-4;
+  error.log_depth = 8e-4;
+  error.alpha = 1e-3;
+  ASSERT_EQ(controller.engage(arrived), "");
+  for (int k = 0; k < 100; ++k) {
+    arrived.time = 0.02 * k;
+    const ControllerOutput output = controller.update(arrived);
+    EXPECT_TRUE(isZero(output));
+    EXPECT_EQ(output.state, ControllerState::kServo);
+  }
 }
 
 }  // namespace

@@ -7,104 +7,54 @@
 namespace laparoscope_servo::servo {
 namespace {
 
-DeadZoneConfig config() {
-  DeadZoneConfig c;
-  c.width = {0.004, 0.003, 0.002, 0.0004};
-  c.stop = {0.001, 0.001, 0.001, 0.0001};
-  c.start = {0.002, 0.002, 0.002, 0.0002};
-  return c;
+const ScopeVelocity kWidth{0.004, 0.003, 0.002, 0.0004};
+
+ScopeVelocity all(double angular, double linear) { return {angular, angular, angular, linear}; }
+
+TEST(DeadZone, NothingWantedIsNothingCommanded) {
+  EXPECT_EQ(throughDeadZone(ScopeVelocity(), kWidth).vector(), Eigen::Vector4d::Zero());
+  EXPECT_EQ(afterDeadZone(ScopeVelocity(), kWidth).vector(), Eigen::Vector4d::Zero());
 }
 
-ScopeVelocity all(double angular, double linear) {
-  return {angular, angular, angular, linear};
-}
-
-// The robot as the classic dead zone: nothing below the width, less by the width above.
-double robot(double command, double width) {
-  return std::abs(command) <= width ? 0.0 : command - std::copysign(width, command);
-}
-
-TEST(DeadZoneInverse, IsZeroAtRest) {
-  DeadZoneInverse inverse(config());
-  EXPECT_EQ(inverse.apply(ScopeVelocity()).vector(), Eigen::Vector4d::Zero());
-  EXPECT_EQ(inverse.apply(all(0.0019, 0.00019)).vector(), Eigen::Vector4d::Zero());
-  EXPECT_EQ(inverse.apply(all(-0.0019, -0.00019)).vector(), Eigen::Vector4d::Zero());
-}
-
-TEST(DeadZoneInverse, UndoesTheDeadZoneOfTheRobot) {
-  DeadZoneInverse inverse(config());
-  const Eigen::Vector4d width = config().width.vector();
+TEST(DeadZone, TheInverseUndoesIt) {
   for (const double sign : {1.0, -1.0}) {
     const ScopeVelocity wanted = all(sign * 0.01, sign * 0.001);
-    const Eigen::Vector4d command = inverse.apply(wanted).vector();
-    for (int k = 0; k < 4; ++k) EXPECT_NEAR(robot(command[k], width[k]), wanted.vector()[k], 1e-15);
+    EXPECT_NEAR((afterDeadZone(throughDeadZone(wanted, kWidth), kWidth).vector() - wanted.vector()).norm(), 0.0, 1e-15);
   }
 }
 
-TEST(DeadZoneInverse, StartsAtOneThresholdAndStopsAtALowerOne) {
-  DeadZoneInverse inverse(config());
-  EXPECT_EQ(inverse.apply({0.0015, 0, 0, 0}).pan, 0.0);
-  EXPECT_GT(inverse.apply({0.0020, 0, 0, 0}).pan, 0.0);
-  EXPECT_GT(inverse.apply({0.0015, 0, 0, 0}).pan, 0.0);
-  EXPECT_GT(inverse.apply({0.0010, 0, 0, 0}).pan, 0.0);
-  EXPECT_EQ(inverse.apply({0.0009, 0, 0, 0}).pan, 0.0);
-  EXPECT_EQ(inverse.apply({0.0015, 0, 0, 0}).pan, 0.0);
+TEST(DeadZone, WhatIsBelowItIsNotExecuted) {
+  EXPECT_EQ(afterDeadZone(kWidth, kWidth).vector(), Eigen::Vector4d::Zero());
+  EXPECT_EQ(afterDeadZone(ScopeVelocity::fromVector(-0.9 * kWidth.vector()), kWidth).vector(), Eigen::Vector4d::Zero());
 }
 
-TEST(DeadZoneInverse, AxesAreIndependent) {
-  DeadZoneInverse inverse(config());
+TEST(DeadZone, TheInverseIsOddMonotoneAndContinuous) {
+  double last = throughDeadZone({-0.01, 0, 0, 0}, kWidth).pan;
+  for (int k = -999; k <= 1000; ++k) {
+    const double wanted = 1e-5 * k;
+    const double command = throughDeadZone({wanted, 0, 0, 0}, kWidth).pan;
+    EXPECT_GT(command, last);
+    EXPECT_LT(command - last, 12e-5);  // eleven times as steep as its argument, no jump
+    EXPECT_EQ(throughDeadZone({-wanted, 0, 0, 0}, kWidth).pan, -command);
+    last = command;
+  }
+}
+
+TEST(DeadZone, AxesAreIndependent) {
   for (int axis = 0; axis < 4; ++axis) {
-    inverse.reset();
     Eigen::Vector4d wanted = Eigen::Vector4d::Zero();
     wanted[axis] = 0.01;
-    const Eigen::Vector4d command = inverse.apply(ScopeVelocity::fromVector(wanted)).vector();
+    const Eigen::Vector4d command = throughDeadZone(ScopeVelocity::fromVector(wanted), kWidth).vector();
     for (int k = 0; k < 4; ++k) EXPECT_EQ(command[k] != 0.0, k == axis);
+    EXPECT_NEAR(command[axis], 0.01 + kWidth.vector()[axis], 1e-15);
   }
 }
 
-TEST(DeadZoneInverse, ResetPutsAllAxesToRest) {
-  DeadZoneInverse inverse(config());
-  inverse.apply(all(0.01, 0.01));
-  inverse.reset();
-  EXPECT_EQ(inverse.apply(all(0.0015, 0.00015)).vector(), Eigen::Vector4d::Zero());
-}
-
-TEST(DeadZoneInverse, IsOddAndMonotoneAtRestAndInMotion) {
-  for (const bool moving : {false, true}) {
-    double last = -1.0;
-    for (int k = -1000; k <= 1000; ++k) {
-      const double wanted = 1e-5 * k;
-      DeadZoneInverse inverse(config());
-      DeadZoneInverse mirrored(config());
-      if (moving) {
-        inverse.apply(all(0.05, 0.05));
-        mirrored.apply(all(0.05, 0.05));
-      }
-      const double command = inverse.apply({wanted, 0, 0, 0}).pan;
-      EXPECT_GE(command, last) << "wanted " << wanted;
-      EXPECT_GE(command * wanted, 0.0);
-      EXPECT_EQ(mirrored.apply({-wanted, 0, 0, 0}).pan, -command);
-      last = command;
-    }
-  }
-}
-
-TEST(DeadZoneInverse, PassesOnWhatItGetsWhenSwitchedOff) {
-  DeadZoneConfig off = config();
-  off.inverse = false;
-  DeadZoneInverse inverse(off);
+TEST(DeadZone, WithoutWidthBothDoNothing) {
   for (const double wanted : {0.0, 1e-9, -0.003, 0.5}) {
-    EXPECT_EQ(inverse.apply(all(wanted, wanted)).vector(), all(wanted, wanted).vector());
+    EXPECT_EQ(throughDeadZone(all(wanted, wanted), ScopeVelocity()).vector(), all(wanted, wanted).vector());
+    EXPECT_EQ(afterDeadZone(all(wanted, wanted), ScopeVelocity()).vector(), all(wanted, wanted).vector());
   }
-}
-
-TEST(DeadZoneInverse, ZeroThresholdsKeepZeroAtZero) {
-  DeadZoneConfig sharp = config();
-  sharp.stop = sharp.start = ScopeVelocity();
-  DeadZoneInverse inverse(sharp);
-  EXPECT_EQ(inverse.apply(ScopeVelocity()).vector(), Eigen::Vector4d::Zero());
-  inverse.apply(all(0.1, 0.1));
-  EXPECT_EQ(inverse.apply(ScopeVelocity()).vector(), Eigen::Vector4d::Zero());
 }
 
 }  // namespace

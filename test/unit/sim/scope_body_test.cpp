@@ -44,7 +44,7 @@ TEST(ScopeBody, PanWithTheRightLeverStaysInTheInsertionPoint) {
   EXPECT_NEAR(scope.lateralOffset(), 0.0, 1e-14);
   EXPECT_NEAR(scope.depth(), kDepth, 1e-14);
   EXPECT_GT(scope.pose().translation().x(), 0.0);
-  const Vector6d camera = scope.cameraTwist(twist(-d1 * pan, 0, 0, 0, pan, 0));
+  const Vector6d camera = scope.tipTwist(twist(-d1 * pan, 0, 0, 0, pan, 0));
   EXPECT_NEAR(camera[0], kDepth * pan, 1e-15);
 }
 
@@ -52,6 +52,33 @@ TEST(ScopeBody, AWrongLeverLeavesTheInsertionPoint) {
   ScopeBody scope = body();
   scope.move(twist(-0.5 * (kLength - kDepth) * 0.1, 0, 0, 0, 0.1, 0), 1.0);
   EXPECT_GT(scope.lateralOffset(), 0.005);
+}
+
+// A passive wrist: whatever the end-effector does, and wherever the insertion point goes, the shaft passes through it.
+TEST(ScopeBody, APassiveWristFollowsTheInsertionPoint) {
+  ScopeBody scope(Eigen::Isometry3d::Identity(), {0.0, 0.0, -kDepth}, kLength, Wrist::kPassive);
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  for (int k = 0; k < 200; ++k) {
+    scope.moveInsertionPoint({0.01 * uniform(random), 0.01 * uniform(random), -kDepth + 0.01 * uniform(random)});
+    EXPECT_LT(scope.lateralOffset(), 1e-12);
+    scope.move(twist(0.05 * uniform(random), 0.05 * uniform(random), 0.02 * uniform(random), uniform(random), uniform(random), uniform(random)),
+               0.02);
+    EXPECT_LT(scope.lateralOffset(), 1e-12);
+    EXPECT_TRUE((scope.pose().linear() * scope.pose().linear().transpose()).isIdentity(1e-12));
+  }
+}
+
+TEST(ScopeBody, APassiveWristPansAndSpinsAsAStiffOneDoes) {
+  ScopeBody stiff = body();
+  ScopeBody passive(Eigen::Isometry3d::Identity(), {0.0, 0.0, -kDepth}, kLength, Wrist::kPassive);
+  const double d1 = kLength - kDepth;
+  for (int k = 0; k < 1000; ++k) {
+    const Vector6d t = twist(-d1 * 0.1, 0.0, 0.0, 0.0, 0.1, 0.2);
+    stiff.move(t, 1e-3);
+    passive.move(t, 1e-3);
+  }
+  EXPECT_TRUE(passive.pose().isApprox(stiff.pose(), 1e-3));
 }
 
 // The twist is expressed in the moving frame: many small steps do what one long one does.

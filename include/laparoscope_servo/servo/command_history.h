@@ -1,0 +1,38 @@
+// What the robot has been told, and what it therefore has done and still will do, when it executes each command after a delay.
+#pragma once
+
+#include <Eigen/Core>
+#include <deque>
+
+#include "laparoscope_servo/servo/scope_velocity.h"
+
+namespace laparoscope_servo::servo {
+
+class CommandHistory {
+ public:
+  // Keeps the commands of the last `span` [s] > 0.
+  explicit CommandHistory(double span) : span_(span) {}
+
+  // From `time` [s] on, the robot is told to move by `velocity`: that of the shaft, after the robot's dead zone. Times must not
+  // decrease; an earlier one clears the history.
+  void add(double time, const ScopeVelocity& velocity);
+
+  // (pan, tilt, spin [rad], insertion [m]) that the robot executes from `begin` to `end` [s] when it does each thing `delay` [s] after
+  // it is told. What was said last goes on; before the first command, or the oldest that is kept, nothing is executed.
+  Eigen::Vector4d displacement(double begin, double end, double delay) const;
+
+  // What it executes at `time`.
+  Eigen::Vector4d velocity(double time, double delay) const;
+
+  void clear() { commands_.clear(); }
+
+ private:
+  struct Command {
+    double time;
+    Eigen::Vector4d velocity;
+  };
+  double span_;
+  std::deque<Command> commands_;
+};
+
+}  // namespace laparoscope_servo::servo

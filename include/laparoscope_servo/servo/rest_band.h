@@ -1,0 +1,50 @@
+// The bands about the target within which the scope rests.
+//
+// A feature that is at rest starts to be servoed when it is off by at least `start`, and is left alone again when it is off by less than `stop`.
+// Without the bands the noise of the images would keep the arm moving, and through the inverse of the dead zone by no small steps. A
+// feature that starts again soon after it stopped is being hunted - the robot's dead zone is not what the inverse takes it for -, and its
+// band grows until it rests.
+#pragma once
+
+#include "laparoscope_servo/servo/task_function.h"
+
+namespace laparoscope_servo::servo {
+
+struct RestConfig {
+  bool enabled = true;  // false: never at rest
+  // of the ROI's centre from where it should be, normalised image coordinates: px over the focal length
+  double centre_stop = 0.0004;
+  double centre_start = 0.0014;
+  double depth_stop = 0.0015;  // of log depth: 0.01 is 1 % of scale
+  double depth_start = 0.005;
+  double orientation_stop = 0.0015;  // rad
+  double orientation_start = 0.005;
+  double hunting_time = 1.5;  // s: a start so soon after a stop widens the band
+  double widening = 1.3;      // no unit, each time
+  double widest = 2.5;        // no unit, of the start's bound
+};
+
+class RestBand {
+ public:
+  explicit RestBand(const RestConfig& config) : config_(config) {}
+
+  // The error at `time` [s] with the features that rest at their desired values, for any law. Remembers which rest. A feature that is not
+  // finite stays as it is.
+  TaskError apply(const TaskError& error, double time);
+
+  // Every feature is at rest, and the bands are as configured.
+  void reset() { centre_ = depth_ = orientation_ = Band(); }
+
+ private:
+  struct Band {
+    bool moves = false;  // is servoed
+    double widened = 1.0;
+    double stopped = -1e9;  // s
+  };
+  bool update(Band& band, double distance, double stop, double start, double time) const;
+
+  RestConfig config_;
+  Band centre_, depth_, orientation_;
+};
+
+}  // namespace laparoscope_servo::servo

@@ -1,0 +1,66 @@
+// From task errors to velocities of the scope: law, predictor, target motion, rest band, limits, dead zone.
+//
+// The task error of an image is rolled forward to the time when the command that is given now will be executed: by what the robot has been
+// told and not done yet, and by the target's own motion. The law sees that error. No safety here: see controller.h.
+#pragma once
+
+#include <memory>
+
+#include "laparoscope_servo/servo/command_history.h"
+#include "laparoscope_servo/servo/control_law.h"
+#include "laparoscope_servo/servo/controller_config.h"
+#include "laparoscope_servo/servo/target_motion.h"
+
+namespace laparoscope_servo::servo {
+
+struct ServoInput {
+  double time = 0.0;        // s, of the command
+  double image_time = 0.0;  // s, of the exposure, on the same clock
+  TaskError error;
+  ScopeGeometry scope;
+  double period = 0.0;  // s, since the last command, 0 for the first
+};
+
+struct ServoLimits {
+  double scale = 1.0;             // 0 to 1, of all velocities
+  bool insertion_allowed = true;  // false: not deeper
+};
+
+class ScopeServo {
+ public:
+  // The configuration must be valid.
+  explicit ScopeServo(const ControllerConfig& config);
+
+  // The command; not finite where the law's velocity is not.
+  ScopeVelocity command(const ServoInput& input, const ServoLimits& limits);
+
+  // The arm has been told to stand still since `time`: what was in the way of motion starts anew.
+  void stop(double time);
+
+  // Forgets everything.
+  void reset();
+
+  // Of the gains, 1 unless the loop has swung.
+  double gainFactor() const { return oscillation_.factor(); }
+
+  // s, from a command to its execution.
+  double delay() const { return config_.predictor.delay; }
+
+ private:
+  void observe(const ServoInput& input);
+
+  ControllerConfig config_;
+  std::unique_ptr<ControlLaw> law_;
+  RestBand band_;
+  OscillationGuard oscillation_;
+  Limiter limiter_;
+  CommandHistory history_;
+  TargetMotion target_;
+  double image_time_ = 0.0;  // s, of the last image
+  bool has_image_ = false;
+  Eigen::Matrix4d jacobian_ = Eigen::Matrix4d::Identity();  // of the features at the reference, see target_motion.h
+  Eigen::Vector4d displacement_ = Eigen::Vector4d::Zero();  // of the scope at the last image, since the first
+  Eigen::Vector4d to_target_ = Eigen::Vector4d::Zero();     // in the last image
+};
+
+}  // namespace laparoscope_servo::servo

@@ -1,0 +1,95 @@
+#include "laparoscope_servo/servo/scope_servo.h"
+
+#include <Eigen/LU>
+
+#include "laparoscope_servo/servo/feature_law.h"
+#include "laparoscope_servo/servo/paper_law.h"
+#include "laparoscope_servo/servo/scope_displacement.h"
+
+namespace laparoscope_servo::servo {
+
+namespace {
+
+constexpr double kHistory = 3.0;  // s, more than the oldest image and the longest delay
+
+std::unique_ptr<ControlLaw> lawOf(const ControllerConfig& config) {
+  if (config.law == LawKind::kPaper) return std::make_unique<PaperLaw>(config.gains);
+  return std::make_unique<FeatureLaw>(config.features, config.spin);
+}
+
+// The dead zone's inverse comes after the limits, and must keep to them.
+Limits beforeDeadZone(const ControllerConfig& config) {
+  Limits limits = config.limits;
+  if (!config.dead_zone.inverse) return limits;
+  limits.velocity = ScopeVelocity::fromVector(limits.velocity.vector() - config.dead_zone.width.vector());
+  return limits;
+}
+
+ScopeVelocity scaled(const ScopeVelocity& velocity, double scale) { return ScopeVelocity::fromVector(scale * velocity.vector()); }
+
+}  // namespace
+
+ScopeServo::ScopeServo(const ControllerConfig& config)
+    : config_(config),
+      law_(lawOf(config)),
+      band_(config.rest),
+      oscillation_(config.oscillation),
+      limiter_(beforeDeadZone(config)),
+      history_(kHistory),
+      target_(config.target) {}
+
+void ScopeServo::reset() {
+  stop(0.0);
+  history_.clear();
+  oscillation_.reset();
+  target_.reset();
+  has_image_ = false;
+  displacement_.setZero();
+}
+
+void ScopeServo::stop(double time) {
+  band_.reset();
+  limiter_.reset();
+  history_.add(time, ScopeVelocity());
+}
+
+void ScopeServo::observe(const ServoInput& input) {
+  if (!has_image_) {
+    jacobian_ = featureJacobian(input.error.desired_x, input.error.desired_y, config_.features.desired_depth, input.scope);
+  }
+  const Eigen::Vector4d executed =
+      has_image_ ? history_.displacement(image_time_, input.image_time, delay()) : Eigen::Vector4d(Eigen::Vector4d::Zero());
+  displacement_ += executed;
+  to_target_ = displacementToTarget(input.error, input.scope, config_.features.desired_depth);
+  image_time_ = input.image_time;
+  has_image_ = true;
+  oscillation_.update(image_time_, input.error);
+  if (to_target_.allFinite()) target_.observe(image_time_, jacobian_ * (displacement_ + to_target_), jacobian_ * executed);
+}
+
+ScopeVelocity ScopeServo::command(const ServoInput& input, const ServoLimits& limits) {
+  if (!has_image_ || input.image_time > image_time_) observe(input);
+  TaskError error = input.error;
+  ScopeVelocity follow;
+  if (config_.predictor.enabled && to_target_.allFinite() && !target_.empty()) {
+    const double executed_at = input.time + delay() + 0.5 * input.period;
+    const Eigen::Vector4d then = displacement_ + history_.displacement(image_time_, executed_at, delay());
+    const TargetPrediction target = target_.predict(executed_at);
+    const Eigen::Matrix4d inverse = jacobian_.inverse();
+    error = moved(error, to_target_ - (inverse * target.place - then), input.scope, config_.features.desired_depth);
+    // A loop that has swung may have been driven by what it took for the target's motion, and was its own.
+    if (config_.predictor.feed_forward && !(gainFactor() < 1.0)) follow = ScopeVelocity::fromVector(inverse * target.velocity);
+  }
+  const bool follows = follow.vector() != Eigen::Vector4d::Zero();
+  const LawVelocity wanted = law_->velocity(follows ? error : band_.apply(error, input.time), input.scope);
+  if (!wanted.sum().vector().allFinite()) return wanted.sum();
+  const double gain = limits.scale * gainFactor();
+  ScopeVelocity velocity =
+      limiter_.apply({scaled(follow, limits.scale), scaled(wanted.turning, gain), scaled(wanted.centring, gain)}, input.period);
+  if (!limits.insertion_allowed && velocity.insertion > 0.0) velocity.insertion = 0.0;
+  const ScopeVelocity command = config_.dead_zone.inverse ? throughDeadZone(velocity, config_.dead_zone.width) : velocity;
+  history_.add(input.time, afterDeadZone(command, config_.dead_zone.width));
+  return command;
+}
+
+}  // namespace laparoscope_servo::servo

@@ -1,0 +1,68 @@
+#include "laparoscope_servo/servo/command_history.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace laparoscope_servo::servo {
+namespace {
+
+TEST(CommandHistory, ExecutesNothingBeforeTheFirstCommand) {
+  CommandHistory history(3.0);
+  EXPECT_EQ(history.displacement(0.0, 10.0, 0.2), Eigen::Vector4d::Zero());
+  history.add(1.0, {0.1, 0.0, 0.0, 0.0});
+  EXPECT_EQ(history.displacement(0.0, 1.2, 0.2), Eigen::Vector4d::Zero());
+  EXPECT_EQ(history.velocity(1.19, 0.2), Eigen::Vector4d::Zero());
+  EXPECT_NEAR(history.displacement(0.0, 2.2, 0.2)[0], 0.1, 1e-15);
+  EXPECT_EQ(history.velocity(1.2, 0.2)[0], 0.1);
+}
+
+// The integral of a random staircase, shifted by the delay.
+TEST(CommandHistory, IntegratesWhatIsExecuted) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> u(-1.0, 1.0);
+  CommandHistory history(100.0);
+  std::vector<std::pair<double, double>> steps;
+  for (int k = 0; k < 100; ++k) {
+    steps.emplace_back(0.05 * k, u(random));
+    history.add(steps.back().first, {0.0, steps.back().second, 0.0, 0.0});
+  }
+  const double delay = 0.16;
+  for (int k = 0; k < 50; ++k) {
+    const double begin = 2.5 + 2.5 * u(random), end = begin + 1.0 + u(random);
+    double sum = 0.0;
+    const double dt = 1e-4;
+    for (double t = begin; t < end; t += dt) {
+      double v = 0.0;
+      for (const auto& step : steps) {
+        if (step.first + delay <= t) v = step.second;
+      }
+      sum += dt * v;
+    }
+    EXPECT_NEAR(history.displacement(begin, end, delay)[1], sum, 1e-3);
+  }
+  EXPECT_NEAR((history.displacement(1.0, 2.0, delay) + history.displacement(2.0, 3.0, delay) - history.displacement(1.0, 3.0, delay)).norm(),
+              0.0, 1e-12);
+  EXPECT_EQ(history.displacement(2.0, 2.0, delay), Eigen::Vector4d::Zero());
+}
+
+TEST(CommandHistory, KeepsWhatIsStillInForce) {
+  CommandHistory history(0.5);
+  history.add(0.0, {0.1, 0.0, 0.0, 0.0});
+  history.add(10.0, {0.2, 0.0, 0.0, 0.0});
+  EXPECT_NEAR(history.displacement(9.0, 10.0, 0.0)[0], 0.1, 1e-15);
+  history.add(10.6, {0.3, 0.0, 0.0, 0.0});
+  EXPECT_NEAR(history.displacement(10.2, 10.6, 0.0)[0], 0.08, 1e-12);
+}
+
+TEST(CommandHistory, StartsAnewWhenTimeGoesBack) {
+  CommandHistory history(3.0);
+  history.add(5.0, {0.1, 0.0, 0.0, 0.0});
+  history.add(4.0, {0.2, 0.0, 0.0, 0.0});
+  EXPECT_NEAR(history.displacement(4.0, 5.0, 0.0)[0], 0.2, 1e-15);
+  history.clear();
+  EXPECT_EQ(history.displacement(4.0, 5.0, 0.0), Eigen::Vector4d::Zero());
+}
+
+}  // namespace
+}  // namespace laparoscope_servo::servo
