@@ -63,6 +63,12 @@ Quadrilateral apply(const Eigen::Matrix3d& g, const Quadrilateral& q) {
   return result;
 }
 
+Eigen::Matrix2d derivative(const Eigen::Matrix3d& g, const Eigen::Vector2d& p) {
+  const Eigen::Vector3d q = g * p.homogeneous();
+  const Eigen::Vector2d image = q.hnormalized();
+  return (g.topLeftCorner<2, 2>() - image * g.bottomLeftCorner<1, 2>()) / q.z();
+}
+
 double signedArea(const Quadrilateral& q) { return 0.5 * cross(q[2] - q[0], q[3] - q[1]); }
 
 bool isConvex(const Quadrilateral& q) {

@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "kernel_parts.h"
 #include "laparoscope_servo/image/multiversion.h"
 
 namespace laparoscope_servo::image {
@@ -15,46 +16,48 @@ constexpr int kMaxGrow = kChunk / 4;
 
 using Row = ProjectiveRow;
 
-// Offset of the pixel's first byte in the image; that of the first pixel where it lies outside, with valid 0.
+struct ByteFrame {
+  float right, bottom;  // px, beyond the last pixel
+  int stride, channels;
+};
+
+// Offset of a pixel's first byte in the image; that of the first pixel where it lies outside, with valid 0.
+struct Pixel {
+  int offset;
+  unsigned char valid;
+};
+
+// (u, v): from the first pixel's upper left corner, so that the conversion to int, towards zero, finds the nearest centre.
+[[gnu::always_inline]] inline Pixel pixelAt(const ByteFrame& frame, float u, float v, bool seen) {
+  const int inside = static_cast<int>(u > 0.0f) & static_cast<int>(u < frame.right) & static_cast<int>(v > 0.0f) &
+                     static_cast<int>(v < frame.bottom) & static_cast<int>(seen);
+  const int column = static_cast<int>(inside != 0 ? u : 0.0f);
+  const int line = static_cast<int>(inside != 0 ? v : 0.0f);
+  return {line * frame.stride + column * frame.channels, static_cast<unsigned char>(-inside)};
+}
+
 LAPAROSCOPE_SERVO_CLONES
-void locate(const Row& row, int width, int height, int stride, int channels, int first, int count, int* __restrict offset,
+void locate(const Row& row, ByteFrame frame, int first, int count, int* __restrict offset,
             unsigned char* __restrict valid) {
   const Row r = row;
-  const float right = static_cast<float>(width);
-  const float bottom = static_cast<float>(height);
 #pragma omp simd
   for (int i = 0; i < count; ++i) {
-    const float x = static_cast<float>(first + i);
-    const float w = r.w0 + r.w1 * x;
-    // From the pixel's upper left corner, so that the conversion to int, towards zero, finds the nearest centre.
-    const float reciprocal = 1.0f / w;
-    const float u = (r.u0 + r.u1 * x) * reciprocal + 0.5f;
-    const float v = (r.v0 + r.v1 * x) * reciprocal + 0.5f;
-    const int inside = static_cast<int>(u > 0.0f) & static_cast<int>(u < right) & static_cast<int>(v > 0.0f) &
-                       static_cast<int>(v < bottom) & static_cast<int>(w > 0.0f);
-    const int column = static_cast<int>(inside != 0 ? u : 0.0f);
-    const int line = static_cast<int>(inside != 0 ? v : 0.0f);
-    offset[i] = line * stride + column * channels;
-    valid[i] = static_cast<unsigned char>(-inside);
+    const auto [x, y, w] = pointOf(r, static_cast<float>(first + i));
+    const Pixel pixel = pixelAt(frame, x + 0.5f, y + 0.5f, w > 0.0f);
+    offset[i] = pixel.offset;
+    valid[i] = pixel.valid;
   }
 }
 
 // The same for points that are there already, see locateRaw.
 LAPAROSCOPE_SERVO_CLONES
-void place(const float* __restrict us, const float* __restrict vs, int width, int height, int stride, int channels,
-           int count, int* __restrict offset, unsigned char* __restrict valid) {
-  const float right = static_cast<float>(width);
-  const float bottom = static_cast<float>(height);
+void place(const float* __restrict u, const float* __restrict v, ByteFrame frame, int count,
+           int* __restrict offset, unsigned char* __restrict valid) {
 #pragma omp simd
   for (int i = 0; i < count; ++i) {
-    const float u = us[i] + 0.5f;
-    const float v = vs[i] + 0.5f;
-    const int inside = static_cast<int>(u > 0.0f) & static_cast<int>(u < right) & static_cast<int>(v > 0.0f) &
-                       static_cast<int>(v < bottom);
-    const int column = static_cast<int>(inside != 0 ? u : 0.0f);
-    const int line = static_cast<int>(inside != 0 ? v : 0.0f);
-    offset[i] = line * stride + column * channels;
-    valid[i] = static_cast<unsigned char>(-inside);
+    const Pixel pixel = pixelAt(frame, u[i] + 0.5f, v[i] + 0.5f, true);
+    offset[i] = pixel.offset;
+    valid[i] = pixel.valid;
   }
 }
 
@@ -128,7 +131,8 @@ void warpRows(const cv::Mat& image, const Eigen::Matrix3d& g, const LensLoop* le
     patch.green.create(size);
     patch.red.create(size);
   }
-  const int stride = static_cast<int>(image.step[0]);
+  const ByteFrame frame = {static_cast<float>(image.cols), static_cast<float>(image.rows),
+                           static_cast<int>(image.step[0]), image.channels()};
   int offset[kChunk];
   float u[kChunk], v[kChunk];
   for (int j = 0; j < size.height; ++j) {
@@ -139,10 +143,10 @@ void warpRows(const cv::Mat& image, const Eigen::Matrix3d& g, const LensLoop* le
       const int count = std::min(kChunk, size.width - first);
       unsigned char* valid = patch.valid.ptr<unsigned char>(j) + first;
       if (lens == nullptr) {
-        locate(row, image.cols, image.rows, stride, image.channels(), first, count, offset, valid);
+        locate(row, frame, first, count, offset, valid);
       } else {
         locateRaw(*lens, row, first, count, u, v);
-        place(u, v, image.cols, image.rows, stride, image.channels(), count, offset, valid);
+        place(u, v, frame, count, offset, valid);
       }
       unsigned char* blue = patch.blue.ptr<unsigned char>(j) + first;
       if (!patch.has_colour) {

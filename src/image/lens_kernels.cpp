@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "kernel_parts.h"
 #include "laparoscope_servo/image/lens.h"
 #include "laparoscope_servo/image/multiversion.h"
 
@@ -18,11 +19,7 @@ void locatePolynomial(const LensLoop& lens, const ProjectiveRow& row, int first,
   const ProjectiveRow r = row;
 #pragma omp simd
   for (int i = 0; i < count; ++i) {
-    const float t = static_cast<float>(first + i);
-    const float w = r.w0 + r.w1 * t;
-    const float per_w = 1.0f / w;
-    const float x = (r.u0 + r.u1 * t) * per_w;
-    const float y = (r.v0 + r.v1 * t) * per_w;
+    const auto [x, y, w] = pointOf(r, static_cast<float>(first + i));
     const float q = x * x + y * y;
     const float radial =
         (1.0f + q * (l.k[0] + q * (l.k[1] + q * l.k[2]))) / (1.0f + q * (l.k[3] + q * (l.k[4] + q * l.k[5])));
@@ -57,11 +54,7 @@ void locateEquidistant(const LensLoop& lens, const ProjectiveRow& row, int first
   const ProjectiveRow r = row;
 #pragma omp simd
   for (int i = 0; i < count; ++i) {
-    const float t = static_cast<float>(first + i);
-    const float w = r.w0 + r.w1 * t;
-    const float per_w = 1.0f / w;
-    const float x = (r.u0 + r.u1 * t) * per_w;
-    const float y = (r.v0 + r.v1 * t) * per_w;
+    const auto [x, y, w] = pointOf(r, static_cast<float>(first + i));
     const float q = x * x + y * y;
     // On the axis the angle over the distance is 1: it must not become 0 / 0.
     const float distance = std::sqrt(q > 1e-12f ? q : 1e-12f);

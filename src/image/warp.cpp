@@ -4,6 +4,7 @@
 #include <cstring>
 #include <opencv2/imgproc.hpp>
 
+#include "kernel_parts.h"
 #include "laparoscope_servo/image/multiversion.h"
 
 namespace laparoscope_servo::image {
@@ -14,38 +15,21 @@ using Row = ProjectiveRow;
 
 constexpr int kChunk = 256;  // pixels that a row is worked in, so that what lies between the loops stays in the cache
 
-// Where each pixel comes from: the offset of the upper left one of its four neighbours, and its place between them. Returns how
-// many pixels lie inside.
+// Where each pixel comes from: see Neighbours. Returns how many pixels lie inside.
 LAPAROSCOPE_SERVO_CLONES
 int locate(const Row& row, int stride, int width, int height, int first, int count, int* __restrict offset,
            float* __restrict right_of, float* __restrict below, float* __restrict valid) {
-  const float right = static_cast<float>(width - 1);
-  const float bottom = static_cast<float>(height - 1);
-  // The last column and row are reached from their neighbours; an image of one pixel has none.
-  const float last_column = static_cast<float>(std::max(width - 2, 0));
-  const float last_row = static_cast<float>(std::max(height - 2, 0));
+  const PixelFrame frame(width, height, stride);
   const Row r = row;
   int inside_count = 0;
 #pragma omp simd reduction(+ : inside_count)
   for (int i = 0; i < count; ++i) {
-    const float x = static_cast<float>(first + i);
-    const float w = r.w0 + r.w1 * x;
-    const float reciprocal = 1.0f / w;
-    const float u = (r.u0 + r.u1 * x) * reciprocal;
-    const float v = (r.v0 + r.v1 * x) * reciprocal;
-    // A NaN or an infinity ends at 0, and is not equal to what it came from.
-    float uc = u > 0.0f ? u : 0.0f;
-    float vc = v > 0.0f ? v : 0.0f;
-    uc = uc < right ? uc : right;
-    vc = vc < bottom ? vc : bottom;
-    const int inside = static_cast<int>(uc == u) & static_cast<int>(vc == v) & static_cast<int>(w > 0.0f);
-    const float column = uc < last_column ? uc : last_column;
-    const float line = vc < last_row ? vc : last_row;
-    const int iu = static_cast<int>(column);
-    const int iv = static_cast<int>(line);
-    right_of[i] = uc - static_cast<float>(iu);
-    below[i] = vc - static_cast<float>(iv);
-    offset[i] = iv * stride + iu;
+    const auto [u, v, w] = pointOf(r, static_cast<float>(first + i));
+    const Neighbours n = neighboursOf(frame, u, v);
+    const int inside = n.inside & static_cast<int>(w > 0.0f);
+    right_of[i] = n.right_of;
+    below[i] = n.below;
+    offset[i] = n.offset;
     valid[i] = static_cast<float>(inside);
     inside_count += inside;
   }
@@ -56,27 +40,16 @@ int locate(const Row& row, int stride, int width, int height, int first, int cou
 LAPAROSCOPE_SERVO_CLONES
 int place(const float* __restrict u, const float* __restrict v, int stride, int width, int height, int count,
           int* __restrict offset, float* __restrict right_of, float* __restrict below, float* __restrict valid) {
-  const float right = static_cast<float>(width - 1);
-  const float bottom = static_cast<float>(height - 1);
-  const float last_column = static_cast<float>(std::max(width - 2, 0));
-  const float last_row = static_cast<float>(std::max(height - 2, 0));
+  const PixelFrame frame(width, height, stride);
   int inside_count = 0;
 #pragma omp simd reduction(+ : inside_count)
   for (int i = 0; i < count; ++i) {
-    float uc = u[i] > 0.0f ? u[i] : 0.0f;
-    float vc = v[i] > 0.0f ? v[i] : 0.0f;
-    uc = uc < right ? uc : right;
-    vc = vc < bottom ? vc : bottom;
-    const int inside = static_cast<int>(uc == u[i]) & static_cast<int>(vc == v[i]);
-    const float column = uc < last_column ? uc : last_column;
-    const float line = vc < last_row ? vc : last_row;
-    const int iu = static_cast<int>(column);
-    const int iv = static_cast<int>(line);
-    right_of[i] = uc - static_cast<float>(iu);
-    below[i] = vc - static_cast<float>(iv);
-    offset[i] = iv * stride + iu;
-    valid[i] = static_cast<float>(inside);
-    inside_count += inside;
+    const Neighbours n = neighboursOf(frame, u[i], v[i]);
+    right_of[i] = n.right_of;
+    below[i] = n.below;
+    offset[i] = n.offset;
+    valid[i] = static_cast<float>(n.inside);
+    inside_count += n.inside;
   }
   return inside_count;
 }

@@ -1,26 +1,21 @@
 #include "laparoscope_servo/tracking/esm.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
-#include "esm_kernels.h"
 #include "laparoscope_servo/geometry/sl3.h"
 #include "laparoscope_servo/image/warp.h"
+#include "laparoscope_servo/tracking/certainty.h"
+#include "laparoscope_servo/tracking/factors.h"
 
 namespace laparoscope_servo::tracking {
 
 namespace {
 
-constexpr double kTukey = 4.6851;       // 95 % efficiency for normal noise (Marchand and Chaumette 2004, appendix)
-constexpr double kMadToSigma = 1.4826;  // normal noise
-constexpr double kMinSigma = 1.0;       // grey levels; below it quantisation is mistaken for outliers
-constexpr int kMaxSamples = 1024;       // of the residual, for its scale
-constexpr int kRun = 4;                 // px side by side, which share what is fetched from memory
-constexpr double kBinsPerLevel = 8.0;   // of the histogram of residuals, which ends at 128 grey levels
-constexpr int kBins = 1024;
+constexpr double kTukey = 4.6851;  // 95 % efficiency for normal noise (Marchand and Chaumette 2004, appendix)
 
 // Steps shrink by about this factor from one to the next before that has been measured.
 constexpr double kContraction = 0.3;
@@ -44,40 +39,6 @@ Eigen::Matrix3d scaling(double s, double x, double y) {
   return m;
 }
 
-// The derivative of a corner's image, in normalised template units, at the identity: the rows of J for unit gradients.
-Eigen::Matrix<double, 2, 8> cornerJacobian(const Eigen::Vector2d& p) {
-  Eigen::Matrix<double, 2, 8> j;
-  j.row(0) = esmJacobianRow(1.0, 0.0, p.x(), p.y());
-  j.row(1) = esmJacobianRow(0.0, 1.0, p.x(), p.y());
-  return j;
-}
-
-// How far the image of `p` moves for a motion of it in the plane of the reference.
-Eigen::Matrix2d derivative(const Eigen::Matrix3d& g, const Eigen::Vector2d& p) {
-  const Eigen::Vector3d q = g * p.homogeneous();
-  const Eigen::Vector2d image = q.hnormalized();
-  return (g.topLeftCorner<2, 2>() - image * g.bottomLeftCorner<1, 2>()) / q.z();
-}
-
-// A matrix that its diagonal has been divided out of: grey levels and normalised coordinates have nothing to do with each other.
-template <int N>
-class Factors {
- public:
-  using Matrix = Eigen::Matrix<double, N, N>;
-  explicit Factors(const Matrix& a)
-      : d_(a.diagonal().cwiseMax(1e-12).cwiseSqrt().cwiseInverse()), ldlt_(d_.asDiagonal() * a * d_.asDiagonal()) {}
-  // 0 for a singular matrix, 1 for a diagonal one.
-  double conditioning() const { return ldlt_.info() == Eigen::Success ? ldlt_.vectorD().minCoeff() : 0.0; }
-  template <typename Right>
-  auto solve(const Right& b) const {
-    return (d_.asDiagonal() * ldlt_.solve(d_.asDiagonal() * b)).eval();
-  }
-
- private:
-  Eigen::Matrix<double, N, 1> d_;
-  Eigen::LDLT<Matrix> ldlt_;
-};
-
 // How much a prior counts that expected x = 0.
 double credibility(const MotionPrior& prior, const geometry::Vector8d& x) {
   return 2.0 * kFreedom / (kFreedom + x.dot(prior.information * x));
@@ -87,8 +48,7 @@ double credibility(const MotionPrior& prior, const geometry::Vector8d& x) {
 
 void Esm::setReference(const image::RegionPyramid& reference, const geometry::Rectangle& roi) {
   roi_ = roi;
-  half_size_ = std::max(roi.width, roi.height) / 2.0;
-  n_ = scaling(1.0 / half_size_, -roi.centre().x() / half_size_, -roi.centre().y() / half_size_);
+  n_ = templateFromPixels(roi);
   n_inv_ = n_.inverse();
   levels_.clear();
   forgetLight();
@@ -137,119 +97,7 @@ void Esm::startLight(EsmLevel& level, const EsmState& state) {
   }
 }
 
-// One more bias for all, which leaves no mean residual; gain and blocks stay. Returns the bias.
-double Esm::matchMean(EsmLevel& level, EsmState& state) {
-  const image::Patch& weight = level.usedWeight();
-  double common = 0.0;
-  for (EsmPlane& plane : level.planes) {
-    double sum = 0.0, weights = 0.0;
-    for (int row = 0; row + 1 < static_cast<int>(level.block_row_begin.size()); ++row) {
-      for (int j = level.block_row_begin[row]; j < level.block_row_begin[row + 1]; ++j) {
-        for (int i = 0; i < level.width; ++i) {
-          const double bias = plane.biasOf(row * level.block_columns + level.block_of_strip[i / image::Patch::kStrip], state.gain);
-          sum += weight(j, i) * (plane.value(j, i) - state.gain * plane.warped(j, i) - bias);
-          weights += weight(j, i);
-        }
-      }
-    }
-    const double missing = weights > 0.0 ? sum / weights : 0.0;
-    for (double& bias : plane.bias) bias += missing;
-    common += missing / static_cast<double>(level.planes.size());
-  }
-  state.bias += common;
-  return common;
-}
-
-double Esm::residualScale(const EsmLevel& level, const EsmState& state) {
-  histogram_.assign(kBins, 0);
-  const image::Patch& weight = level.usedWeight();
-  const int pixels = level.width * level.height * static_cast<int>(level.planes.size());
-  const int stride = kRun * std::max(1, pixels / kMaxSamples);
-  const float gain = static_cast<float>(state.gain);
-  int count = 0;
-  for (const EsmPlane& plane : level.planes) {
-    std::size_t block_row = 0;
-    for (int j = 0; j < level.height; ++j) {
-      if (j >= level.block_row_begin[block_row + 1]) ++block_row;
-      const float* weights = weight.row(j);
-      const float* image = plane.warped.row(j);
-      const float* reference = plane.value.row(j);
-      // Runs that start elsewhere in each row, so that no pattern of the image is preferred.
-      for (int first = (j * 7 * kRun) % stride / kRun * kRun; first < level.width; first += stride) {
-        const std::size_t block = block_row * level.block_columns + level.block_of_strip[first / image::Patch::kStrip];
-        const float b = static_cast<float>(plane.biasOf(block, state.gain));
-        for (int i = first; i < std::min(first + kRun, level.width); ++i) {
-          if (!(weights[i] > 0.0f)) continue;
-          const float residual = std::abs(gain * image[i] + b - reference[i]);
-          ++histogram_[std::min(static_cast<int>(residual * static_cast<float>(kBinsPerLevel)), kBins - 1)];
-          ++count;
-        }
-      }
-    }
-  }
-  if (count == 0) return kMinSigma;
-  // The median lies in the bin where half of the samples are reached, as far along as they are reached there.
-  double below = 0.0;
-  int bin = 0;
-  while (below + histogram_[bin] < 0.5 * count) below += histogram_[bin++];
-  const double median = (bin + (0.5 * count - below) / histogram_[bin]) / kBinsPerLevel;
-  return std::max(kMinSigma, kMadToSigma * median);
-}
-
-void Esm::accumulate(const EsmLevel& level, const EsmState& state, double sigma) {
-  CellInput input;
-  input.weight = &level.usedWeight();
-  input.gain = static_cast<float>(state.gain);
-  input.inverse_rejection = config_.robust ? static_cast<float>(1.0 / (kTukey * sigma)) : 0.0f;
-  // The kernel adds both gradients; J takes their mean, per normalised unit.
-  equations_.reset(light_, 0.5 * half_size_ / level.scale);
-  block_sums_.clear();
-  for (const EsmPlane& plane : level.planes) {
-    input.image = &plane.warped;
-    input.reference = &plane.value;
-    for (int row = 0; row + 1 < static_cast<int>(level.block_row_begin.size()); ++row) {
-      accumulateBlocks(level, input, plane, row);
-    }
-  }
-}
-
-void Esm::accumulateBlocks(const EsmLevel& level, const CellInput& input, const EsmPlane& plane, int block_row) {
-  const Eigen::Matrix3d unit_T_patch = n_ * level.image_T_patch;
-  const int begin = level.block_row_begin[block_row];
-  const int end = level.block_row_begin[block_row + 1];
-  const int cell_rows = (end - begin + level.cell_rows - 1) / level.cell_rows;
-  const int strips = level.weight.strips();
-  strip_bias_.resize(strips);
-  for (int strip = 0; strip < strips; ++strip) {
-    const std::size_t block = block_row * level.block_columns + level.block_of_strip[strip];
-    strip_bias_[strip] = static_cast<float>(plane.biasOf(block, input.gain));
-  }
-  const int per_strip = level.cells_per_strip;
-  cells_.resize(static_cast<std::size_t>(cell_rows) * strips * per_strip);
-  for (int k = 0; k < cell_rows; ++k) {
-    const int row = begin + k * level.cell_rows;
-    sumCells(input, row, std::min(level.cell_rows, end - row), per_strip, strip_bias_.data(),
-             cells_.data() + k * strips * per_strip);
-  }
-  const int cell_columns = image::Patch::kStrip / per_strip;
-  for (int strip = 0; strip < strips; ++strip) {
-    for (int cell = strip * per_strip; cell < (strip + 1) * per_strip; ++cell) {
-      const int columns = std::min(cell_columns, level.width - cell * cell_columns);
-      if (columns <= 0) break;
-      const double u = unit_T_patch(0, 2) + unit_T_patch(0, 0) * (cell * cell_columns + 0.5 * (columns - 1));
-      for (int k = 0; k < cell_rows; ++k) {
-        const int row = begin + k * level.cell_rows;
-        const int rows = std::min(level.cell_rows, end - row);
-        const double v = unit_T_patch(1, 2) + unit_T_patch(1, 1) * (row + 0.5 * (rows - 1));
-        equations_.addCell(cells_[k * strips * per_strip + cell], u, v);
-      }
-    }
-    if (strip + 1 < strips && level.block_of_strip[strip + 1] == level.block_of_strip[strip]) continue;
-    equations_.endBlock();
-    block_sums_.push_back(
-        {equations_.blockWeight(), equations_.blockResidual(), equations_.blockJacobian(), equations_.blockScore()});
-  }
-}
+double Esm::rejection(double sigma) const { return config_.robust ? kTukey * sigma : 0.0; }
 
 bool Esm::solve(EsmLevel& level, const MotionPrior* prior, bool shift_only, EsmState& state, double& step) {
   Matrix10d a = equations_.matrix();
@@ -285,7 +133,7 @@ void Esm::takeStep(EsmLevel& level, const Vector10d& x, EsmState& state) {
   state.bias += x[9];
   double bias = 0.0;
   double weight = 0.0;
-  auto sums = block_sums_.begin();
+  auto sums = equations_.blocks().begin();
   for (EsmPlane& plane : level.planes) {
     for (std::size_t block = 0; block < plane.bias.size(); ++block, ++sums) {
       if (config_.light != Light::kLocal) {
@@ -301,45 +149,14 @@ void Esm::takeStep(EsmLevel& level, const Vector10d& x, EsmState& state) {
   if (weight > 0.0) state.bias = bias / weight;
 }
 
-// The covariance that the residuals show is A^-1 B A^-1 with A = J'WJ and B the sum of the blocks' J'Wr times itself: whatever the
-// residuals within a block have in common is in it. `noise` is the one number that makes A/noise as large as its inverse.
-void Esm::judge(const MotionPrior* prior, EsmResult& result) {
-  Matrix10d scores = Matrix10d::Zero();
-  int blocks = 0;
-  for (const BlockSums& sums : block_sums_) {
-    if (!(sums.weight > 0.0)) continue;
-    scores += sums.score * sums.score.transpose();
-    ++blocks;
-  }
-  const Factors<10> factors(equations_.matrix());
-  result.noise = result.sigma * result.sigma;
-  result.corner_error = std::numeric_limits<double>::infinity();
-  Matrix8d information = Matrix8d::Zero();
-  if (factors.conditioning() > 1e-12) {
-    const Matrix10d inverse = factors.solve(Matrix10d::Identity());
-    const Matrix8d shape = inverse.topLeftCorner<8, 8>();
-    const Matrix8d seen = (inverse * scores * inverse).topLeftCorner<8, 8>();
-    const Factors<8> of_shape(shape);
-    // Nine unknowns have been fitted to the blocks.
-    const double freedom = std::max(1.0, blocks - 9.0) / std::max(1, blocks);
-    const double seen_noise = of_shape.solve(seen).trace() / 8.0 / freedom;
-    if (std::isfinite(seen_noise)) result.noise = std::max(result.noise, seen_noise);
-    information = of_shape.solve(Matrix8d::Identity()) / result.noise;
-  }
-  if (prior != nullptr) information += credibility(*prior, deviation_) * prior->information;
-  const Factors<8> posterior(information);
-  if (!(posterior.conditioning() > 1e-12)) return;
-  result.covariance = posterior.solve(Matrix8d::Identity());
-  result.corner_error = cornerError(result.state.g, result.covariance);
-}
-
-double Esm::cornerError(const Eigen::Matrix3d& g, const Matrix8d& covariance) const {
-  double worst = 0.0;
-  for (const Eigen::Vector2d& corner : roi_.corners()) {
-    const Eigen::Matrix<double, 2, 8> j = half_size_ * derivative(g, corner) * cornerJacobian(geometry::apply(n_, corner));
-    worst = std::max(worst, (j * covariance * j.transpose()).trace());
-  }
-  return std::sqrt(worst);
+void Esm::judge(const MotionPrior* prior, EsmResult& result) const {
+  Matrix8d known = Matrix8d::Zero();
+  if (prior != nullptr) known = credibility(*prior, deviation_) * prior->information;
+  const Certainty found = certainty(equations_.matrix(), equations_.blocks(), result.sigma, known);
+  result.noise = found.noise;
+  if (!found.covariance) return;
+  result.covariance = *found.covariance;
+  result.corner_error = cornerError(result.state.g, roi_, result.covariance);
 }
 
 double Esm::referenceCornerError(double sigma) {
@@ -349,21 +166,20 @@ double Esm::referenceCornerError(double sigma) {
     plane.warped.extrapolate();
   }
   level.all_valid = true;
-  accumulate(level, EsmState(), sigma);
-  const Factors<10> factors(equations_.matrix());
-  if (!(factors.conditioning() > 1e-12)) return std::numeric_limits<double>::infinity();
-  const Matrix10d inverse = factors.solve(Matrix10d::Identity());
-  return cornerError(Eigen::Matrix3d::Identity(), 2.0 * sigma * sigma * inverse.topLeftCorner<8, 8>());
+  equations_.sum(level, roi_, light_, EsmState().gain, rejection(sigma));
+  const std::optional<Matrix8d> covariance = covarianceOfNoise(equations_.matrix(), 2.0 * sigma * sigma);
+  if (!covariance) return std::numeric_limits<double>::infinity();
+  return cornerError(Eigen::Matrix3d::Identity(), roi_, *covariance);
 }
 
 EsmStatus Esm::iterate(const image::RegionPyramid& current, int l, const MotionPrior* prior, const Iteration& how, EsmResult& result) {
   EsmLevel& level = levels_[l];
   if (!geometry::isConvex(geometry::apply(result.state.g, roi_.corners()))) return EsmStatus::kOutOfView;
   warp(current, level, l, result.state.g);
-  if (how.match_mean) matchMean(level, result.state);
+  if (how.match_mean) result.state.bias += matchMean(level, result.state.gain);
   light_ = how.light;
-  result.sigma = residualScale(level, result.state);
-  accumulate(level, result.state, result.sigma);
+  result.sigma = residual_scale_.of(level, result.state.gain);
+  equations_.sum(level, roi_, light_, result.state.gain, rejection(result.sigma));
   ++result.iterations;
   if (!solve(level, prior, how.shift_only, result.state, result.last_step)) return EsmStatus::kIllConditioned;
   return EsmStatus::kMaxIterations;
@@ -387,7 +203,10 @@ EsmStatus Esm::approach(const image::RegionPyramid& current, int l, const Motion
       if (status != EsmStatus::kMaxIterations) break;
       if (result.last_step > kFar * level.scale) continue;
       // Near, the mean is that of the reference; where it is not, the light has changed.
-      if (match || std::abs(matchMean(level, result.state)) < kSameLight * result.sigma) return EsmStatus::kConverged;
+      if (match) return EsmStatus::kConverged;
+      const double missing = matchMean(level, result.state.gain);
+      result.state.bias += missing;
+      if (std::abs(missing) < kSameLight * result.sigma) return EsmStatus::kConverged;
       break;
     }
   }

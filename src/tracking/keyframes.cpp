@@ -15,18 +15,12 @@ constexpr double kTurnStep = 0.6;    // rad
 // Share of the image's diagonal: detectors see nothing near the border of what they are given.
 constexpr double kMargin = 0.08;
 
-// The homography's derivative at the ROI's centre.
-Eigen::Matrix2d derivative(const Eigen::Matrix3d& g, const geometry::Rectangle& roi) {
-  const Eigen::Vector3d q = g * Eigen::Vector3d(roi.x + 0.5 * roi.width, roi.y + 0.5 * roi.height, 1.0);
-  const Eigen::Vector2d p = q.head<2>() / q.z();
-  return (g.topLeftCorner<2, 2>() - p * g.bottomLeftCorner<1, 2>()) / q.z();
-}
-
 }  // namespace
 
 double viewDistance(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b, const geometry::Rectangle& roi) {
-  const Eigen::Matrix2d from = derivative(b, roi);
-  const Eigen::Matrix2d to = derivative(a, roi);
+  const Eigen::Vector2d middle(roi.x + 0.5 * roi.width, roi.y + 0.5 * roi.height);
+  const Eigen::Matrix2d from = geometry::derivative(b, middle);
+  const Eigen::Matrix2d to = geometry::derivative(a, middle);
   if (!(from.determinant() > 0.0) || !(to.determinant() > 0.0)) return std::numeric_limits<double>::infinity();
   const Eigen::Matrix2d change = to * from.inverse();
   const Eigen::Vector2d lengths = Eigen::JacobiSVD<Eigen::Matrix2d>(change).singularValues();

@@ -1,5 +1,7 @@
 #include "laparoscope_servo/tracking/normal_equations.h"
 
+#include <algorithm>
+
 #include <array>
 
 namespace laparoscope_servo::tracking {
@@ -39,6 +41,17 @@ inline void addRow(double gx, double gy, double u, double v, Vector10d& sum) {
 }
 
 }  // namespace
+
+double halfSize(const geometry::Rectangle& roi) { return std::max(roi.width, roi.height) / 2.0; }
+
+Eigen::Matrix3d templateFromPixels(const geometry::Rectangle& roi) {
+  const double unit = halfSize(roi);
+  Eigen::Matrix3d n;
+  n << 1.0 / unit, 0.0, -roi.centre().x() / unit,  //
+      0.0, 1.0 / unit, -roi.centre().y() / unit,   //
+      0.0, 0.0, 1.0;
+  return n;
+}
 
 Eigen::Matrix<double, 1, 8> esmJacobianRow(double gx, double gy, double u, double v) {
   Vector10d j = Vector10d::Zero();

@@ -163,4 +163,19 @@ double RegionAligner::detail() const {
   return detailCorrelation(plane.warped.view(), plane.value.view(), level.weight.view().mul(level.valid.view()));
 }
 
+cv::Mat RegionAligner::occlusionMask(const Eigen::Matrix3d& g, const cv::Size& size) const {
+  const image::AreaGrid& grid = gates_.grid();
+  cv::Mat1b areas(grid.height(), grid.width());
+  for (int j = 0; j < grid.height(); ++j) {
+    for (int i = 0; i < grid.width(); ++i) areas(j, i) = gates_.occluded(grid.areaOf(i, j)) ? 255 : 0;
+  }
+  const geometry::Quadrilateral corners = geometry::apply(g, roi().corners());
+  cv::Mat1b mask = cv::Mat1b::zeros(size);
+  const cv::Rect box = image::seenBox(lens_.get(), corners, 1.0) & cv::Rect(cv::Point(0, 0), size);
+  if (box.empty()) return mask;
+  cv::Mat1b part = mask(box);
+  image::drawMask(areas, g * imageFromPatch(roi()), lens_.get(), box, part);
+  return mask;
+}
+
 }  // namespace laparoscope_servo::tracking

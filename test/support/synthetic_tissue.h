@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -43,8 +44,8 @@ inline cv::Matx33d toMatx(const Eigen::Matrix3d& g) {
 }
 
 // The scene seen so that its pixel p appears at g p; gain, bias and noise in grey levels.
-inline cv::Mat view(const cv::Mat& scene, const Eigen::Matrix3d& g, double gain = 1.0, double bias = 0.0, double noise = 0.0,
-                    unsigned seed = 1) {
+inline cv::Mat view(const cv::Mat& scene, const Eigen::Matrix3d& g, double gain = 1.0, double bias = 0.0,
+                    double noise = 0.0, unsigned seed = 1) {
   cv::Mat warped;
   cv::warpPerspective(scene, warped, toMatx(g), scene.size(), cv::INTER_CUBIC, cv::BORDER_REFLECT_101);
   cv::Mat exact;
@@ -65,6 +66,18 @@ inline Eigen::Matrix3d randomHomography(const geometry::Rectangle& roi, double s
   geometry::Quadrilateral to = roi.corners();
   for (Eigen::Vector2d& corner : to) corner += Eigen::Vector2d(rng.gaussian(sigma), rng.gaussian(sigma));
   return geometry::fromCorners(roi.corners(), to);
+}
+
+// Of the ROI about its centre, which goes to `to`: first `tilted`, a homography about the origin, then zoomed and
+// turned by `angle` [rad].
+inline Eigen::Matrix3d zoomAndTurn(const geometry::Rectangle& roi, double zoom, double angle,
+                                   const Eigen::Matrix3d& tilted, const Eigen::Vector2d& to) {
+  Eigen::Matrix3d centre = Eigen::Matrix3d::Identity();
+  centre.topRightCorner<2, 1>() << -roi.x - 0.5 * roi.width, -roi.y - 0.5 * roi.height;
+  Eigen::Matrix3d g;
+  g << zoom * std::cos(angle), -zoom * std::sin(angle), to.x(), zoom * std::sin(angle), zoom * std::cos(angle), to.y(),
+      0, 0, 1;
+  return geometry::normaliseDeterminant(g * tilted * centre);
 }
 
 // px, the largest distance between the corners of the ROI as both homographies show them.

@@ -36,6 +36,8 @@ Eigen::Vector2d apply(const Eigen::Matrix3d& g, const Eigen::Vector2d& p);
 // All four corners. Their denominators have one sign, or a NaN is put into every corner: a quadrilateral through infinity
 // is no image of the rectangle.
 Quadrilateral apply(const Eigen::Matrix3d& g, const Quadrilateral& q);
+// The derivative of apply(g, p) by p: how far the image of the point moves when the point does.
+Eigen::Matrix2d derivative(const Eigen::Matrix3d& g, const Eigen::Vector2d& p);
 
 // Signed area in px², positive when the corners turn clockwise as seen in the image (as a Rectangle's do).
 double signedArea(const Quadrilateral& q);

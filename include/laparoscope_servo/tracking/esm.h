@@ -17,13 +17,13 @@
 #include "laparoscope_servo/geometry/sl3.h"
 #include "laparoscope_servo/image/lens.h"
 #include "laparoscope_servo/image/pyramid.h"
+#include "laparoscope_servo/tracking/block_equations.h"
 #include "laparoscope_servo/tracking/esm_level.h"
 #include "laparoscope_servo/tracking/normal_equations.h"
+#include "laparoscope_servo/tracking/residual.h"
 #include "laparoscope_servo/tracking/tracker_config.h"
 
 namespace laparoscope_servo::tracking {
-
-struct CellInput;
 
 struct EsmState {
   Eigen::Matrix3d g = Eigen::Matrix3d::Identity();  // pixels of the reference to pixels of the current image, determinant 1
@@ -94,10 +94,7 @@ class Esm {
  private:
   void warp(const image::RegionPyramid& current, EsmLevel& level, int l, const Eigen::Matrix3d& g);
   void startLight(EsmLevel& level, const EsmState& state);
-  double matchMean(EsmLevel& level, EsmState& state);
-  double residualScale(const EsmLevel& level, const EsmState& state);
-  void accumulate(const EsmLevel& level, const EsmState& state, double sigma);
-  void accumulateBlocks(const EsmLevel& level, const CellInput& input, const EsmPlane& plane, int block_row);
+  double rejection(double sigma) const;
   bool solve(EsmLevel& level, const MotionPrior* prior, bool shift_only, EsmState& state, double& step);
   void takeStep(EsmLevel& level, const Vector10d& x, EsmState& state);
   struct Iteration {
@@ -110,27 +107,17 @@ class Esm {
   EsmStatus approach(const image::RegionPyramid& current, int l, const MotionPrior* prior, EsmResult& result);
   EsmStatus settle(const image::RegionPyramid& current, int l, int patience, const MotionPrior* prior, EsmResult& result);
   EsmStatus alignLevel(const image::RegionPyramid& current, int l, bool first, const MotionPrior* prior, EsmResult& result);
-  void judge(const MotionPrior* prior, EsmResult& result);
-  double cornerError(const Eigen::Matrix3d& g, const Matrix8d& covariance) const;
+  void judge(const MotionPrior* prior, EsmResult& result) const;
 
   EsmConfig config_;
   std::shared_ptr<const image::Lens> lens_;
   geometry::Rectangle roi_;
   Eigen::Matrix3d n_ = Eigen::Matrix3d::Identity();      // N: reference pixels to normalised template coordinates
   Eigen::Matrix3d n_inv_ = Eigen::Matrix3d::Identity();
-  double half_size_ = 1.0;                               // px, what N divides by
   std::vector<EsmLevel> levels_;
-  NormalEquations equations_;
-  std::vector<int> histogram_;  // of the residuals' magnitudes
-  std::vector<float> scratch_, strip_bias_;
-  std::vector<CellSums> cells_;  // of a block row: cell rows times strips
-  struct BlockSums {
-    double weight;
-    double residual;
-    Vector10d jacobian;
-    Vector10d score;
-  };
-  std::vector<BlockSums> block_sums_;  // plane by plane
+  BlockEquations equations_;
+  ResidualScale residual_scale_;
+  std::vector<float> scratch_;
   bool light_known_ = false;
   Light light_ = Light::kConstant;  // that the equations have at this iteration
   geometry::Vector8d deviation_ = geometry::Vector8d::Zero();  // from the prior's prediction

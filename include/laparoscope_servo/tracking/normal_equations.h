@@ -11,6 +11,7 @@
 
 #include <Eigen/Core>
 
+#include "laparoscope_servo/geometry/homography.h"
 #include "laparoscope_servo/tracking/tracker_config.h"
 
 namespace laparoscope_servo::tracking {
@@ -19,6 +20,11 @@ namespace laparoscope_servo::tracking {
 using Matrix10d = Eigen::Matrix<double, 10, 10>;
 using Vector10d = Eigen::Matrix<double, 10, 1>;
 using Matrix8d = Eigen::Matrix<double, 8, 8>;
+
+// N takes pixels of the reference to normalised template coordinates: their origin is the ROI's centre, their unit half
+// its larger side [px].
+double halfSize(const geometry::Rectangle& roi);
+Eigen::Matrix3d templateFromPixels(const geometry::Rectangle& roi);
 
 // The eight entries of J for one pixel, as above. Reference for tests, and readable beside the papers.
 Eigen::Matrix<double, 1, 8> esmJacobianRow(double gx, double gy, double u, double v);

@@ -43,6 +43,9 @@ class RegionAligner {
   // Of the last alignment: correlation of fine structure, see detailCorrelation.
   double detail() const;
 
+  // Of an image of `size`: 255 where a pixel of the ROI, seen there at `g`, is taken for occluded, 0 elsewhere.
+  cv::Mat occlusionMask(const Eigen::Matrix3d& g, const cv::Size& size) const;
+
   // See Esm::referenceCornerError.
   double referenceCornerError(double sigma) { return esm_.referenceCornerError(sigma); }
 

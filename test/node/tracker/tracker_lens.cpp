@@ -101,12 +101,5 @@ TEST_F(TrackerLens, TracksOnceItKnowsTheLensAndEndsWithIt) {
 }  // namespace laparoscope_servo
 
 int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  ros::init(argc, argv, "tracker_lens_test");
-  const ros::NodeHandle keep_alive;
-  ros::AsyncSpinner spinner(2);
-  spinner.start();
-  const int result = RUN_ALL_TESTS();
-  ros::shutdown();
-  return result;
+  return laparoscope_servo::test_support::runTests(argc, argv, "tracker_lens_test");
 }

@@ -99,12 +99,5 @@ TEST_F(TrackerMotion, FollowsJumpsThatTfKnowsAndGoesWithoutWhenItIsSilent) {
 }  // namespace laparoscope_servo
 
 int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  ros::init(argc, argv, "tracker_motion_test");
-  const ros::NodeHandle keep_alive;
-  ros::AsyncSpinner spinner(2);
-  spinner.start();
-  const int result = RUN_ALL_TESTS();
-  ros::shutdown();
-  return result;
+  return laparoscope_servo::test_support::runTests(argc, argv, "tracker_motion_test");
 }

@@ -40,6 +40,22 @@ TEST(Rectangle, CornersAreTheCentresOfTheCornerPixels) {
   EXPECT_TRUE(isConvex(corners));
 }
 
+TEST(Derivative, IsThatOfTheImageOfAPoint) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> uniform(-0.3, 0.3);
+  for (int k = 0; k < 100; ++k) {
+    const Eigen::Matrix3d g = fromPlane(anyMotion(random), anyNormal(random), 0.08);
+    const Eigen::Vector2d p(uniform(random), uniform(random));
+    const Eigen::Matrix2d j = derivative(g, p);
+    for (int axis = 0; axis < 2; ++axis) {
+      const Eigen::Vector2d step = 1e-6 * Eigen::Vector2d::Unit(axis);
+      const Eigen::Vector2d slope = (apply(g, Eigen::Vector2d(p + step)) - apply(g, Eigen::Vector2d(p - step))) / 2e-6;
+      EXPECT_LT((j.col(axis) - slope).norm(), 1e-6 * (1.0 + slope.norm()));
+    }
+    EXPECT_TRUE(derivative(-3.0 * g, p).isApprox(j, 1e-12));  // whatever the scale
+  }
+}
+
 // The convention of the whole package: H takes reference points to current points.
 TEST(FromPlane, TakesReferencePointsToCurrentPoints) {
   std::mt19937 random(1);

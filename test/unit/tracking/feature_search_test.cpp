@@ -14,15 +14,10 @@ const geometry::Rectangle kRoi = {170, 110, 130, 120};
 
 // A view that turns by `angle` and zooms about the ROI's centre, which goes to `to`; `tilt` foreshortens it.
 Eigen::Matrix3d motion(double zoom, double angle, double tilt, const Eigen::Vector2d& to) {
-  Eigen::Matrix3d centre = Eigen::Matrix3d::Identity();
-  centre.topRightCorner<2, 1>() << -kRoi.x - 0.5 * kRoi.width, -kRoi.y - 0.5 * kRoi.height;
-  Eigen::Matrix3d g;
-  g << zoom * std::cos(angle), -zoom * std::sin(angle), to.x(), zoom * std::sin(angle), zoom * std::cos(angle), to.y(),
-      0, 0, 1;
   Eigen::Matrix3d tilted = Eigen::Matrix3d::Identity();
   tilted(0, 0) = std::cos(tilt);
   tilted(2, 0) = std::sin(tilt) / 500.0;
-  return geometry::normaliseDeterminant(g * tilted * centre);
+  return test::zoomAndTurn(kRoi, zoom, angle, tilted, to);
 }
 
 class FeatureSearchTest : public ::testing::Test {

@@ -14,14 +14,9 @@ const cv::Size kSize(320, 240);
 
 // About the ROI's centre, which it moves to `to`.
 Eigen::Matrix3d zoomAndTurn(double zoom, double angle, double tilt = 0.0, const Eigen::Vector2d& to = {160.0, 120.0}) {
-  Eigen::Matrix3d centre = Eigen::Matrix3d::Identity();
-  centre.topRightCorner<2, 1>() << -kRoi.x - 0.5 * kRoi.width, -kRoi.y - 0.5 * kRoi.height;
-  Eigen::Matrix3d g;
-  g << zoom * std::cos(angle), -zoom * std::sin(angle), to.x(), zoom * std::sin(angle), zoom * std::cos(angle), to.y(),
-      0, 0, 1;
   Eigen::Matrix3d tilted = Eigen::Matrix3d::Identity();
   tilted(0, 0) = std::cos(tilt);
-  return geometry::normaliseDeterminant(g * tilted * centre);
+  return test::zoomAndTurn(kRoi, zoom, angle, tilted, to);
 }
 
 class KeyframesTest : public ::testing::Test {

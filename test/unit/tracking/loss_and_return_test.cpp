@@ -31,15 +31,10 @@ Eigen::Matrix3d motion(const Return& target, double share) {
   const double zoom = std::pow(target.zoom, share);
   const double angle = target.angle * share;
   const Eigen::Vector2d to = from + share * (target.to - from);
-  Eigen::Matrix3d centre = Eigen::Matrix3d::Identity();
-  centre.topRightCorner<2, 1>() = -from;
-  Eigen::Matrix3d g;
-  g << zoom * std::cos(angle), -zoom * std::sin(angle), to.x(), zoom * std::sin(angle), zoom * std::cos(angle), to.y(),
-      0, 0, 1;
   Eigen::Matrix3d tilted = Eigen::Matrix3d::Identity();
   tilted(0, 0) = std::cos(share * target.tilt);
   tilted(2, 0) = std::sin(share * target.tilt) / 450.0;
-  return geometry::normaliseDeterminant(g * tilted * centre);
+  return test::zoomAndTurn(kRoi, zoom, angle, tilted, to);
 }
 
 class LossAndReturnTest : public ::testing::Test {

@@ -29,6 +29,15 @@ TEST(EsmJacobian, IsTheDerivativeOfTheWarpedPoint) {
   }
 }
 
+TEST(TemplateCoordinates, HaveTheirOriginInTheCentreAndHalfTheLargerSideForUnit) {
+  const geometry::Rectangle roi = {100, 80, 60, 40};
+  EXPECT_EQ(halfSize(roi), 30.0);
+  const Eigen::Matrix3d n = templateFromPixels(roi);
+  EXPECT_LT(geometry::apply(n, roi.centre()).norm(), 1e-12);
+  const Eigen::Vector2d beside = roi.centre() + Eigen::Vector2d(30.0, -15.0);
+  EXPECT_TRUE(geometry::apply(n, beside).isApprox(Eigen::Vector2d(1.0, -0.5)));
+}
+
 constexpr float kScale = 2.5f;  // of the gradients in cells: normalised units per cell unit
 
 struct Pixels {

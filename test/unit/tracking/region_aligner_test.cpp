@@ -72,6 +72,26 @@ TEST_F(RegionAlignerTest, LeavesOutWhatIsCovered) {
   EXPECT_EQ(cv::countNonZero(weights(cv::Rect(4, 4, 40, 100))), 0);
 }
 
+TEST_F(RegionAlignerTest, DrawsWhatIsCoveredWhereTheImageShowsIt) {
+  cv::Mat image = scene_.clone();
+  image(cv::Rect(100, 80, 60, 110)).setTo(cv::Scalar(190, 190, 190));
+  RegionAligner aligner = alignerOn(scene_);
+  EXPECT_EQ(cv::countNonZero(aligner.occlusionMask(Eigen::Matrix3d::Identity(), kSize)), 0);
+  aligner.align(image, EsmState(), nullptr, 32.0);
+  Eigen::Matrix3d shift = Eigen::Matrix3d::Identity();
+  shift.topRightCorner<2, 1>() << 30.0, -20.0;
+  for (const Eigen::Matrix3d& g : {Eigen::Matrix3d(Eigen::Matrix3d::Identity()), shift}) {
+    const cv::Mat1b mask = aligner.occlusionMask(g, kSize);
+    ASSERT_EQ(mask.size(), kSize);
+    const cv::Point by(static_cast<int>(g(0, 2)), static_cast<int>(g(1, 2)));
+    EXPECT_EQ(mask(cv::Point(104, 135) + by), 255);
+    EXPECT_EQ(mask(cv::Point(215, 135) + by), 0);
+    EXPECT_EQ(mask(cv::Point(95, 135) + by), 0);  // beside the ROI
+  }
+  shift(0, 2) = 1e6;
+  EXPECT_EQ(cv::countNonZero(aligner.occlusionMask(shift, kSize)), 0);
+}
+
 TEST_F(RegionAlignerTest, SaysThatTheRegionIsOutsideTheImage) {
   RegionAligner aligner = alignerOn(scene_);
   EsmState far;

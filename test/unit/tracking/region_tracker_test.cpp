@@ -2,43 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
-#include "../../support/synthetic_tissue.h"
+#include "region_tracker_fixture.h"
 
 namespace laparoscope_servo::tracking {
 namespace {
-
-const geometry::Rectangle kRoi = {110, 80, 112, 112};
-const cv::Size kSize(360, 300);
-
-Eigen::Matrix3d motion(int frame) {
-  const double t = frame / 20.0;
-  Eigen::Matrix3d g;
-  const double angle = 0.1 * std::sin(t);
-  g << std::cos(angle), -std::sin(angle), 20.0 * std::sin(1.3 * t) + 25.0 * angle, std::sin(angle), std::cos(angle),
-      12.0 * std::sin(t) - 20.0 * angle, 0.0, 1e-4 * std::sin(t), 1.0;
-  return g;
-}
-
-class RegionTrackerTest : public ::testing::Test {
- protected:
-  cv::Mat scene_ = test::tissue(kSize, 31);
-  RegionTracker tracker_{TrackerConfig()};
-
-  cv::Mat image(int frame, double gain = 1.0) const {
-    return test::view(scene_, motion(frame), gain, 0.0, 2.0, 1000 + frame);
-  }
-  void select() {
-    const TrackResult result = tracker_.select(test::view(scene_, motion(0), 1.0, 0.0, 2.0), 0.0, kRoi);
-    ASSERT_EQ(result.state, State::kTracking);
-    ASSERT_TRUE(result.selected_now);
-  }
-  static double error(const TrackResult& r, int frame) {
-    return test::cornerDistance(r.g, motion(frame), kRoi);
-  }
-};
 
 TEST_F(RegionTrackerTest, IsIdleUntilARegionIsSelected) {
   const TrackResult result = tracker_.track(image(0), 0.0);
@@ -198,69 +168,6 @@ TEST_F(RegionTrackerTest, FollowsTheRegionIntoTheRoundBorderOfThePicture) {
   EXPECT_LT(r.visible_fraction, in_picture + 0.02);
   EXPECT_GT(r.visible_fraction, in_picture - 0.1);
   EXPECT_TRUE(r.areas.occluded[0]);  // its upper left corner is beside the picture
-}
-
-TEST_F(RegionTrackerTest, TimeThatJumpsBackResets) {
-  select();
-  ASSERT_EQ(tracker_.track(image(1), 10.0).state, State::kTracking);
-  const TrackResult r = tracker_.track(image(2), 9.0);
-  EXPECT_EQ(r.state, State::kIdle);
-  EXPECT_NE(r.reason.find("jumped back"), std::string::npos);
-  EXPECT_FALSE(tracker_.hasRoi());
-}
-
-TEST_F(RegionTrackerTest, AnotherSizeResets) {
-  select();
-  const TrackResult r = tracker_.track(cv::Mat(100, 120, CV_8UC3, cv::Scalar(1, 2, 3)), 1.0);
-  EXPECT_EQ(r.state, State::kIdle);
-  EXPECT_NE(r.reason.find("360 x 300 to 120 x 100"), std::string::npos) << r.reason;
-}
-
-TEST_F(RegionTrackerTest, ImagesThatAreNoneAreRefusedAndChangeNothing) {
-  select();
-  EXPECT_THROW(tracker_.track(cv::Mat(), 0.04), std::invalid_argument);
-  EXPECT_THROW(tracker_.track(cv::Mat(kSize, CV_16UC1, cv::Scalar(1)), 0.04), std::invalid_argument);
-  EXPECT_THROW(tracker_.track(image(1), std::nan("")), std::invalid_argument);
-  EXPECT_EQ(tracker_.track(image(1), 0.04).state, State::kTracking);
-}
-
-TEST_F(RegionTrackerTest, BadRegionsAreRefusedByNameAndTheOldOneStays) {
-  select();
-  const cv::Mat now = image(1);
-  const double nan = std::nan("");
-  for (const geometry::Rectangle& roi :
-       std::vector<geometry::Rectangle>{{0, 0, 0, 0}, {10, 10, 15, 50}, {-1, 0, 50, 50}, {300, 250, 100, 100}, {1000, 1000, 50, 50},
-                                        {nan, 0, 50, 50}, {0, 0, nan, 50}, {0, 0, 1e9, 1e9}}) {
-    EXPECT_THROW(tracker_.select(now, 0.04, roi), std::invalid_argument) << roi.x << ' ' << roi.width;
-  }
-  try {
-    tracker_.select(cv::Mat(kSize, CV_8UC3, cv::Scalar(90, 90, 90)), 0.04, kRoi);
-    FAIL() << "a region without texture was accepted";
-  } catch (const std::invalid_argument& error) {
-    EXPECT_NE(std::string(error.what()).find("texture"), std::string::npos) << error.what();
-    EXPECT_NE(std::string(error.what()).find("width=112"), std::string::npos) << error.what();
-  }
-  EXPECT_EQ(tracker_.track(now, 0.04).state, State::kTracking);
-}
-
-TEST_F(RegionTrackerTest, ARegionSmallerThanTheGridOfAreasIsRefusedWithTheReason) {
-  TrackerConfig config;
-  config.occlusion.columns = 40;
-  RegionTracker tracker(config);
-  EXPECT_THROW(tracker.select(image(0), 0.0, {100, 100, 30, 60}), std::invalid_argument);
-}
-
-TEST_F(RegionTrackerTest, ABadConfigurationIsRefusedWithEveryError) {
-  TrackerConfig config;
-  config.esm.levels = 0;
-  config.occlusion.bins = 1;
-  try {
-    const RegionTracker tracker(config);
-    FAIL() << "accepted";
-  } catch (const std::invalid_argument& error) {
-    EXPECT_NE(std::string(error.what()).find("esm/levels"), std::string::npos);
-    EXPECT_NE(std::string(error.what()).find("occlusion/bins"), std::string::npos);
-  }
 }
 
 TEST_F(RegionTrackerTest, TheSameImagesGiveTheSameNumbers) {

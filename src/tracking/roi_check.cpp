@@ -1,0 +1,79 @@
+#include "laparoscope_servo/tracking/roi_check.h"
+
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+namespace laparoscope_servo::tracking {
+
+namespace {
+
+constexpr double kTypicalNoise = 2.0;  // grey levels, of a laparoscope's camera
+
+// Every pixel of the border, through the lens: what is one to one takes the inside of the border to the inside. False
+// for NaN.
+bool shows(const cv::Mat& image, const geometry::Rectangle& roi, const image::Lens& lens) {
+  const double longest_side = 65536.0;
+  if (!(roi.width <= longest_side && roi.height <= longest_side)) return false;
+  const auto seen = [&](double x, double y) {
+    const auto raw = lens.toRaw(Eigen::Vector2d(x, y));
+    return raw && raw->x() >= 0.0 && raw->y() >= 0.0 && raw->x() <= image.cols - 1.0 && raw->y() <= image.rows - 1.0;
+  };
+  const double right = roi.x + roi.width - 1.0;
+  const double bottom = roi.y + roi.height - 1.0;
+  for (double x = roi.x; x <= right; x += 1.0) {
+    if (!seen(x, roi.y) || !seen(x, bottom)) return false;
+  }
+  for (double y = roi.y; y <= bottom; y += 1.0) {
+    if (!seen(roi.x, y) || !seen(right, y)) return false;
+  }
+  return std::isfinite(right) && std::isfinite(bottom);
+}
+
+bool shows(const cv::Mat& image, const geometry::Rectangle& roi) {
+  return roi.x >= 0.0 && roi.y >= 0.0 && roi.x + roi.width <= image.cols && roi.y + roi.height <= image.rows;
+}
+
+std::string text(const geometry::Rectangle& roi) {
+  std::ostringstream text;
+  text << "ROI x=" << roi.x << " y=" << roi.y << " width=" << roi.width << " height=" << roi.height;
+  return text.str();
+}
+
+}  // namespace
+
+void checkImage(const cv::Mat& image) {
+  if (image.empty()) throw std::invalid_argument("image is empty, expected at least one pixel");
+  if (image.type() != CV_8UC1 && image.type() != CV_8UC3) {
+    throw std::invalid_argument("image of OpenCV type " + std::to_string(image.type()) +
+                                ", expected 8 bit with one channel or three");
+  }
+}
+
+geometry::Rectangle checkedRoi(const cv::Mat& image, const geometry::Rectangle& roi, int min_side,
+                               const image::Lens* lens) {
+  const std::string name = text(roi);
+  const std::string size = std::to_string(image.cols) + " x " + std::to_string(image.rows);
+  if (!(roi.width >= min_side) || !(roi.height >= min_side)) {
+    throw std::invalid_argument(name + " is too small, expected at least " + std::to_string(min_side) +
+                                " px in width and height");
+  }
+  const geometry::Rectangle whole{std::floor(roi.x), std::floor(roi.y), std::floor(roi.width), std::floor(roi.height)};
+  if (!(lens != nullptr ? shows(image, whole, *lens) : shows(image, whole))) {
+    throw std::invalid_argument(name + " is not inside the image of " + size + " px" +
+                                (lens != nullptr ? ", as its lens shows it: the ROI is in rectified pixels" : ""));
+  }
+  return whole;
+}
+
+double checkedCornerError(RegionAligner& aligner, double max_error) {
+  const double error = aligner.referenceCornerError(kTypicalNoise);
+  if (error <= max_error) return error;
+  std::ostringstream message;
+  message.precision(3);
+  message << text(aligner.roi()) << " has too little texture: " << kTypicalNoise
+          << " grey levels of noise would move a corner by " << error << " px, expected at most " << max_error;
+  throw std::invalid_argument(message.str());
+}
+
+}  // namespace laparoscope_servo::tracking

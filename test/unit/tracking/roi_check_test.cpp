@@ -1,0 +1,114 @@
+#include "laparoscope_servo/tracking/roi_check.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "../../support/synthetic_tissue.h"
+
+namespace laparoscope_servo::tracking {
+namespace {
+
+const cv::Mat kImage(120, 160, CV_8UC1, cv::Scalar(90));
+
+// What is said against the ROI; empty when nothing is.
+std::string refusal(const geometry::Rectangle& roi, const image::Lens* lens = nullptr) {
+  try {
+    checkedRoi(kImage, roi, 16, lens);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "";
+}
+
+image::Lens barrel() {
+  image::LensParameters parameters;
+  parameters.coefficients = {-0.3};
+  parameters.raw.fx = parameters.raw.fy = 120.0;
+  parameters.raw.cx = 79.5;
+  parameters.raw.cy = 59.5;
+  parameters.rectified = parameters.raw;
+  return image::Lens(parameters);
+}
+
+TEST(CheckImage, RefusesWhatIsEmptyOrOfAnotherTypeByName) {
+  EXPECT_NO_THROW(checkImage(kImage));
+  EXPECT_NO_THROW(checkImage(cv::Mat(4, 4, CV_8UC3)));
+  EXPECT_THROW(checkImage(cv::Mat()), std::invalid_argument);
+  EXPECT_THROW(checkImage(cv::Mat(4, 4, CV_32FC1)), std::invalid_argument);
+  EXPECT_THROW(checkImage(cv::Mat(4, 4, CV_8UC4)), std::invalid_argument);
+}
+
+TEST(CheckedRoi, IsInWholePixels) {
+  const geometry::Rectangle roi = checkedRoi(kImage, {10.9, 20.2, 30.7, 16.0}, 16, nullptr);
+  EXPECT_EQ(roi.x, 10.0);
+  EXPECT_EQ(roi.y, 20.0);
+  EXPECT_EQ(roi.width, 30.0);
+  EXPECT_EQ(roi.height, 16.0);
+}
+
+TEST(CheckedRoi, MayFillTheImageAndNoMore) {
+  EXPECT_EQ(refusal({0, 0, 160, 120}), "");
+  EXPECT_NE(refusal({0, 0, 161, 120}), "");
+  EXPECT_NE(refusal({0, 1, 160, 120}), "");
+  EXPECT_NE(refusal({-1, 0, 100, 100}), "");
+}
+
+TEST(CheckedRoi, NamesTheRoiAndWhatWasExpected) {
+  EXPECT_EQ(refusal({1, 2, 15.5, 50}),
+            "ROI x=1 y=2 width=15.5 height=50 is too small, expected at least 16 px in width and height");
+  EXPECT_EQ(refusal({100, 2, 90, 50}), "ROI x=100 y=2 width=90 height=50 is not inside the image of 160 x 120 px");
+}
+
+TEST(CheckedRoi, RefusesWhatIsNotFinite) {
+  const double nan = std::nan("");
+  const double infinity = std::numeric_limits<double>::infinity();
+  const image::Lens lens = barrel();
+  for (const image::Lens* through : {static_cast<const image::Lens*>(nullptr), &lens}) {
+    for (const double value : {nan, infinity, -infinity}) {
+      EXPECT_NE(refusal({value, 30, 40, 40}, through), "");
+      EXPECT_NE(refusal({30, value, 40, 40}, through), "");
+      EXPECT_NE(refusal({30, 30, value, 40}, through), "");
+      EXPECT_NE(refusal({30, 30, 40, value}, through), "");
+    }
+  }
+}
+
+// A barrel shows more than a pinhole camera: rectified pixels beyond the size of the image.
+TEST(CheckedRoi, WithALensIsInsideWhatTheLensShows) {
+  const image::Lens lens = barrel();
+  const geometry::Rectangle beside = {-6, 40, 40, 40};
+  EXPECT_NE(refusal(beside), "");
+  EXPECT_EQ(refusal(beside, &lens), "");
+  EXPECT_NE(refusal({-200, 40, 40, 40}, &lens).find("rectified"), std::string::npos);
+  EXPECT_NE(refusal({0, 0, 1e9, 1e9}, &lens), "");
+}
+
+TEST(CheckedCornerError, IsLargerTheLessTextureThereIs) {
+  const geometry::Rectangle roi = {40, 30, 80, 80};
+  const cv::Mat scene = test::tissue(cv::Size(160, 140), 5);
+  cv::Mat faint;
+  scene.convertTo(faint, CV_8UC3, 0.25, 60.0);
+  RegionAligner clear_one{TrackerConfig()}, faint_one{TrackerConfig()}, flat{TrackerConfig()};
+  clear_one.setReference(scene, roi);
+  faint_one.setReference(faint, roi);
+  flat.setReference(cv::Mat(scene.size(), CV_8UC3, cv::Scalar(90, 90, 90)), roi);
+  const double clear_error = checkedCornerError(clear_one, 100.0);
+  const double faint_error = checkedCornerError(faint_one, 100.0);
+  EXPECT_GT(clear_error, 0.0);
+  EXPECT_GT(faint_error, 2.0 * clear_error);
+  EXPECT_THROW(checkedCornerError(faint_one, 0.9 * faint_error), std::invalid_argument);
+  try {
+    checkedCornerError(flat, 100.0);
+    FAIL() << "a region without texture was accepted";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("width=80"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("expected at most 100"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace laparoscope_servo::tracking
