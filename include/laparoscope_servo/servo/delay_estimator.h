@@ -1,0 +1,76 @@
+// How long the robot takes to execute a command, from the commands sent and the velocities it reports.
+//
+// The reports of a sliding window are correlated with the commands of a delay earlier, over all delays between two
+// bounds: means taken off, axes weighted by their smallest excitation, the peak refined by a parabola. The curvature at
+// the peak against what does not correlate gives the standard deviation. A command is held until the next one; a known
+// lag of first order is applied to the commands, so that what remains is delay. Without a known lag, the delay contains
+// it.
+//
+// A comparison is used when an axis was excited, the correlation is high, its peak lies between the bounds and is
+// sharp. If not, the estimate stays as it is. It never leaves the bounds and changes no faster than a bound.
+#pragma once
+
+#include <Eigen/Core>
+#include <deque>
+#include <vector>
+
+#include "laparoscope_servo/servo/delay_config.h"
+
+namespace laparoscope_servo::servo {
+
+class DelayEstimator {
+ public:
+  // Throws std::invalid_argument with all errors when the configuration is not valid.
+  explicit DelayEstimator(const DelayConfig& config);
+
+  // A command sent at `time` [s], and a velocity reported for `time` [s], on the same clock. Each returns false,
+  // without any effect, when a number is not finite. Time that goes back, or a gap, forgets what was collected, not the
+  // estimate.
+  bool command(double time, const ScopeVelocity& velocity);
+  bool report(double time, const ScopeVelocity& velocity);
+
+  // s, within the bounds of the configuration.
+  double delay() const { return delay_; }
+
+  // The last comparison was used, or is about to be.
+  bool informative() const { return informative_; }
+
+  // Of the last comparison: 0 to 1, and s. A comparison that could not be made has correlation 0.
+  double correlation() const { return correlation_; }
+  double stddev() const { return stddev_; }
+
+  // Forgets what was collected, and the estimate when `also_delay`.
+  void reset(bool also_delay);
+
+ private:
+  struct Sample {
+    double time;
+    Eigen::Vector4d velocity;
+  };
+  struct Peak {
+    bool usable = false;
+    double delay = 0.0;
+  };
+
+  bool admit(std::deque<Sample>& samples, double time, const ScopeVelocity& velocity);
+  void compare();
+  void resampleCommands();
+  Eigen::Vector4d commandAt(double time) const;
+  double correlationAt(double delay) const;
+  Peak findPeak();
+
+  DelayConfig config_;
+  std::deque<Sample> commands_;
+  std::deque<Sample> reports_;
+  double grid_start_ = 0.0;
+  std::vector<Eigen::Vector4d> grid_;  // commands as they would be executed without delay
+  std::vector<double> correlations_;
+  Eigen::Vector4d weights_ = Eigen::Vector4d::Zero();  // of the axes, 0: left out
+  double next_comparison_ = 0.0;
+  double delay_ = 0.0;
+  bool informative_ = false;
+  double correlation_ = 0.0;
+  double stddev_ = 0.0;
+};
+
+}  // namespace laparoscope_servo::servo

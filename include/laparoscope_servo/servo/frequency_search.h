@@ -1,0 +1,35 @@
+// The frequency of a periodic motion in a window of samples: least squares over a grid of frequencies.
+//
+// For each frequency, a parabola in time and three harmonics are fitted to each channel. What is left over has a
+// minimum at the frequency, but about as deep a one at half and a third of it, whose harmonics contain it. Of minima
+// that are about as deep, the one at the highest frequency is taken.
+#pragma once
+
+#include <vector>
+
+#include "laparoscope_servo/servo/harmonic_kalman.h"
+
+namespace laparoscope_servo::servo {
+
+struct TimedChannels {
+  double time = 0.0;  // s
+  Channels z;
+};
+
+struct FrequencyBand {
+  double minimum = 0.1;  // Hz
+  double maximum = 0.5;  // Hz
+};
+
+struct FoundFrequency {
+  bool found = false;
+  double frequency = 0.0;    // Hz
+  double unexplained = 1.0;  // share of what the parabola leaves that the harmonics leave, too: 0 to 1
+};
+
+// `samples` in order of time; `noise`, the standard deviation of each. The lowest frequency that is tried has
+// `min_periods` in the time of the samples.
+FoundFrequency findFrequency(const std::vector<TimedChannels>& samples, const FrequencyBand& band, double noise,
+                             double min_periods);
+
+}  // namespace laparoscope_servo::servo

@@ -1,0 +1,116 @@
+// Periodic motion of the target, as breathing causes it: its frequency, and where it will be.
+//
+// Input: positions of the target as a camera that stands still would see it, in any unit, with slow drifts and jumps
+// that are not periodic. Output: the periodic part alone, mean zero, and its velocity, a little ahead of time.
+//
+// Until it is locked, the frequency is searched by least squares over a window (see frequency_search.h), or taken from
+// a seed, such as the ventilator's rate; the samples of the window are then run through a Kalman filter with a state
+// for the frequency (see harmonic_kalman.h). It locks when the filter, a horizon ahead, was wrong by much less than the
+// better of two predictions without a period: the mean of the last samples, and the line through them. It unlocks when
+// that is no longer so: within about a second when the prediction is worse than none. Unlocked, position and velocity
+// are exactly zero.
+//
+// A jump of the target, another one marked or the tissue pulled, is taken off all later samples.
+#pragma once
+
+#include <Eigen/Core>
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "laparoscope_servo/servo/frequency_search.h"
+#include "laparoscope_servo/servo/harmonic_filter_config.h"
+#include "laparoscope_servo/servo/harmonic_kalman.h"
+
+namespace laparoscope_servo::servo {
+
+struct PeriodicMotion {
+  Eigen::VectorXd position;  // unit of the samples
+  Eigen::VectorXd velocity;  // the same per second
+};
+
+class HarmonicFilter {
+ public:
+  // 1 to 4 channels that share a frequency and a unit. Throws std::invalid_argument with all errors when the
+  // configuration or the number of channels is not valid.
+  HarmonicFilter(const HarmonicFilterConfig& config, int channels);
+
+  // The frequency is known [Hz], with a standard deviation; forgets what was found before. Throws std::invalid_argument
+  // unless it lies within the bounds and the standard deviation is at least 0 and finite.
+  void seed(double frequency, double stddev);
+
+  // No frequency is known any more.
+  void unseed();
+
+  // A sample with its standard deviation, > 0, per channel. False, without any effect, for one of another size, or not
+  // finite, or at the time of the last one. Time that goes back, or a gap, forgets all samples, not the seed.
+  bool update(double time, const Eigen::VectorXd& z, double stddev);
+
+  void reset();
+
+  bool locked() const { return locked_; }
+
+  // Hz; 0 when not locked.
+  double frequency() const { return locked_ ? kalman_.frequency() : 0.0; }
+
+  // At a time up to a second after the last sample; zero when not locked, or beyond.
+  PeriodicMotion predict(double time) const;
+
+ private:
+  struct Sample {
+    double time = 0.0;
+    double stddev = 0.0;
+    bool jumped = false;
+    Channels z;  // without jumps
+  };
+  struct Line {
+    Channels value;  // at the last sample
+    Channels slope;  // per second
+  };
+  struct Snapshot {
+    double time = 0.0;
+    HarmonicKalman::State state;
+    Channels mean;
+    Line line;
+  };
+  // Sums of squared errors, exponentially weighted.
+  struct Errors {
+    double with = 0.0;
+    double mean = 0.0;
+    double line = 0.0;
+    double ratio() const;
+    double without() const { return mean < line ? mean : line; }
+  };
+
+  Channels withoutJumps(double time, const Channels& z, double stddev, bool& jumped);
+  Line lineUntil(std::size_t last, double seconds) const;
+  Channels meanUntil(std::size_t last, double seconds) const;
+  void start(double frequency);
+  void step(std::size_t index);
+  void score(const Sample& sample, double dt);
+  double longMemory() const;
+  void judge(double stddev);
+  void search();
+  FoundFrequency findIn(double seconds);
+  FrequencyBand band() const;
+
+  HarmonicFilterConfig config_;
+  int channels_;
+  std::optional<double> seed_;  // Hz
+  double seed_stddev_ = 0.0;    // Hz
+  std::deque<Sample> history_;
+  std::deque<Snapshot> snapshots_;
+  std::vector<TimedChannels> binned_;
+  Channels shift_;  // sum of the jumps
+  double usual_ = 0.0;
+  HarmonicKalman kalman_;
+  bool running_ = false;
+  bool locked_ = false;
+  double started_ = 0.0;  // s, when the Kalman filter was
+  double scored_ = 0.0;   // s, of predictions that were judged
+  Errors long_;
+  Errors short_;
+  double next_search_ = 0.0;
+};
+
+}  // namespace laparoscope_servo::servo
