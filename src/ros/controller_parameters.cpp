@@ -37,7 +37,15 @@ void readLaw(ParameterReader& reader, servo::ControllerConfig& config) {
 void readTarget(ParameterReader& reader, servo::ControllerConfig& config) {
   reader.read("predictor/enabled", config.predictor.enabled);
   readNumber(reader, "predictor/delay", config.predictor.delay);
+  reader.read("predictor/measure_delay", config.predictor.measure_delay);
+  readNumber(reader, "predictor/min_delay", config.predictor.min_delay);
+  readNumber(reader, "predictor/max_delay", config.predictor.max_delay);
   reader.read("predictor/feed_forward", config.predictor.feed_forward);
+  reader.read("breathing/enabled", config.breathing.enabled);
+  readNumber(reader, "breathing/rate", config.breathing.rate);
+  readNumber(reader, "breathing/rate_stddev", config.breathing.rate_stddev);
+  readNumber(reader, "breathing/min_rate", config.breathing.filter.min_frequency);
+  readNumber(reader, "breathing/max_rate", config.breathing.filter.max_frequency);
   readNumber(reader, "target/centre_noise", config.target.centre_noise);
   readNumber(reader, "target/depth_noise", config.target.depth_noise);
   readNumber(reader, "target/orientation_noise", config.target.orientation_noise);

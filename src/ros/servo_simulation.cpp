@@ -76,10 +76,17 @@ class Loop {
     input.depth.d2 = believedDepth();
     input.depth.camera_R_shaft = shaft_R_camera_.transpose();
     input.depth.lateral_offset = body_.lateralOffset();
+    if (config_.reports) {
+      const Eigen::Vector2d a = noise_.draw(config_.report_noise), b = noise_.draw(config_.report_noise);
+      input.robot_report.present = true;
+      input.robot_report.velocity = servo::ScopeVelocity::fromVector(executed_ + Eigen::Vector4d(a.x(), a.y(), b.x(), 0.1 * b.y()));
+      input.robot_report.age = time - reported_;
+    }
     if (!engaged_once_) engaged_once_ = controller_.engage(input).empty();
     const servo::ControllerOutput output = controller_.update(input);
     actuator_.command(time, output.command.vector());
     executed_ = actuator_.velocity(time);
+    reported_ = time;
     return sample(time, output);
   }
 
@@ -170,7 +177,8 @@ class Loop {
   Noise noise_;
   Eigen::Vector3d insertion_point_;  // at rest, in the world
   sim::ScopeBody body_;
-  Eigen::Vector4d executed_ = Eigen::Vector4d::Zero();
+  Eigen::Vector4d executed_ = Eigen::Vector4d::Zero();  // at the last step of the controller
+  double reported_ = 0.0;                               // s, then
   std::deque<std::pair<double, servo::TaskErrorInput>> images_;
   std::pair<double, servo::TaskErrorInput> latest_{0.0, servo::TaskErrorInput()};
   bool engaged_once_ = false;

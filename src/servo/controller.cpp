@@ -78,6 +78,7 @@ void Controller::disengage(const std::string& reason) {
 }
 
 ControllerOutput Controller::update(const ControllerInput& input) {
+  if (input.robot_report.present) servo_.report(input.time - input.robot_report.age, input.robot_report.velocity);
   if (!engaged_) return stopped();
   if (!std::isfinite(input.time) || (has_time_ && input.time < last_time_)) {
     disengage("time jumped back; engage again");

@@ -1,5 +1,6 @@
 #include "laparoscope_servo/servo/controller_config.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -45,7 +46,11 @@ void checkLaws(const ControllerConfig& config, Checker& check) {
   check.range("features/depth", config.features.depth, 0.0, 20.0, "1/s");
   check.range("features/orientation", config.features.orientation, 0.0, 20.0, "1/s");
   check.range("features/desired_depth", config.features.desired_depth, 0.005, 0.5, "m");
-  check.range("predictor/delay", config.predictor.delay, 0.0, 1.0, "s");
+  const PredictorConfig& predictor = config.predictor;
+  check.range("predictor/min_delay", predictor.min_delay, 0.0, 1.0, "s");
+  check.range("predictor/max_delay", predictor.max_delay, 0.0, 1.0, "s");
+  check.atLeast("predictor/max_delay", predictor.max_delay, "predictor/min_delay", predictor.min_delay);
+  check.range("predictor/delay", predictor.delay, std::max(0.0, predictor.min_delay), std::min(1.0, predictor.max_delay), "s");
 }
 
 void checkTarget(const TargetMotionConfig& config, Checker& check) {
@@ -62,6 +67,19 @@ void checkTarget(const TargetMotionConfig& config, Checker& check) {
   check.range("target/calibration", config.calibration, 0.0, 2.0);
   check.range("target/significance", config.significance, 0.0, 100.0);
   check.range("target/damping", config.damping, 0.0, 10.0, "1/s");
+}
+
+void checkBreathing(const BreathingConfig& config, Checker& check) {
+  check.range("breathing/rate_stddev", config.rate_stddev, 0.0, 0.1, "Hz");
+  check.range("breathing/min_rate", config.filter.min_frequency, 0.02, 2.0, "Hz");
+  check.range("breathing/max_rate", config.filter.max_frequency, 0.02, 2.0, "Hz");
+  check.atLeast("breathing/max_rate", config.filter.max_frequency, "breathing/min_rate", config.filter.min_frequency);
+  if (config.rate != 0.0) {
+    check.range("breathing/rate", config.rate, std::max(0.02, config.filter.min_frequency), std::min(2.0, config.filter.max_frequency), "Hz");
+  }
+  if (check.errors().empty()) {
+    for (const std::string& error : validate(config.filter)) check.add("breathing/filter: " + error);
+  }
 }
 
 void checkOscillation(const OscillationConfig& config, Checker& check) {
@@ -106,6 +124,7 @@ std::vector<std::string> validate(const ControllerConfig& config) {
   Checker check;
   checkLaws(config, check);
   checkTarget(config.target, check);
+  checkBreathing(config.breathing, check);
   checkOscillation(config.oscillation, check);
   checkDeadZone(config.dead_zone, check);
   checkRest(config.rest, check);

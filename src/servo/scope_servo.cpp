@@ -10,7 +10,7 @@ namespace laparoscope_servo::servo {
 
 namespace {
 
-constexpr double kHistory = 3.0;  // s, more than the oldest image and the longest delay
+constexpr double kHistory = 5.0;  // s, more than the oldest image and the longest delay
 
 std::unique_ptr<ControlLaw> lawOf(const ControllerConfig& config) {
   if (config.law == LawKind::kPaper) return std::make_unique<PaperLaw>(config.gains);
@@ -25,6 +25,14 @@ Limits beforeDeadZone(const ControllerConfig& config) {
   return limits;
 }
 
+DelayConfig delayConfig(const PredictorConfig& predictor) {
+  DelayConfig config;
+  config.initial = predictor.delay;
+  config.minimum = predictor.min_delay;
+  config.maximum = predictor.max_delay;
+  return config;
+}
+
 ScopeVelocity scaled(const ScopeVelocity& velocity, double scale) { return ScopeVelocity::fromVector(scale * velocity.vector()); }
 
 }  // namespace
@@ -36,13 +44,18 @@ ScopeServo::ScopeServo(const ControllerConfig& config)
       oscillation_(config.oscillation),
       limiter_(beforeDeadZone(config)),
       history_(kHistory),
-      target_(config.target) {}
+      delay_(delayConfig(config.predictor)),
+      target_(config.target),
+      breathing_(config.breathing, config.target) {}
 
 void ScopeServo::reset() {
-  stop(0.0);
+  band_.reset();
+  limiter_.reset();
   history_.clear();
+  delay_.reset(false);
   oscillation_.reset();
   target_.reset();
+  breathing_.reset();
   has_image_ = false;
   displacement_.setZero();
 }
@@ -50,8 +63,16 @@ void ScopeServo::reset() {
 void ScopeServo::stop(double time) {
   band_.reset();
   limiter_.reset();
-  history_.add(time, ScopeVelocity());
+  remember(time, ScopeVelocity());
 }
+
+// `executed`: once the delay has passed.
+void ScopeServo::remember(double time, const ScopeVelocity& executed) {
+  history_.add(time, executed);
+  delay_.command(time, executed);
+}
+
+void ScopeServo::report(double time, const ScopeVelocity& velocity) { delay_.report(time, velocity); }
 
 void ScopeServo::observe(const ServoInput& input) {
   if (!has_image_) {
@@ -64,7 +85,10 @@ void ScopeServo::observe(const ServoInput& input) {
   image_time_ = input.image_time;
   has_image_ = true;
   oscillation_.update(image_time_, input.error);
-  if (to_target_.allFinite()) target_.observe(image_time_, jacobian_ * (displacement_ + to_target_), jacobian_ * executed);
+  if (!to_target_.allFinite()) return;
+  const Features place = jacobian_ * (displacement_ + to_target_);
+  if (breathing_.observe(image_time_, place)) target_.reset();
+  target_.observe(image_time_, place - breathing_.predict(image_time_).place, jacobian_ * executed);
 }
 
 ScopeVelocity ScopeServo::command(const ServoInput& input, const ServoLimits& limits) {
@@ -74,11 +98,14 @@ ScopeVelocity ScopeServo::command(const ServoInput& input, const ServoLimits& li
   if (config_.predictor.enabled && to_target_.allFinite() && !target_.empty()) {
     const double executed_at = input.time + delay() + 0.5 * input.period;
     const Eigen::Vector4d then = displacement_ + history_.displacement(image_time_, executed_at, delay());
+    const TargetPrediction breath = breathing_.predict(executed_at);
     const TargetPrediction target = target_.predict(executed_at);
     const Eigen::Matrix4d inverse = jacobian_.inverse();
-    error = moved(error, to_target_ - (inverse * target.place - then), input.scope, config_.features.desired_depth);
-    // A loop that has swung may have been driven by what it took for the target's motion, and was its own.
-    if (config_.predictor.feed_forward && !(gainFactor() < 1.0)) follow = ScopeVelocity::fromVector(inverse * target.velocity);
+    error = moved(error, to_target_ - (inverse * (target.place + breath.place) - then), input.scope, config_.features.desired_depth);
+    // A loop that has swung may have been driven by what it took for the target's motion, and was its own. A breath is not.
+    Features velocity = breath.velocity;
+    if (!(gainFactor() < 1.0)) velocity += target.velocity;
+    if (config_.predictor.feed_forward) follow = ScopeVelocity::fromVector(inverse * velocity);
   }
   const bool follows = follow.vector() != Eigen::Vector4d::Zero();
   const LawVelocity wanted = law_->velocity(follows ? error : band_.apply(error, input.time), input.scope);
@@ -88,7 +115,7 @@ ScopeVelocity ScopeServo::command(const ServoInput& input, const ServoLimits& li
       limiter_.apply({scaled(follow, limits.scale), scaled(wanted.turning, gain), scaled(wanted.centring, gain)}, input.period);
   if (!limits.insertion_allowed && velocity.insertion > 0.0) velocity.insertion = 0.0;
   const ScopeVelocity command = config_.dead_zone.inverse ? throughDeadZone(velocity, config_.dead_zone.width) : velocity;
-  history_.add(input.time, afterDeadZone(command, config_.dead_zone.width));
+  remember(input.time, afterDeadZone(command, config_.dead_zone.width));
   return command;
 }
 

@@ -39,6 +39,8 @@ struct SimulationConfig {
   // Where the loop starts, from the reference pose: turned about the insertion point [rad], then pushed in [m].
   servo::ScopeVelocity start{0.1511, 0.0873, 0.1745, 0.02};
   sim::ScopeActuatorConfig robot;
+  bool reports = true;          // the robot says how fast it moves
+  double report_noise = 0.002;  // rad/s, and a tenth of it in m/s
   sim::PatientConfig patient;
 };
 

@@ -28,10 +28,18 @@ struct DepthInput {
   double age = 0.0;                             // s
 };
 
+// What the robot says of its own motion.
+struct RobotReport {
+  bool present = false;    // there is a new one
+  double age = 0.0;        // s, since it was so
+  ScopeVelocity velocity;  // of the scope
+};
+
 struct ControllerInput {
   double time = 0.0;  // s, on a clock that never jumps
   TaskErrorInput task_error;
   DepthInput depth;
+  RobotReport robot_report;
 };
 
 enum class ControllerState { kIdle, kServo, kHold };

@@ -6,6 +6,7 @@
 
 #include "laparoscope_servo/servo/dead_zone.h"
 #include "laparoscope_servo/servo/feature_law.h"
+#include "laparoscope_servo/servo/harmonic_filter_config.h"
 #include "laparoscope_servo/servo/limiter.h"
 #include "laparoscope_servo/servo/oscillation_guard.h"
 #include "laparoscope_servo/servo/paper_law.h"
@@ -29,8 +30,19 @@ enum class LawKind { kFeatures, kPaper };
 // What is known of the time from now to the execution of a command.
 struct PredictorConfig {
   bool enabled = true;       // false: the law sees the task error of the last image as it is
-  double delay = 0.16;       // s, from a command to its execution
+  double delay = 0.16;       // s, from a command to its execution, until it is measured
+  bool measure_delay = true; // from the velocities that the robot reports
+  double min_delay = 0.0;    // s, nothing less is measured
+  double max_delay = 0.4;    // s, nor more
   bool feed_forward = true;  // the target's own velocity is added to the law's
+};
+
+// The breath, as far as it moves the target.
+struct BreathingConfig {
+  bool enabled = true;
+  double rate = 0.0;           // Hz, of the ventilator; 0: not known, it is searched
+  double rate_stddev = 0.002;  // Hz, of that rate
+  HarmonicFilterConfig filter;
 };
 
 struct ControllerConfig {
@@ -40,6 +52,7 @@ struct ControllerConfig {
   SpinMode spin = SpinMode::kServo;  // of kFeatures
   PredictorConfig predictor;
   TargetMotionConfig target;
+  BreathingConfig breathing;
   RestConfig rest;
   OscillationConfig oscillation;
   DeadZoneConfig dead_zone;

@@ -8,7 +8,9 @@
 
 #include "laparoscope_servo/servo/command_history.h"
 #include "laparoscope_servo/servo/control_law.h"
+#include "laparoscope_servo/servo/breathing.h"
 #include "laparoscope_servo/servo/controller_config.h"
+#include "laparoscope_servo/servo/delay_estimator.h"
 #include "laparoscope_servo/servo/target_motion.h"
 
 namespace laparoscope_servo::servo {
@@ -34,6 +36,9 @@ class ScopeServo {
   // The command; not finite where the law's velocity is not.
   ScopeVelocity command(const ServoInput& input, const ServoLimits& limits);
 
+  // What the robot says that it executed at `time` [s], on the clock of the commands; from this the delay is measured.
+  void report(double time, const ScopeVelocity& velocity);
+
   // The arm has been told to stand still since `time`: what was in the way of motion starts anew.
   void stop(double time);
 
@@ -43,11 +48,15 @@ class ScopeServo {
   // Of the gains, 1 unless the loop has swung.
   double gainFactor() const { return oscillation_.factor(); }
 
+  // Hz, of the breath that is followed; 0 when none is.
+  double breathingRate() const { return breathing_.rate(); }
+
   // s, from a command to its execution.
-  double delay() const { return config_.predictor.delay; }
+  double delay() const { return config_.predictor.measure_delay ? delay_.delay() : config_.predictor.delay; }
 
  private:
   void observe(const ServoInput& input);
+  void remember(double time, const ScopeVelocity& executed);
 
   ControllerConfig config_;
   std::unique_ptr<ControlLaw> law_;
@@ -55,7 +64,9 @@ class ScopeServo {
   OscillationGuard oscillation_;
   Limiter limiter_;
   CommandHistory history_;
+  DelayEstimator delay_;
   TargetMotion target_;
+  Breathing breathing_;
   double image_time_ = 0.0;  // s, of the last image
   bool has_image_ = false;
   Eigen::Matrix4d jacobian_ = Eigen::Matrix4d::Identity();  // of the features at the reference, see target_motion.h

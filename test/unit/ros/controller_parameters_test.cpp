@@ -30,6 +30,14 @@ std::vector<double> numbers(const ControllerNodeConfig& config) {
                           c.features.desired_depth,
                           c.predictor.enabled ? 1.0 : 0.0,
                           c.predictor.delay,
+                          c.predictor.measure_delay ? 1.0 : 0.0,
+                          c.predictor.min_delay,
+                          c.predictor.max_delay,
+                          c.breathing.enabled ? 1.0 : 0.0,
+                          c.breathing.rate,
+                          c.breathing.rate_stddev,
+                          c.breathing.filter.min_frequency,
+                          c.breathing.filter.max_frequency,
                           c.predictor.feed_forward ? 1.0 : 0.0,
                           c.target.centre_noise,
                           c.target.depth_noise,
@@ -95,6 +103,8 @@ std::vector<double> numbers(const SimulationConfig& c) {
                           c.robot.delay,
                           c.optics_angle,
                           c.optics_roll,
+                          c.reports ? 1.0 : 0.0,
+                          c.report_noise,
                           static_cast<double>(c.wrist),
                           c.patient.breathing.frequency,
                           c.patient.breathing.second_harmonic,
@@ -162,7 +172,7 @@ TEST(ControllerParameters, EveryNumberOfTheFileHasAFieldOfItsOwn) {
             leaf.empty() ? other[group.first][member.first] : other[group.first][member.first][leaf];
         if (value.getType() != XmlRpc::XmlRpcValue::TypeDouble) continue;
         const double number = static_cast<double>(value);
-        value = number * 1.0625;
+        value = number == 0.0 ? 0.11 : number * 1.0625;
         ParameterReader reader(other, "");
         const std::vector<double> now = numbers(controllerNodeConfig(reader));
         int differences = 0;
@@ -176,7 +186,7 @@ TEST(ControllerParameters, EveryNumberOfTheFileHasAFieldOfItsOwn) {
       }
     }
   }
-  EXPECT_EQ(changed, 55);
+  EXPECT_EQ(changed, 61);
 }
 
 TEST(ControllerParameters, NothingSetGivesTheDefaults) {

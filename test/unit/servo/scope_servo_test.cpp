@@ -1,0 +1,171 @@
+#include "laparoscope_servo/servo/scope_servo.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "plane_loop.h"
+
+namespace laparoscope_servo::servo {
+namespace {
+
+using test::kZ;
+using test::PlaneLoop;
+using test::straight;
+
+const double kPeriod = 0.02;
+
+// The loop with an ideal robot that executes after a delay, images every other step.
+class Loop {
+ public:
+  Loop(const ControllerConfig& config, double delay) : servo(config), robot_(10.0), delay_(delay) { robot_.add(-1.0, ScopeVelocity()); }
+
+  ScopeVelocity step(bool report = false) {
+    if (count_ % 2 == 0) {
+      image_ = loop.error();
+      image_time_ = time_;
+    }
+    ServoInput input;
+    input.time = time_;
+    input.image_time = image_time_;
+    input.error = image_;
+    input.scope = loop.scope();
+    input.period = count_ == 0 ? 0.0 : kPeriod;
+    if (report) servo.report(time_, ScopeVelocity::fromVector(robot_.velocity(time_, delay_)));
+    const ScopeVelocity command = servo.command(input, limits);
+    robot_.add(time_, command);
+    for (int k = 0; k < 20; ++k) {
+      const double t = time_ + (k + 0.5) * kPeriod / 20.0;
+      loop.move(ScopeVelocity::fromVector(robot_.velocity(t, delay_)), kPeriod / 20.0);
+    }
+    time_ += kPeriod;
+    ++count_;
+    return command;
+  }
+
+  ScopeServo servo;
+  PlaneLoop loop{Eigen::Vector3d::UnitZ(), kZ, straight()};
+  ServoLimits limits;
+
+ private:
+  CommandHistory robot_;
+  double delay_;
+  TaskError image_;
+  double time_ = 0.0, image_time_ = 0.0;
+  int count_ = 0;
+};
+
+ControllerConfig withoutDeadZone() {
+  ControllerConfig config;
+  config.dead_zone.inverse = false;
+  config.dead_zone.width = ScopeVelocity();
+  return config;
+}
+
+double centre(const PlaneLoop& loop) {
+  const TaskError error = loop.error();
+  return std::hypot(error.x - error.desired_x, error.y - error.desired_y);
+}
+
+// What the predictor is for: this gain without it swings, with it settles in a second, and without overshooting by more than noise would.
+TEST(ScopeServo, BearsTheDelayByPrediction) {
+  for (const bool predicts : {true, false}) {
+    ControllerConfig config = withoutDeadZone();
+    config.predictor.enabled = predicts;
+    config.features.centre = 10.0;
+    config.oscillation.enabled = false;
+    Loop loop(config, 0.16);
+    loop.loop.offset({0.02, 0.0, 0.0, 0.0});
+    const double side = loop.loop.error().x;
+    double overshoot = 0.0;
+    for (int k = 0; k < 300; ++k) {
+      loop.step();
+      overshoot = std::max(overshoot, -loop.loop.error().x * (side > 0.0 ? 1.0 : -1.0));
+    }
+    if (predicts) {
+      EXPECT_LT(centre(loop.loop), 0.001);
+      EXPECT_LT(overshoot, 0.002);
+    } else {
+      EXPECT_GT(overshoot, 0.01);
+    }
+  }
+}
+
+TEST(ScopeServo, MeasuresTheDelayFromReports) {
+  for (const double delay : {0.1, 0.2}) {
+    Loop loop(withoutDeadZone(), delay);
+    for (int n = 0; n < 8; ++n) {
+      loop.loop.offset({n % 2 == 0 ? 0.05 : -0.05, 0.0, 0.0, 0.0});
+      for (int k = 0; k < 75; ++k) loop.step(true);
+    }
+    EXPECT_NEAR(loop.servo.delay(), delay, 0.02);
+  }
+  ControllerConfig config = withoutDeadZone();
+  config.predictor.measure_delay = false;
+  Loop fixed(config, 0.2);
+  fixed.loop.offset({0.05, 0.0, 0.0, 0.0});
+  for (int k = 0; k < 200; ++k) fixed.step(true);
+  EXPECT_EQ(fixed.servo.delay(), config.predictor.delay);
+}
+
+TEST(ScopeServo, TakesGainBackWhenWhatItBelievesIsWrong) {
+  ControllerConfig config = withoutDeadZone();
+  config.features.desired_depth = 2.0 * kZ;  // the loop is faster than believed
+  config.features.centre = 16.0;
+  config.predictor.delay = 0.05;
+  config.predictor.measure_delay = false;
+  Loop loop(config, 0.2);
+  loop.loop.offset({0.05, 0.03, 0.0, 0.0});
+  for (int k = 0; k < 1000; ++k) loop.step();
+  EXPECT_LT(loop.servo.gainFactor(), 1.0);
+  EXPECT_LT(centre(loop.loop), 0.004);
+  loop.servo.reset();
+  EXPECT_EQ(loop.servo.gainFactor(), 1.0);
+}
+
+TEST(ScopeServo, KeepsToItsLimits) {
+  Loop loop(ControllerConfig(), 0.16);
+  loop.loop.offset({0.1, 0.05, 0.3, -0.01});
+  loop.limits.insertion_allowed = false;
+  const Eigen::Vector4d limit = Limits().velocity.vector() * (1.0 + 1e-12);
+  bool turned = false;
+  for (int k = 0; k < 100; ++k) {
+    const ScopeVelocity command = loop.step();
+    EXPECT_LE(command.insertion, 0.0);  // it would have to go deeper
+    EXPECT_TRUE((command.vector().cwiseAbs().array() <= limit.array()).all());
+    turned |= command.pan != 0.0;
+  }
+  EXPECT_TRUE(turned);
+}
+
+TEST(ScopeServo, IsSlowerWhenItHasTo) {
+  Loop full(ControllerConfig(), 0.16), slow(ControllerConfig(), 0.16);
+  full.loop.offset({0.02, 0.0, 0.0, 0.0});
+  slow.loop.offset({0.02, 0.0, 0.0, 0.0});
+  slow.limits.scale = 0.25;
+  for (int k = 0; k < 20; ++k) {
+    full.step();
+    slow.step();
+  }
+  EXPECT_LT(centre(full.loop), 0.9 * centre(slow.loop));
+}
+
+TEST(ScopeServo, AStopIsAtOnceAndStartsFromRest) {
+  Loop loop(ControllerConfig(), 0.16);
+  loop.loop.offset({0.1, 0.0, 0.0, 0.0});
+  for (int k = 0; k < 30; ++k) loop.step();
+  loop.servo.stop(30 * kPeriod);
+  const Eigen::Vector4d first = loop.step().vector();
+  const Eigen::Vector4d limit = kPeriod * Limits().acceleration.vector() + DeadZoneConfig().width.vector();
+  EXPECT_TRUE((first.cwiseAbs().array() <= limit.array() * (1.0 + 1e-9)).all());
+}
+
+TEST(ScopeServo, WhatIsNotFiniteComesOutSo) {
+  ScopeServo servo{ControllerConfig()};
+  ServoInput input;
+  input.error.x = std::nan("");
+  EXPECT_FALSE(servo.command(input, ServoLimits()).vector().allFinite());
+}
+
+}  // namespace
+}  // namespace laparoscope_servo::servo
