@@ -50,6 +50,8 @@ class Loop {
     servo::TaskErrorInput input;
     input.problem.clear();
     input.valid = false;
+    input.visible_fraction = 1.0;
+    input.corner_error = config_.corner_noise;
     if (std::optional<geometry::Quadrilateral> seen = corners()) {
       for (Eigen::Vector2d& corner : *seen) corner += noise_.draw(config_.corner_noise);
       const Eigen::Matrix3d g = geometry::fromCorners(config_.roi.corners(), *seen);
@@ -67,7 +69,9 @@ class Loop {
       images_.pop_front();
     }
     input.task_error = latest_.second;
-    input.task_error.age = std::max(0.0, time - latest_.first);
+    input.task_error.age = input.task_error.image_age = std::max(0.0, time - latest_.first);
+    input.robot = {"", true, 0.0};
+    input.dead_man = {true, 0.0};
     input.depth.problem.clear();
     input.depth.d2 = believedDepth();
     input.depth.lateral_offset = body_.lateralOffset();

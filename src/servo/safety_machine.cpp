@@ -112,9 +112,9 @@ bool SafetyMachine::clockJumped(double time) const {
 
 std::string SafetyMachine::cause(SafetyCondition condition, const SafetyFacts& facts) const {
   const SafetyConfig& c = config_;
-  const auto& robot = facts.robot;
-  const auto& pose = facts.pose;
-  const auto& tracker = facts.tracker;
+  const RobotFacts& robot = facts.robot;
+  const PoseFacts& pose = facts.pose;
+  const TrackerFacts& tracker = facts.tracker;
   const bool pose_usable = pose.problem.empty() && isFresh(pose.age, c.max_depth_age);
   const bool released =
       c.dead_man_required && !(facts.dead_man.pressed && isFresh(facts.dead_man.age, c.max_dead_man_age));

@@ -35,7 +35,35 @@ enum class EngageRequest { kNone, kOn, kOff };
 // Of the estimate of the insertion point: how badly the robot's poses agree with one.
 enum class ResidualLevel { kOk, kWarning, kStop };
 
-// What is known in one step. As constructed, nothing is there. Ages are in s; one that is negative or NaN is too old.
+// Facts as constructed: nothing is there. Ages are in s; one that is negative or NaN is too old.
+struct RobotFacts {
+  std::string problem = "no operating state of the robot was received";  // empty: there is one
+  bool enabled = false;
+  double age = std::numeric_limits<double>::infinity();
+};
+
+struct PoseFacts {
+  std::string problem = "depth d2 is unknown";  // why it cannot be used; empty: it can
+  double age = std::numeric_limits<double>::infinity();
+  double d2 = 0.0;              // m, along the shaft from the insertion point to the camera
+  double lateral_offset = 0.0;  // m, of the insertion point from the shaft
+};
+
+struct TrackerFacts {
+  std::string problem = "no task error was received";             // why it cannot be used; empty: it can
+  double age = std::numeric_limits<double>::infinity();           // since it came
+  double image_age = std::numeric_limits<double>::infinity();     // since the image behind it was taken
+  bool valid = false;                                             // the tracker's own word
+  double visible_fraction = 0.0;                                  // 0 to 1, of the region of interest
+  double corner_error = std::numeric_limits<double>::infinity();  // px, expected of the worst corner
+};
+
+struct DeadManFacts {
+  bool pressed = false;
+  double age = std::numeric_limits<double>::infinity();
+};
+
+// What is known in one step.
 struct SafetyFacts {
   double time = 0.0;  // s, on a clock that never jumps
   EngageRequest request = EngageRequest::kNone;
@@ -43,30 +71,10 @@ struct SafetyFacts {
   std::string clock_jump;                  // what jumped since the last step, in words; empty: nothing did
   bool command_finite = true;              // the control law's last velocity
   ResidualLevel residual = ResidualLevel::kOk;
-
-  struct {
-    std::string problem = "no operating state of the robot was received";  // empty: there is one
-    bool enabled = false;
-    double age = std::numeric_limits<double>::infinity();
-  } robot;
-  struct {
-    std::string problem = "depth d2 is unknown";  // why it cannot be used; empty: it can
-    double age = std::numeric_limits<double>::infinity();
-    double d2 = 0.0;              // m, along the shaft from the insertion point to the camera
-    double lateral_offset = 0.0;  // m, of the insertion point from the shaft
-  } pose;
-  struct {
-    std::string problem = "no task error was received";             // why it cannot be used; empty: it can
-    double age = std::numeric_limits<double>::infinity();           // since it came
-    double image_age = std::numeric_limits<double>::infinity();     // since the image behind it was taken
-    bool valid = false;                                             // the tracker's own word
-    double visible_fraction = 0.0;                                  // 0 to 1, of the region of interest
-    double corner_error = std::numeric_limits<double>::infinity();  // px
-  } tracker;
-  struct {
-    bool pressed = false;
-    double age = std::numeric_limits<double>::infinity();
-  } dead_man;
+  RobotFacts robot;
+  PoseFacts pose;
+  TrackerFacts tracker;
+  DeadManFacts dead_man;
 };
 
 struct SafetyOutput {

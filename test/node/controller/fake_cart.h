@@ -55,6 +55,8 @@ inline TaskError offTarget() {
   message.e_v.z = 0.1;
   message.e_w.z = -0.1;
   message.m_star.z = 1.0;
+  message.visible_fraction = 1.0;
+  message.corner_error = 0.1;
   return message;
 }
 

@@ -17,11 +17,29 @@ std::vector<double> numbers(const servo::ScopeVelocity& v) {
 std::vector<double> numbers(const ControllerNodeConfig& config) {
   const servo::ControllerConfig& c = config.control;
   const servo::SafetyConfig& s = c.safety;
-  std::vector<double> all{config.rate,          c.gains.pan,          c.gains.tilt,
-                          c.gains.spin,         c.gains.insertion,    c.dead_zone.inverse ? 1.0 : 0.0,
-                          s.max_task_error_age, s.max_depth_age,      s.min_depth,
-                          s.max_depth,          s.max_lateral_offset, s.resume_time,
-                          s.max_period};
+  std::vector<double> all{config.rate,
+                          c.gains.pan,
+                          c.gains.tilt,
+                          c.gains.spin,
+                          c.gains.insertion,
+                          c.dead_zone.inverse ? 1.0 : 0.0,
+                          s.max_task_error_age,
+                          s.max_depth_age,
+                          s.min_depth,
+                          s.max_depth,
+                          s.max_lateral_offset,
+                          s.resume_time,
+                          s.max_period,
+                          s.max_clock_step,
+                          s.slow_below,
+                          s.hold_below,
+                          s.release_hold_above,
+                          s.min_visible_for_insertion,
+                          s.max_dead_man_age,
+                          s.max_robot_state_age,
+                          s.max_corner_error_for_insertion,
+                          s.dead_man_required ? 1.0 : 0.0,
+                          s.robot_required ? 1.0 : 0.0};
   for (const servo::ScopeVelocity& v :
        {c.dead_zone.width, c.dead_zone.stop, c.dead_zone.start, c.limits.velocity, c.limits.acceleration}) {
     for (const double number : numbers(v)) all.push_back(number);
@@ -122,7 +140,7 @@ TEST(ControllerParameters, EveryNumberOfTheFileHasAFieldOfItsOwn) {
       }
     }
   }
-  EXPECT_EQ(changed, 31);
+  EXPECT_EQ(changed, 39);
 }
 
 TEST(ControllerParameters, NothingSetGivesTheDefaults) {

@@ -65,11 +65,11 @@ std::vector<Fact> faults() {
 
 std::vector<Fact> holds() {
   std::vector<Fact> all{
-      {"no robot", [](SafetyFacts& f) { f.robot = SafetyFacts().robot; }, "no operating state"},
+      {"no robot", [](SafetyFacts& f) { f.robot = RobotFacts(); }, "no operating state"},
       {"robot not enabled", [](SafetyFacts& f) { f.robot.enabled = false; }, "not enabled"},
-      {"no pose", [](SafetyFacts& f) { f.pose = SafetyFacts().pose; }, "d2 is unknown"},
+      {"no pose", [](SafetyFacts& f) { f.pose = PoseFacts(); }, "d2 is unknown"},
       {"tf's problem", [](SafetyFacts& f) { f.pose.problem = "tf is static"; }, "tf is static"},
-      {"no task error", [](SafetyFacts& f) { f.tracker = SafetyFacts().tracker; }, "no task error"},
+      {"no task error", [](SafetyFacts& f) { f.tracker = TrackerFacts(); }, "no task error"},
       {"tracker's problem", [](SafetyFacts& f) { f.tracker.problem = "task error is not finite"; }, "not finite"},
       {"tracker lost", [](SafetyFacts& f) { f.tracker.valid = false; }, "not valid"},
   };
@@ -313,7 +313,7 @@ TEST(SafetyMachine, RefusesToEngageForTheReasonThatWouldStopIt) {
 TEST(SafetyMachine, AsksOnlyForWhatIsRequired) {
   SafetyMachine machine{SafetyConfig()};
   SafetyFacts facts = good(0.0);
-  facts.robot = SafetyFacts().robot;
+  facts.robot = RobotFacts();
   facts.dead_man = {false, kInfinity};
   facts.request = EngageRequest::kOn;
   EXPECT_EQ(machine.refusal(facts), "");
