@@ -356,6 +356,12 @@ TEST(SafetyMachine, APauseIsAJumpOnlyWhileEngaged) {
     EXPECT_EQ(reached.machine.step(good(1e6)).state, state);
     EXPECT_EQ(reached.machine.step(good(-1e6)).state, state);
   }
+  for (const State state : {State::kIdle, State::kLost}) {
+    Reached reached(state);
+    SafetyFacts facts = good(1e6);
+    facts.request = EngageRequest::kOn;
+    EXPECT_EQ(reached.machine.step(facts).state, State::kServo);
+  }
   Reached servo(State::kServo);
   EXPECT_EQ(servo.machine.step(good(10.0)).state, State::kServo);  // twice at the same time
   EXPECT_EQ(servo.machine.step(good(10.999)).state, State::kServo);
