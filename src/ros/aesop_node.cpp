@@ -18,6 +18,7 @@ constexpr std::chrono::milliseconds kPeriod{5};
 constexpr double kReconnectPause = 0.5;    // s
 constexpr double kReportPause = 1.0;       // s, between two warnings of one kind
 constexpr double kDiagnosticsPause = 1.0;  // s
+constexpr double kStatePeriod = 0.1;       // s, between two publications of an operating state that stays
 constexpr double kLastWord = 0.5;          // s, for the controller to confirm the disable when the node ends
 
 double steadyNow() {
@@ -204,7 +205,9 @@ void AesopNode::publishStatus() {
 
 void AesopNode::publishState(double now) {
   const aesop::OperatingState state = driver_.state(now);
-  if (state_published_ && state == last_state_) return;
+  // Repeated, so that who relies on it notices when it ends.
+  if (state_published_ && state == last_state_ && now - state_time_ < kStatePeriod) return;
+  state_time_ = now;
   if (!state_published_ || state.mode != last_state_.mode) {
     ROS_INFO_STREAM(aesop::name(state.mode) << (state.reason.empty() ? "" : ": ") << state.reason);
   }

@@ -12,10 +12,16 @@ Eigen::Vector3d vector(const geometry_msgs::Vector3& v) {
 
 std::string name(servo::ControllerState state) {
   switch (state) {
+    case servo::ControllerState::kArmed:
+      return ControllerState::ARMED;
     case servo::ControllerState::kServo:
       return ControllerState::SERVO;
     case servo::ControllerState::kHold:
       return ControllerState::HOLD;
+    case servo::ControllerState::kLost:
+      return ControllerState::LOST;
+    case servo::ControllerState::kFault:
+      return ControllerState::FAULT;
     case servo::ControllerState::kIdle:
       break;
   }
@@ -24,8 +30,13 @@ std::string name(servo::ControllerState state) {
 
 }  // namespace
 
-servo::TaskError fromMessage(const TaskError& message) {
-  servo::TaskError error;
+servo::TaskErrorInput fromMessage(const TaskError& message) {
+  servo::TaskErrorInput input;
+  input.problem.clear();
+  input.valid = message.valid;
+  input.visible_fraction = message.visible_fraction;
+  input.corner_error = message.corner_error;
+  servo::TaskError& error = input.error;
   error.e_v = vector(message.e_v);
   error.e_w = vector(message.e_w);
   error.m_star = vector(message.m_star);
@@ -37,7 +48,7 @@ servo::TaskError fromMessage(const TaskError& message) {
   error.desired_y = message.desired_y;
   error.desired_log_depth = message.desired_log_depth;
   error.desired_alpha = message.desired_alpha;
-  return error;
+  return input;
 }
 
 servo::DepthInput fromTransform(const geometry_msgs::Transform& camera_T_insertion_point) {
@@ -46,6 +57,13 @@ servo::DepthInput fromTransform(const geometry_msgs::Transform& camera_T_inserti
   depth.d2 = -o_a.z;
   depth.lateral_offset = std::hypot(o_a.x, o_a.y);
   return depth;
+}
+
+servo::RobotFacts fromMessage(const OperatingState& message) {
+  servo::RobotFacts robot;
+  robot.problem.clear();
+  robot.enabled = message.state == "ENABLED";
+  return robot;
 }
 
 ScopeVelocity toMessage(const servo::ScopeVelocity& velocity) {

@@ -29,9 +29,16 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
   diagnostics_.setHardwareID("none");
   diagnostics_.add("control", this, &ControllerNode::report);
   publish(controller_.update(input()));
-  // Only the newest task error counts, and it must not wait for a full packet.
-  task_error_subscriber_ =
-      node.subscribe("task_error", 1, &ControllerNode::onTaskError, this, ros::TransportHints().tcpNoDelay());
+  // Only the newest message counts, and it must not wait for a full packet.
+  const ros::TransportHints at_once = ros::TransportHints().tcpNoDelay();
+  task_error_subscriber_ = node.subscribe("task_error", 1, &ControllerNode::onTaskError, this, at_once);
+  if (config_.control.safety.robot_required) {
+    operating_state_subscriber_ =
+        node.subscribe("operating_state", 1, &ControllerNode::onOperatingState, this, at_once);
+  }
+  if (config_.control.safety.dead_man_required) {
+    dead_man_subscriber_ = node.subscribe("dead_man", 1, &ControllerNode::onDeadMan, this, at_once);
+  }
   engage_service_ = private_node.advertiseService("engage", &ControllerNode::onEngage, this);
   tick_timer_ =
       node.createSteadyTimer(ros::WallDuration(1.0 / config_.rate), [this](const ros::SteadyTimerEvent&) { onTick(); });
@@ -49,12 +56,19 @@ void ControllerNode::onTaskError(const TaskError& message) {
   checkTime();
   const StampWatch::Arrival arrival = task_error_watch_.arrived(message.header.stamp, steadyNow());
   if (arrival == StampWatch::Arrival::kRepeated) return;
-  if (arrival == StampWatch::Arrival::kBack && controller_.engaged()) {
-    controller_.disengage("stamps of the task error jumped back; engage again");
-  }
-  task_error_.problem.clear();
-  task_error_.valid = message.valid;
-  task_error_.error = fromMessage(message);
+  if (arrival == StampWatch::Arrival::kBack) clock_jump_ = "stamps of the task error jumped back";
+  task_error_ = fromMessage(message);
+}
+
+// A message without a stamp counts from when it came: whoever sends it repeats it.
+void ControllerNode::onOperatingState(const OperatingState& message) {
+  robot_ = fromMessage(message);
+  robot_arrival_ = steadyNow();
+}
+
+void ControllerNode::onDeadMan(const std_msgs::Bool& message) {
+  dead_man_.pressed = message.data != 0;
+  dead_man_arrival_ = steadyNow();
 }
 
 bool ControllerNode::onEngage(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response) {
@@ -65,7 +79,7 @@ bool ControllerNode::onEngage(std_srvs::SetBool::Request& request, std_srvs::Set
     response.message = "disengaged";
   } else if (controller_.engaged()) {
     response.success = true;
-    response.message = "was engaged already" + (last_output_.reason.empty() ? "" : ", holds: " + last_output_.reason);
+    response.message = "was engaged already, " + toMessage(last_output_).state + ": " + last_output_.reason;
   } else {
     const std::string problem = controller_.engage(input());
     response.success = problem.empty();
@@ -78,6 +92,7 @@ bool ControllerNode::onEngage(std_srvs::SetBool::Request& request, std_srvs::Set
 void ControllerNode::onTick() {
   checkTime();
   last_input_ = input();
+  clock_jump_.clear();
   publish(controller_.update(last_input_));
 }
 
@@ -91,17 +106,23 @@ void ControllerNode::checkTime() {
   task_error_watch_.clear();
   depth_watch_.clear();
   tf_.clear();
-  if (controller_.engaged()) controller_.disengage("ROS time jumped back; engage again");
+  clock_jump_ = "ROS time jumped back";
 }
 
 servo::ControllerInput ControllerNode::input() {
   const double steady_now = steadyNow();
   servo::ControllerInput input;
   input.time = steady_now;
+  input.clock_jump = clock_jump_;
+  input.robot = robot_;
+  input.robot.age = steady_now - robot_arrival_;
+  input.dead_man = dead_man_;
+  input.dead_man.age = steady_now - dead_man_arrival_;
   input.task_error = task_error_;
   if (!task_error_watch_.empty()) {
     const ros::Time now = ros::Time::now();
-    input.task_error.age = task_error_watch_.age(now, steady_now);
+    input.task_error.age = task_error_watch_.silence(steady_now);
+    input.task_error.image_age = task_error_watch_.stampAge(now);
     if (task_error_watch_.isAhead(now, config_.control.safety.max_task_error_age)) {
       input.task_error.problem = "task error is stamped in the future, compare the clocks of the machines";
     }
@@ -148,7 +169,9 @@ void ControllerNode::publish(const servo::ControllerOutput& output) {
   publishState(output);
   if (output.state == servo::ControllerState::kServo) {
     ROS_INFO("The scope follows the region of interest.");
-  } else if (before != servo::ControllerState::kIdle) {
+  } else if (output.state == servo::ControllerState::kFault) {
+    ROS_ERROR("The scope stands still: %s.", output.reason.c_str());
+  } else if (before != servo::ControllerState::kIdle || output.engaged()) {
     ROS_WARN("The scope stands still: %s.", output.reason.c_str());
   }
 }
@@ -162,16 +185,26 @@ void ControllerNode::publishState(const servo::ControllerOutput& output) {
 
 void ControllerNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   using diagnostic_msgs::DiagnosticStatus;
+  using State = servo::ControllerState;
   const ControllerState state = toMessage(last_output_);
-  if (last_output_.state == servo::ControllerState::kHold) {
-    status.summary(DiagnosticStatus::WARN, "holds: " + state.reason);
+  const std::string& caution = last_output_.caution;
+  if (last_output_.state == State::kServo) {
+    status.summary(caution.empty() ? DiagnosticStatus::OK : DiagnosticStatus::WARN,
+                   "follows the region of interest" + (caution.empty() ? "" : ", " + caution));
   } else {
-    status.summary(DiagnosticStatus::OK, last_output_.engaged() ? "follows the region of interest" : state.reason);
+    const bool is_bad = last_output_.state == State::kHold || last_output_.state == State::kLost;
+    status.summary(is_bad ? DiagnosticStatus::WARN : DiagnosticStatus::OK, state.state + ": " + state.reason);
+    if (last_output_.state == State::kFault) status.level = DiagnosticStatus::ERROR;
   }
   status.add("state", state.state);
-  const std::string problem = servo::problemWith(last_input_, config_.control.safety);
+  status.add("reason", state.reason);
+  status.add("speed scale", last_output_.speed_scale);
+  const std::string problem = controller_.problem(last_input_);
   status.add("ready to move", problem.empty() ? "yes" : "no: " + problem);
   status.add("age of the task error [s]", last_input_.task_error.age);
+  status.add("age of its image [s]", last_input_.task_error.image_age);
+  status.add("visible fraction", last_input_.task_error.visible_fraction);
+  status.add("corner error [px]", last_input_.task_error.corner_error);
   status.add("age of d2 [s]", last_input_.depth.age);
   status.add("d2 [m]", last_input_.depth.d2);
   status.add("insertion point beside the shaft [m]", last_input_.depth.lateral_offset);

@@ -68,6 +68,16 @@ void readSafety(ParameterReader& reader, servo::SafetyConfig& safety) {
   readNumber(reader, "safety/max_lateral_offset", safety.max_lateral_offset);
   readNumber(reader, "safety/resume_time", safety.resume_time);
   readNumber(reader, "safety/max_period", safety.max_period);
+  readNumber(reader, "safety/max_clock_step", safety.max_clock_step);
+  readNumber(reader, "safety/slow_below", safety.slow_below);
+  readNumber(reader, "safety/hold_below", safety.hold_below);
+  readNumber(reader, "safety/release_hold_above", safety.release_hold_above);
+  readNumber(reader, "safety/min_visible_for_insertion", safety.min_visible_for_insertion);
+  readNumber(reader, "safety/max_corner_error_for_insertion", safety.max_corner_error_for_insertion);
+  reader.read("safety/dead_man_required", safety.dead_man_required);
+  readNumber(reader, "safety/max_dead_man_age", safety.max_dead_man_age);
+  reader.read("safety/robot_required", safety.robot_required);
+  readNumber(reader, "safety/max_robot_state_age", safety.max_robot_state_age);
 }
 
 void readFrame(ParameterReader& reader, const std::string& path, std::string& frame) {

@@ -166,8 +166,13 @@ void DemoDirector::closeLoop() {
   waitFor("aesop/operating_state ENABLED", 5.0, [this] { return operating_state_ == "ENABLED"; });
   std_srvs::SetBool engage;
   engage.request.data = static_cast<std::uint8_t>(true);
+  // The controller may hear of ENABLED a moment later.
+  const std::string service = node_.resolveName("controller/engage");
+  const double last_try = now() + 2.0;
+  waitFor("an answer of " + service, 5.0,
+          [&] { return (ros::service::call(service, engage) && engage.response.success) || now() > last_try; });
+  if (!engage.response.success) throw Failed("the service " + service + " refused: " + engage.response.message);
   const double begin = now();
-  call(node_.resolveName("controller/engage"), engage);
   waitFor("convergence", config_.timeout, [this] { return settling_.settled(); });
   summary_.settling_time = std::max(0.0, settling_.since() - begin);
   ROS_INFO("settled after %.1f s", summary_.settling_time);

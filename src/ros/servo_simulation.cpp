@@ -53,6 +53,8 @@ class Loop {
     servo::TaskErrorInput input;
     input.problem.clear();
     input.valid = false;
+    input.visible_fraction = 1.0;
+    input.corner_error = config_.corner_noise;
     geometry::Quadrilateral seen = cornersAt(time);
     if (nearestToBorder(seen) >= 0.0) {
       for (Eigen::Vector2d& corner : seen) corner += noise_.draw(config_.corner_noise);
@@ -71,7 +73,9 @@ class Loop {
       images_.pop_front();
     }
     input.task_error = latest_.second;
-    input.task_error.age = std::max(0.0, time - latest_.first);
+    input.task_error.age = input.task_error.image_age = std::max(0.0, time - latest_.first);
+    input.robot = {"", true, 0.0};
+    input.dead_man = {true, 0.0};
     input.depth.problem.clear();
     input.depth.d2 = believedDepth();
     input.depth.camera_R_shaft = shaft_R_camera_.transpose();

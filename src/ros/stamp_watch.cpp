@@ -14,7 +14,15 @@ StampWatch::Arrival StampWatch::arrived(const ros::Time& stamp, double steady_no
 }
 
 double StampWatch::age(const ros::Time& now, double steady_now) const {
-  return std::max({0.0, steady_now - steady_arrival_, now.toSec() - stamp_.toSec()});
+  return std::max(silence(steady_now), stampAge(now));
+}
+
+double StampWatch::silence(double steady_now) const {
+  return std::max(0.0, steady_now - steady_arrival_);
+}
+
+double StampWatch::stampAge(const ros::Time& now) const {
+  return std::max(0.0, now.toSec() - stamp_.toSec());
 }
 
 bool StampWatch::isAhead(const ros::Time& now, double tolerance) const {

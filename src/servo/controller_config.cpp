@@ -116,6 +116,17 @@ void checkSafety(const SafetyConfig& config, Checker& check) {
   check.range("safety/max_lateral_offset", config.max_lateral_offset, 0.0, 0.1, "m");
   check.range("safety/resume_time", config.resume_time, 0.0, 10.0, "s");
   check.range("safety/max_period", config.max_period, 0.001, 1.0, "s");
+  check.range("safety/max_clock_step", config.max_clock_step, 0.01, 10.0, "s");
+  check.atLeast("safety/max_clock_step", config.max_clock_step, "safety/max_period", config.max_period);
+  check.range("safety/slow_below", config.slow_below, 0.0, 1.0);
+  check.range("safety/hold_below", config.hold_below, 0.0, 1.0);
+  check.atLeast("safety/slow_below", config.slow_below, "safety/hold_below", config.hold_below);
+  check.range("safety/release_hold_above", config.release_hold_above, 0.0, 1.0);
+  check.atLeast("safety/release_hold_above", config.release_hold_above, "safety/hold_below", config.hold_below);
+  check.range("safety/min_visible_for_insertion", config.min_visible_for_insertion, 0.0, 1.0);
+  check.range("safety/max_corner_error_for_insertion", config.max_corner_error_for_insertion, 0.0, 100.0, "px");
+  check.range("safety/max_dead_man_age", config.max_dead_man_age, 0.01, 1.0, "s");
+  check.range("safety/max_robot_state_age", config.max_robot_state_age, 0.01, 2.0, "s");
 }
 
 }  // namespace

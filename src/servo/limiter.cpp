@@ -20,8 +20,8 @@ double scaleWithin(const Eigen::Vector4d& v, const Eigen::Vector4d& limit, const
 
 }  // namespace
 
-ScopeVelocity Limiter::apply(std::initializer_list<ScopeVelocity> parts, double dt) {
-  const Eigen::Vector4d limit = limits_.velocity.vector();
+ScopeVelocity Limiter::apply(std::initializer_list<ScopeVelocity> parts, double dt, double room) {
+  const Eigen::Vector4d limit = room * limits_.velocity.vector();
   Eigen::Vector4d sum = Eigen::Vector4d::Zero();
   for (const ScopeVelocity& part : parts) sum += part.vector();
   const double common = scaleWithin(sum, limit);

@@ -111,9 +111,12 @@ ScopeVelocity ScopeServo::command(const ServoInput& input, const ServoLimits& li
   const LawVelocity wanted = law_->velocity(follows ? error : band_.apply(error, input.time), input.scope);
   if (!wanted.sum().vector().allFinite()) return wanted.sum();
   const double gain = limits.scale * gainFactor();
-  ScopeVelocity velocity =
-      limiter_.apply({scaled(follow, limits.scale), scaled(wanted.turning, gain), scaled(wanted.centring, gain)}, input.period);
-  if (!limits.insertion_allowed && velocity.insertion > 0.0) velocity.insertion = 0.0;
+  ScopeVelocity velocity = limiter_.apply({scaled(follow, limits.scale), scaled(wanted.turning, gain), scaled(wanted.centring, gain)},
+                                          input.period, limits.scale);
+  if (!limits.insertion_allowed && velocity.insertion > 0.0) {
+    velocity.insertion = 0.0;
+    limiter_.applied(velocity);
+  }
   const ScopeVelocity command = config_.dead_zone.inverse ? throughDeadZone(velocity, config_.dead_zone.width) : velocity;
   remember(input.time, afterDeadZone(command, config_.dead_zone.width));
   return command;

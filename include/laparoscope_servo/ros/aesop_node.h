@@ -62,6 +62,7 @@ class AesopNode {
   std::uint64_t errors_reported_ = 0;
   aesop::OperatingState last_state_;
   bool state_published_ = false;
+  double state_time_ = 0.0;  // s, steady, of the last publication
 
   ros::NodeHandle node_;
   ros::NodeHandle private_node_;

@@ -3,6 +3,7 @@
 
 #include <geometry_msgs/Transform.h>
 #include <laparoscope_servo/ControllerState.h>
+#include <laparoscope_servo/OperatingState.h>
 #include <laparoscope_servo/ScopeVelocity.h>
 #include <laparoscope_servo/TaskError.h>
 
@@ -10,7 +11,9 @@
 
 namespace laparoscope_servo::skin {
 
-servo::TaskError fromMessage(const TaskError& message);
+// The ages are left to the caller.
+servo::TaskErrorInput fromMessage(const TaskError& message);
+servo::RobotFacts fromMessage(const OperatingState& message);
 
 // d2 and the lateral offset from camera_T_insertion_point, O_A = (x, y, -d2) in camera coordinates. `problem` and `age`
 // are left to the caller.

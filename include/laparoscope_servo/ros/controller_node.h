@@ -1,14 +1,17 @@
 // The controller as a node: task error and tf in, scope velocity out.
 //
-// Subscribes `task_error` (TaskError); publishes `servo_command` (ScopeVelocity, at a fixed rate, zero unless the arm
-// may move), `~state` (ControllerState, latched) and diagnostics; service `~engage` (std_srvs/SetBool). d2 comes from
-// tf. The rate and all ages run on a steady clock: ROS time that stands still or jumps back stops the arm. Not
-// thread-safe: one thread calls all callbacks.
+// Subscribes `task_error` (TaskError) and, where they are required, `operating_state` (OperatingState) and `dead_man`
+// (std_msgs/Bool); publishes `servo_command` (ScopeVelocity, at a fixed rate, zero unless the arm may move), `~state`
+// (ControllerState, latched) and diagnostics; service `~engage` (std_srvs/SetBool). d2 comes from tf. The rate and all
+// ages run on a steady clock: ROS time that stands still or jumps back stops the arm. Not thread-safe: one thread calls
+// all callbacks.
 #pragma once
 
 #include <diagnostic_updater/diagnostic_updater.h>
+#include <laparoscope_servo/OperatingState.h>
 #include <laparoscope_servo/TaskError.h>
 #include <ros/ros.h>
+#include <std_msgs/Bool.h>
 #include <std_srvs/SetBool.h>
 #include <tf2_ros/transform_listener.h>
 
@@ -28,6 +31,8 @@ class ControllerNode {
 
  private:
   void onTaskError(const TaskError& message);
+  void onOperatingState(const OperatingState& message);
+  void onDeadMan(const std_msgs::Bool& message);
   bool onEngage(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
   void onTick();
   void checkTime();
@@ -42,7 +47,12 @@ class ControllerNode {
   servo::TaskErrorInput task_error_;
   StampWatch task_error_watch_;
   StampWatch depth_watch_;
+  servo::RobotFacts robot_;
+  double robot_arrival_ = 0.0;  // s, steady
+  servo::DeadManFacts dead_man_;
+  double dead_man_arrival_ = 0.0;  // s, steady
   ros::Time last_now_;
+  std::string clock_jump_;  // since the last step, in words
   servo::ControllerInput last_input_;
   servo::ControllerOutput last_output_;
   bool state_published_ = false;
@@ -53,6 +63,8 @@ class ControllerNode {
   ros::Publisher command_publisher_;
   ros::Publisher state_publisher_;
   ros::Subscriber task_error_subscriber_;
+  ros::Subscriber operating_state_subscriber_;
+  ros::Subscriber dead_man_subscriber_;
   ros::ServiceServer engage_service_;
   ros::SteadyTimer tick_timer_;
   ros::SteadyTimer diagnostics_timer_;

@@ -23,6 +23,9 @@ class StampWatch {
 
   // s, never negative. Only when not empty.
   double age(const ros::Time& now, double steady_now) const;
+  // Its two parts: since something new came, and since the stamp.
+  double silence(double steady_now) const;
+  double stampAge(const ros::Time& now) const;
 
   // The stamp lies more than `tolerance` s ahead of ROS time: the clocks of two machines differ.
   bool isAhead(const ros::Time& now, double tolerance) const;

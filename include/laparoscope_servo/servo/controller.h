@@ -1,14 +1,13 @@
 // The controller: from a task error and a depth to a command for the scope, or to zero with a reason.
 //
-// States: IDLE, not engaged; SERVO, the command follows the law; HOLD, engaged, but something that the motion relies on
-// is missing. A hold that ends within `resume_time` goes back to SERVO by itself, so that an instrument may cross the
-// ROI; after a longer one, somebody has to look at the arm and engage again. Whatever is not SERVO commands exactly
-// zero, at once.
+// The scope moves in the state SERVO only, see safety_machine.h; whatever is not SERVO commands exactly zero, at once.
 #pragma once
 
+#include <limits>
 #include <string>
 
 #include "laparoscope_servo/servo/controller_config.h"
+#include "laparoscope_servo/servo/safety_machine.h"
 #include "laparoscope_servo/servo/scope_servo.h"
 
 namespace laparoscope_servo::servo {
@@ -17,7 +16,10 @@ struct TaskErrorInput {
   std::string problem = "no task error was received";  // why there is none that could be used; empty: there is
   bool valid = false;                                  // the tracker's own word
   TaskError error;
-  double age = 0.0;  // s, since the image, or since the message came, whichever is more
+  double age = std::numeric_limits<double>::infinity();           // s, since the message came
+  double image_age = std::numeric_limits<double>::infinity();     // s, since the image was taken
+  double visible_fraction = 0.0;                                  // 0 to 1, of the region of interest
+  double corner_error = std::numeric_limits<double>::infinity();  // px, expected of the worst corner
 };
 
 struct DepthInput {
@@ -36,19 +38,25 @@ struct RobotReport {
 };
 
 struct ControllerInput {
-  double time = 0.0;  // s, on a clock that never jumps
+  double time = 0.0;       // s, on a clock that never jumps
+  std::string clock_jump;  // which other clock jumped since the last step, in words; empty: none
   TaskErrorInput task_error;
   DepthInput depth;
   RobotReport robot_report;
+  RobotFacts robot;       // where the configuration requires it
+  DeadManFacts dead_man;  // the same
+  ResidualLevel residual = ResidualLevel::kOk;
 };
 
-enum class ControllerState { kIdle, kServo, kHold };
+using ControllerState = SafetyState;
 
 struct ControllerOutput {
   ControllerState state = ControllerState::kIdle;
-  std::string reason;  // why it is not SERVO; without numbers that change from one step to the next
+  std::string reason;   // why it is this state, never empty; without numbers that change from one step to the next
+  std::string caution;  // in SERVO: what slows the scope or lets it go no deeper; empty: nothing
+  double speed_scale = 0.0;
   ScopeVelocity command;
-  bool engaged() const { return state != ControllerState::kIdle; }
+  bool engaged() const { return isEngaged(state); }
 };
 
 class Controller {
@@ -56,34 +64,28 @@ class Controller {
   // Throws std::invalid_argument with all errors when the configuration is not valid.
   explicit Controller(const ControllerConfig& config);
 
-  // Allows motion. Refused unless everything that motion relies on is there: returns why, or nothing when engaged. Once
-  // engaged, it has no effect.
+  // Allows motion. Refused unless everything that motion relies on is there, but for the dead-man switch: returns why,
+  // or nothing when engaged. Once engaged, it has no effect.
   std::string engage(const ControllerInput& input);
 
-  // Back to IDLE; `reason` is kept for the output.
+  // Back to IDLE, from every state; `reason` is kept for the output.
   void disengage(const std::string& reason);
 
-  // One step. Time that goes back, or is not finite, disengages.
   ControllerOutput update(const ControllerInput& input);
 
-  bool engaged() const { return engaged_; }
+  // Why engage() would be refused, or motion ends; empty when nothing is missing.
+  std::string problem(const ControllerInput& input) const;
+
+  bool engaged() const { return isEngaged(machine_.state()); }
 
  private:
-  void hold(double time, const std::string& reason);
-  ScopeVelocity servo(const ControllerInput& input);
-  ControllerOutput stopped() const;
+  ScopeVelocity servo(const ControllerInput& input, const SafetyOutput& safety);
 
   ControllerConfig config_;
   ScopeServo servo_;
-  bool engaged_ = false;
-  bool holding_ = false;
+  SafetyMachine machine_;
   bool has_time_ = false;
-  double last_time_ = 0.0;   // s, of the last step
-  double hold_since_ = 0.0;  // s
-  std::string reason_ = "not engaged";
+  double last_time_ = 0.0;  // s, of the last step
 };
-
-// What keeps this input from moving the arm; empty when nothing does. Without numbers that change all the time.
-std::string problemWith(const ControllerInput& input, const SafetyConfig& safety);
 
 }  // namespace laparoscope_servo::servo

@@ -11,19 +11,10 @@
 #include "laparoscope_servo/servo/oscillation_guard.h"
 #include "laparoscope_servo/servo/paper_law.h"
 #include "laparoscope_servo/servo/rest_band.h"
+#include "laparoscope_servo/servo/safety_config.h"
 #include "laparoscope_servo/servo/target_motion.h"
 
 namespace laparoscope_servo::servo {
-
-struct SafetyConfig {
-  double max_task_error_age = 0.25;   // s, an older task error stops the arm
-  double max_depth_age = 0.25;        // s, an older d2 stops the arm
-  double min_depth = 0.02;            // m, d2 below it stops the arm
-  double max_depth = 0.25;            // m, d2 above it stops the arm
-  double max_lateral_offset = 0.015;  // m, from the insertion point to the shaft; beyond it the arm stops
-  double resume_time = 2.0;           // s, a hold that ends within it resumes by itself; a longer one disengages
-  double max_period = 0.1;            // s, the most that one step counts for the limit on acceleration
-};
 
 enum class LawKind { kFeatures, kPaper };
 

@@ -17,6 +17,7 @@
 
 #include "laparoscope_servo/geometry/se3.h"
 #include "laparoscope_servo/servo/insertion_point_config.h"
+#include "laparoscope_servo/servo/residual_level.h"
 
 namespace laparoscope_servo::servo {
 
@@ -38,8 +39,6 @@ struct InsertionPointEstimate {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();  // m²
   double smallest_eigenvalue = 0.0;                          // of the mean of I - aa'
 };
-
-enum class ResidualLevel { kOk, kWarning, kStop };
 
 class InsertionPointEstimator {
  public:

@@ -21,9 +21,13 @@ class Limiter {
  public:
   explicit Limiter(const Limits& limits) : limits_(limits) {}
 
-  // The velocity for a time `dt` [s] >= 0 after the last one. `parts` must be finite; they add up to what is wanted.
-  ScopeVelocity apply(std::initializer_list<ScopeVelocity> parts, double dt);
+  // The velocity for a time `dt` [s] >= 0 after the last one. `parts` must be finite; they add up to what is wanted. `scale`, 0 to 1: of the
+  // limits on velocity.
+  ScopeVelocity apply(std::initializer_list<ScopeVelocity> parts, double dt, double scale = 1.0);
   ScopeVelocity apply(const ScopeVelocity& wanted, double dt) { return apply({wanted}, dt); }
+
+  // What was made of the last velocity.
+  void applied(const ScopeVelocity& velocity) { last_ = velocity; }
 
   // The last velocity is zero: a safety stop is not slowed down by the limit on acceleration.
   void reset() { last_ = ScopeVelocity(); }

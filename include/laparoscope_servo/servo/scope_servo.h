@@ -24,7 +24,7 @@ struct ServoInput {
 };
 
 struct ServoLimits {
-  double scale = 1.0;             // 0 to 1, of all velocities
+  double scale = 1.0;             // 0 to 1, of all velocities and their limits
   bool insertion_allowed = true;  // false: not deeper
 };
 

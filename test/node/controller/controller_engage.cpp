@@ -45,6 +45,18 @@ class ControllerEngage : public ::testing::Test {
     EXPECT_TRUE(cart_.stands()) << words;
   }
 
+  // After a fault only disengaging leads on.
+  void expectFault(const std::string& words) {
+    ASSERT_TRUE(cart_.waitForState(ControllerState::FAULT, 1.0)) << words << ": " << cart_.state().reason;
+    EXPECT_NE(cart_.state().reason.find(words), std::string::npos) << cart_.state().reason;
+    EXPECT_FALSE(cart_.state().engaged);
+    EXPECT_TRUE(cart_.stands());
+    bool success = true;
+    EXPECT_NE(cart_.engage(true, success).find("disengage"), std::string::npos);
+    EXPECT_FALSE(success);
+    EXPECT_EQ(cart_.state().state, ControllerState::FAULT);
+  }
+
   void expectRefused(const std::function<void(Feed&)>& change, const std::string& words) {
     cart_.set(change);
     bool success = true;
@@ -78,7 +90,7 @@ TEST_F(ControllerEngage, FollowsOnceEngagedAndStopsWhenDisengaged) {
   EXPECT_GT(command.insertion, 0.0);
   EXPECT_EQ(command.header.frame_id, "laparoscope_optical");
   EXPECT_FALSE(command.header.stamp.isZero());
-  EXPECT_EQ(cart_.state().reason, "");
+  EXPECT_EQ(cart_.state().reason, "engaged, nothing is missing");
   bool success = false;
   cart_.engage(false, success);
   EXPECT_TRUE(success);
@@ -115,9 +127,10 @@ TEST_F(ControllerEngage, HoldsWhenTheTrackerLosesAndResumes) {
   EXPECT_TRUE(waitFor([this] { return cart_.moves(); }));
 }
 
-TEST_F(ControllerEngage, DisengagesWhenTheTaskErrorStaysAway) {
+TEST_F(ControllerEngage, IsLostWhenTheTaskErrorStaysAway) {
   expectHold([](Feed& feed) { feed.task_error = false; }, "older than");
-  EXPECT_TRUE(cart_.waitForState(ControllerState::IDLE, 3.0));
+  EXPECT_TRUE(cart_.waitForState(ControllerState::LOST, 3.0));
+  EXPECT_FALSE(cart_.state().engaged);
   EXPECT_NE(cart_.state().reason.find("engage again"), std::string::npos) << cart_.state().reason;
   cart_.set([](Feed& feed) { feed.task_error = true; });
   EXPECT_TRUE(cart_.stands());
@@ -145,8 +158,10 @@ TEST_F(ControllerEngage, HoldsOnADepthBehindTheInsertionPoint) {
   expectHold([](Feed& feed) { feed.d2 = -0.1; }, "depth d2 is not between");
 }
 
-TEST_F(ControllerEngage, HoldsWhenTheShaftMissesTheInsertionPoint) {
-  expectHold([](Feed& feed) { feed.lateral = 0.03; }, "insertion point");
+TEST_F(ControllerEngage, AShaftThatMissesTheInsertionPointIsAFault) {
+  engageAndMove();
+  cart_.set([](Feed& feed) { feed.lateral = 0.03; });
+  expectFault("insertion point");
 }
 
 TEST_F(ControllerEngage, HoldsWhenTheSameImageIsSentAgainAndAgain) {
@@ -154,13 +169,14 @@ TEST_F(ControllerEngage, HoldsWhenTheSameImageIsSentAgainAndAgain) {
   expectHold([](Feed& feed) { feed.fixed_stamp = ros::Time::now() + ros::Duration(0.2); }, "older than");
 }
 
-TEST_F(ControllerEngage, HoldsOnOldImages) {
+TEST_F(ControllerEngage, StampsThatJumpBackAreAFault) {
   engageAndMove();
   cart_.set([](Feed& feed) { feed.stamp_offset = -1.0; });
-  // Stamps that go back disengage; the images stay too old to engage again.
-  ASSERT_TRUE(cart_.waitForState(ControllerState::IDLE, 1.0));
-  EXPECT_NE(cart_.state().reason.find("jumped back"), std::string::npos) << cart_.state().reason;
-  expectRefused([](Feed&) {}, "older than");
+  expectFault("jumped back");
+  bool success = false;
+  cart_.engage(false, success);
+  // The images stay too old to engage again.
+  expectRefused([](Feed&) {}, "image behind the task error is older than");
 }
 
 TEST_F(ControllerEngage, HoldsOnStampsInTheFuture) {

@@ -59,6 +59,8 @@ inline TaskError offTarget() {
   message.log_depth = std::log(1.1);
   message.alpha = -0.05;
   message.m_star.z = 1.0;
+  message.visible_fraction = 1.0;
+  message.corner_error = 0.1;
   return message;
 }
 

@@ -4,11 +4,11 @@
 
 #include <memory>
 
-#include "system/aesop/aesop_bench.h"
 #include "laparoscope_servo/ControllerState.h"
 #include "laparoscope_servo/Homography.h"
 #include "laparoscope_servo/SelectRoi.h"
 #include "laparoscope_servo/ros/parameters.h"
+#include "system/aesop/aesop_bench.h"
 
 namespace laparoscope_servo::test {
 namespace {
@@ -29,9 +29,11 @@ class CartStops : public testing::Test {
     ros::param::set("/simulated_camera", camera);
     ros::param::set("/tracker", skin::parametersFromYaml(config("tracker.yaml")));
     ros::param::set("/controller", skin::parametersFromYaml(config("controller.yaml")));
+    ros::param::set("/controller/safety/robot_required", true);
     camera_ = start(SIMULATED_CAMERA, {"__name:=simulated_camera"});
     tracker_ = start(TRACKER, {"__name:=tracker", "image:=image_raw"});
-    controller_ = start(CONTROLLER, {"__name:=controller", "task_error:=tracker/task_error"});
+    controller_ = start(
+        CONTROLLER, {"__name:=controller", "task_error:=tracker/task_error", "operating_state:=aesop/operating_state"});
     homography_subscriber_ = node_.subscribe<Homography>(
         "tracker/homography", 10, [this](const HomographyConstPtr& message) { homography_ = *message; });
     ASSERT_TRUE(bench_.waitFor([this] { return homography_.has_value(); }, 20.0));
@@ -48,13 +50,18 @@ class CartStops : public testing::Test {
     ASSERT_TRUE(bench_.waitFor([this] { return !bench_.jointsMove(); }));
     ASSERT_EQ(homography_->state, Homography::TRACKING);
 
-    ASSERT_TRUE(bench_.call("enable").success);
-    ASSERT_TRUE(bench_.waitFor([this] { return bench_.stateIs("ENABLED"); }));
     ASSERT_TRUE(ros::service::waitForService("controller/engage", 10000));
     std_srvs::SetBool engage;
     engage.request.data = static_cast<std::uint8_t>(true);
     ASSERT_TRUE(ros::service::call("controller/engage", engage));
-    ASSERT_TRUE(engage.response.success) << engage.response.message;
+    EXPECT_FALSE(engage.response.success);
+    EXPECT_NE(engage.response.message.find("robot is not enabled"), std::string::npos) << engage.response.message;
+    ASSERT_TRUE(bench_.call("enable").success);
+    ASSERT_TRUE(bench_.waitFor([this] { return bench_.stateIs("ENABLED"); }));
+    // The controller may hear of it a moment later.
+    ASSERT_TRUE(bench_.waitFor([&] {
+      return ros::service::call("controller/engage", engage) && engage.response.success;
+    })) << engage.response.message;
     ASSERT_TRUE(bench_.waitFor([this] { return bench_.jointsMove(); }));
   }
 

@@ -45,6 +45,19 @@ TEST(LaunchFiles, CartAndDemoStartWhatTheySay) {
   EXPECT_EQ(nodesOf("tracker.launch manager:=camera_manager"), Nodes{"/tracker"});
 }
 
+std::string parametersOf(const std::string& launch) {
+  return outputOf("roslaunch --dump-params laparoscope_servo " + launch);
+}
+
+TEST(LaunchFiles, ControllerOfACartAsksForTheRobotAndForADeadManThatIsGiven) {
+  const std::string cart = parametersOf("cart.launch port:=/dev/ttyX rviz:=false");
+  EXPECT_NE(cart.find("/controller/safety/robot_required: true"), std::string::npos) << cart;
+  EXPECT_NE(cart.find("/controller/safety/dead_man_required: false"), std::string::npos) << cart;
+  const std::string demo = parametersOf("demo.launch rviz:=false dead_man:=/pedal");
+  EXPECT_NE(demo.find("/controller/safety/robot_required: true"), std::string::npos) << demo;
+  EXPECT_NE(demo.find("/controller/safety/dead_man_required: true"), std::string::npos) << demo;
+}
+
 TEST(LaunchFiles, CartNeedsItsPort) {
   EXPECT_NE(outputOf("roslaunch --nodes laparoscope_servo cart.launch").find("port"), std::string::npos);
 }

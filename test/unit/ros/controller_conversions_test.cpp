@@ -24,7 +24,17 @@ TEST(ControllerConversions, TaskErrorKeepsEveryField) {
   message.desired_y = 15.0;
   message.desired_log_depth = 16.0;
   message.desired_alpha = 17.0;
-  const servo::TaskError error = fromMessage(message);
+  message.visible_fraction = 0.75;
+  message.corner_error = 0.5;
+  message.valid = true;
+  const servo::TaskErrorInput input = fromMessage(message);
+  EXPECT_TRUE(input.valid);
+  EXPECT_EQ(input.problem, "");
+  EXPECT_EQ(input.visible_fraction, 0.75);
+  EXPECT_EQ(input.corner_error, 0.5);
+  message.valid = false;
+  EXPECT_FALSE(fromMessage(message).valid);
+  const servo::TaskError& error = input.error;
   EXPECT_EQ(error.e_v, Eigen::Vector3d(1, 2, 3));
   EXPECT_EQ(error.e_w, Eigen::Vector3d(4, 5, 6));
   EXPECT_EQ(error.m_star, Eigen::Vector3d(7, 8, 9));
@@ -59,19 +69,32 @@ TEST(ControllerConversions, VelocityKeepsItsComponents) {
   EXPECT_EQ(message.insertion, 4.0);
 }
 
+TEST(ControllerConversions, OnlyAnEnabledRobotIsEnabled) {
+  for (const char* state : {"DISABLED", "PAUSED", "FAULT", "", "enabled"}) {
+    OperatingState message;
+    message.state = state;
+    EXPECT_FALSE(fromMessage(message).enabled) << state;
+    EXPECT_EQ(fromMessage(message).problem, "");
+  }
+  OperatingState message;
+  message.state = "ENABLED";
+  EXPECT_TRUE(fromMessage(message).enabled);
+}
+
 TEST(ControllerConversions, StatesHaveTheirNames) {
   servo::ControllerOutput output;
   output.reason = "why";
-  output.state = servo::ControllerState::kIdle;
-  EXPECT_EQ(toMessage(output).state, ControllerState::IDLE);
-  EXPECT_FALSE(toMessage(output).engaged);
-  EXPECT_EQ(toMessage(output).reason, "why");
-  output.state = servo::ControllerState::kServo;
-  EXPECT_EQ(toMessage(output).state, ControllerState::SERVO);
-  EXPECT_TRUE(toMessage(output).engaged);
-  output.state = servo::ControllerState::kHold;
-  EXPECT_EQ(toMessage(output).state, ControllerState::HOLD);
-  EXPECT_TRUE(toMessage(output).engaged);
+  using State = servo::ControllerState;
+  const std::pair<State, std::string> names[] = {{State::kIdle, "IDLE"},   {State::kArmed, "ARMED"},
+                                                 {State::kServo, "SERVO"}, {State::kHold, "HOLD"},
+                                                 {State::kLost, "LOST"},   {State::kFault, "FAULT"}};
+  for (const auto& [state, name] : names) {
+    output.state = state;
+    EXPECT_EQ(toMessage(output).state, name);
+    EXPECT_EQ(toMessage(output).reason, "why");
+    EXPECT_EQ(toMessage(output).engaged != 0,
+              state == State::kArmed || state == State::kServo || state == State::kHold);
+  }
 }
 
 }  // namespace

@@ -68,7 +68,17 @@ std::vector<double> numbers(const ControllerNodeConfig& config) {
                           c.oscillation.depth,
                           c.oscillation.orientation,
                           c.oscillation.step,
-                          c.oscillation.least};
+                          c.oscillation.least,
+                          s.max_clock_step,
+                          s.slow_below,
+                          s.hold_below,
+                          s.release_hold_above,
+                          s.min_visible_for_insertion,
+                          s.max_dead_man_age,
+                          s.max_robot_state_age,
+                          s.max_corner_error_for_insertion,
+                          s.dead_man_required ? 1.0 : 0.0,
+                          s.robot_required ? 1.0 : 0.0};
   for (const servo::ScopeVelocity& v :
        {c.dead_zone.width, c.limits.velocity, c.limits.acceleration}) {
     for (const double number : numbers(v)) all.push_back(number);
@@ -186,7 +196,7 @@ TEST(ControllerParameters, EveryNumberOfTheFileHasAFieldOfItsOwn) {
       }
     }
   }
-  EXPECT_EQ(changed, 61);
+  EXPECT_EQ(changed, 69);
 }
 
 TEST(ControllerParameters, NothingSetGivesTheDefaults) {

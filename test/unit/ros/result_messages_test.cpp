@@ -112,6 +112,8 @@ TEST(TaskErrorMessage, IsZeroInTheReference) {
   EXPECT_NEAR(message.m_star.x, (249.5 - 320.0) / 400.0, 1e-12);
   EXPECT_NEAR(message.m_star.y, (189.5 - 240.0) / 410.0, 1e-12);
   EXPECT_EQ(message.m_star.z, 1.0);
+  EXPECT_EQ(message.visible_fraction, 0.5);
+  EXPECT_EQ(message.corner_error, 0.25);
 }
 
 TEST(TaskErrorMessage, SeesAShiftToTheRight) {

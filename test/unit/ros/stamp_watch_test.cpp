@@ -24,6 +24,15 @@ TEST(StampWatch, RepeatedStampsDoNotKeepItYoung) {
   EXPECT_NEAR(watch.age(ros::Time(100.0), 6.0), 1.0, 1e-9);
 }
 
+TEST(StampWatch, TellsSilenceFromOldData) {
+  StampWatch watch;
+  watch.arrived(ros::Time(100.0), 5.0);
+  EXPECT_NEAR(watch.silence(5.5), 0.5, 1e-9);
+  EXPECT_NEAR(watch.stampAge(ros::Time(100.2)), 0.2, 1e-6);
+  EXPECT_EQ(watch.silence(4.0), 0.0);
+  EXPECT_EQ(watch.stampAge(ros::Time(99.0)), 0.0);
+}
+
 TEST(StampWatch, NoticesStampsThatGoBackAndStartsAnew) {
   StampWatch watch;
   watch.arrived(ros::Time(100.0), 5.0);

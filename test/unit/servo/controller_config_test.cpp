@@ -73,7 +73,17 @@ std::vector<Field> fields() {
       {"safety/max_depth", [](ControllerConfig& c, double v) { c.safety.max_depth = v; }},
       {"safety/max_lateral_offset", [](ControllerConfig& c, double v) { c.safety.max_lateral_offset = v; }},
       {"safety/resume_time", [](ControllerConfig& c, double v) { c.safety.resume_time = v; }},
-      {"safety/max_period", [](ControllerConfig& c, double v) { c.safety.max_period = v; }}};
+      {"safety/max_period", [](ControllerConfig& c, double v) { c.safety.max_period = v; }},
+      {"safety/max_clock_step", [](ControllerConfig& c, double v) { c.safety.max_clock_step = v; }},
+      {"safety/slow_below", [](ControllerConfig& c, double v) { c.safety.slow_below = v; }},
+      {"safety/hold_below", [](ControllerConfig& c, double v) { c.safety.hold_below = v; }},
+      {"safety/release_hold_above", [](ControllerConfig& c, double v) { c.safety.release_hold_above = v; }},
+      {"safety/min_visible_for_insertion",
+       [](ControllerConfig& c, double v) { c.safety.min_visible_for_insertion = v; }},
+      {"safety/max_corner_error_for_insertion",
+       [](ControllerConfig& c, double v) { c.safety.max_corner_error_for_insertion = v; }},
+      {"safety/max_dead_man_age", [](ControllerConfig& c, double v) { c.safety.max_dead_man_age = v; }},
+      {"safety/max_robot_state_age", [](ControllerConfig& c, double v) { c.safety.max_robot_state_age = v; }}};
   const auto add = [&all](const std::vector<Field>& more) { all.insert(all.end(), more.begin(), more.end()); };
   add(velocityFields("dead_zone/width", [](ControllerConfig& c) -> ScopeVelocity& { return c.dead_zone.width; }));
   add(velocityFields("limits/velocity", [](ControllerConfig& c) -> ScopeVelocity& { return c.limits.velocity; }));
@@ -120,6 +130,13 @@ TEST(ControllerConfig, ThresholdsHaveToBeInOrder) {
   config.safety.min_depth = 0.2;
   config.safety.max_depth = 0.1;
   EXPECT_TRUE(names(validate(config), "safety/max_depth"));
+  config = ControllerConfig();
+  config.safety.hold_below = 0.6;
+  EXPECT_TRUE(names(validate(config), "safety/slow_below"));
+  EXPECT_TRUE(names(validate(config), "safety/release_hold_above"));
+  config = ControllerConfig();
+  config.safety.max_clock_step = 0.05;
+  EXPECT_TRUE(names(validate(config), "safety/max_clock_step"));
 }
 
 // Since components are scaled together, a velocity limit of zero would stop all of them.
