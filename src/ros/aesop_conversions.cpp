@@ -67,7 +67,7 @@ sensor_msgs::JointState jointState(const aesop::Status& status, const ros::Time&
 }
 
 geometry_msgs::PoseStamped opticalPose(const aesop::Kinematics& kinematics, const aesop::Status& status,
-                                       const std::string& prefix, const ros::Time& stamp) {
+                                       const Eigen::Matrix3d& tip_R_optical, const std::string& prefix, const ros::Time& stamp) {
   const Eigen::Isometry3d base_T_optical = kinematics.optical(status.position);
   geometry_msgs::PoseStamped message;
   message.header.stamp = stamp;
@@ -75,7 +75,7 @@ geometry_msgs::PoseStamped opticalPose(const aesop::Kinematics& kinematics, cons
   message.pose.position.x = base_T_optical.translation().x();
   message.pose.position.y = base_T_optical.translation().y();
   message.pose.position.z = base_T_optical.translation().z();
-  message.pose.orientation = rotation(base_T_optical.linear());
+  message.pose.orientation = rotation(base_T_optical.linear() * tip_R_optical);
   return message;
 }
 
@@ -109,9 +109,12 @@ std::vector<geometry_msgs::TransformStamped> linkTransforms(const aesop::Kinemat
 
 std::vector<geometry_msgs::TransformStamped> fixedTransforms(const aesop::Kinematics& kinematics,
                                                              const Eigen::Vector3d& insertion_point,
+                                                             const Eigen::Matrix3d& tip_R_optical,
                                                              const std::string& prefix, const ros::Time& stamp) {
+  Eigen::Isometry3d tip_T_optical = Eigen::Isometry3d::Identity();
+  tip_T_optical.linear() = tip_R_optical;
   return {transform(prefix + "end_effector", prefix + "scope_tip", kinematics.opticalInEndEffector(), stamp),
-          transform(prefix + "scope_tip", prefix + "laparoscope_optical", Eigen::Isometry3d::Identity(), stamp),
+          transform(prefix + "scope_tip", prefix + "laparoscope_optical", tip_T_optical, stamp),
           transform(prefix + "aesop_base", prefix + "insertion_point",
                     Eigen::Isometry3d(Eigen::Translation3d(insertion_point)), stamp)};
 }

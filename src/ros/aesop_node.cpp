@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "laparoscope_servo/ros/aesop_conversions.h"
+#include "laparoscope_servo/servo/scope_geometry.h"
 
 namespace laparoscope_servo::skin {
 
@@ -33,6 +34,7 @@ double stampNow() {
 AesopNode::AesopNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
                      const AesopParameters& parameters)
     : parameters_(parameters),
+      tip_R_optical_(servo::obliqueOptics(parameters.optics_angle, parameters.optics_roll).transpose()),
       driver_(parameters.driver),
       line_warning_(aesop::lineWarning(parameters.driver.session, parameters.baud_rate)),
       node_(node),
@@ -198,7 +200,7 @@ void AesopNode::publishStatus() {
   const aesop::Status& status = *link.status();
   const std::string& prefix = parameters_.frame_prefix;
   joint_publisher_.publish(jointState(status, stamp));
-  pose_publisher_.publish(opticalPose(driver_.kinematics(), status, prefix, stamp));
+  pose_publisher_.publish(opticalPose(driver_.kinematics(), status, tip_R_optical_, prefix, stamp));
   twist_publisher_.publish(opticalTwist(driver_.kinematics(), status, prefix, stamp));
   broadcaster_.sendTransform(linkTransforms(driver_.kinematics(), status.position, prefix, stamp));
 }
@@ -218,7 +220,7 @@ void AesopNode::publishState(double now) {
 
 void AesopNode::publishStaticFrames() {
   static_broadcaster_.sendTransform(
-      fixedTransforms(driver_.kinematics(), driver_.insertionPoint(), parameters_.frame_prefix, ros::Time::now()));
+      fixedTransforms(driver_.kinematics(), driver_.insertionPoint(), tip_R_optical_, parameters_.frame_prefix, ros::Time::now()));
 }
 
 void AesopNode::describe(diagnostic_updater::DiagnosticStatusWrapper& status) {

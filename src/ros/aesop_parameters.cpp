@@ -120,6 +120,8 @@ AesopParameters readAesopParameters(ParameterReader& reader) {
   reader.read("port", parameters.port);
   reader.read("baud_rate", parameters.baud_rate, 1200, 1000000);
   reader.read("frame_prefix", parameters.frame_prefix);
+  reader.read("optics/angle", parameters.optics_angle, -1.3, 1.3);
+  reader.read("optics/roll", parameters.optics_roll, -3.2, 3.2);
   readKinematics(reader, parameters.driver.kinematics);
   readMotion(reader, parameters.driver.motion);
   readCommand(reader, parameters.driver.command);

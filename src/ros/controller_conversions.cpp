@@ -10,6 +10,10 @@ Eigen::Vector3d vector(const geometry_msgs::Vector3& v) {
   return {v.x, v.y, v.z};
 }
 
+Eigen::Quaterniond quaternion(const geometry_msgs::Quaternion& q) {
+  return Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized();
+}
+
 std::string name(servo::ControllerState state) {
   switch (state) {
     case servo::ControllerState::kArmed:
@@ -51,12 +55,25 @@ servo::TaskErrorInput fromMessage(const TaskError& message) {
   return input;
 }
 
-servo::DepthInput fromTransform(const geometry_msgs::Transform& camera_T_insertion_point) {
-  const geometry_msgs::Vector3& o_a = camera_T_insertion_point.translation;
+servo::DepthInput fromTransforms(const geometry_msgs::Transform& camera_T_insertion_point, const geometry_msgs::Transform& camera_T_shaft) {
+  const Eigen::Quaterniond camera_R_insertion_point = quaternion(camera_T_insertion_point.rotation);
   servo::DepthInput depth;
-  depth.d2 = -o_a.z;
-  depth.lateral_offset = std::hypot(o_a.x, o_a.y);
+  depth.camera_R_shaft = quaternion(camera_T_shaft.rotation).toRotationMatrix();
+  const Eigen::Vector3d in_camera = vector(camera_T_insertion_point.translation);
+  const Eigen::Vector3d along = depth.camera_R_shaft.transpose() * in_camera;  // O_A from O_C, in the shaft's axes
+  depth.d2 = -along.z();
+  depth.lateral_offset = along.head<2>().norm();
+  Eigen::Isometry3d tip = Eigen::Isometry3d::Identity();
+  tip.linear() = camera_R_insertion_point.conjugate().toRotationMatrix() * depth.camera_R_shaft;
+  tip.translation() = -(camera_R_insertion_point.conjugate() * in_camera);
+  depth.insertion_point_T_tip = tip;
   return depth;
+}
+
+servo::ScopeVelocity fromTwist(const geometry_msgs::Twist& twist, const Eigen::Quaterniond& shaft_R_frame) {
+  const Eigen::Vector3d w = shaft_R_frame * vector(twist.angular);
+  const Eigen::Vector3d v = shaft_R_frame * vector(twist.linear);
+  return {w.y(), w.x(), w.z(), v.z()};
 }
 
 servo::RobotFacts fromMessage(const OperatingState& message) {

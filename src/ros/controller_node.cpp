@@ -3,6 +3,8 @@
 #include <laparoscope_servo/ControllerState.h>
 #include <laparoscope_servo/ScopeVelocity.h>
 
+#include <cmath>
+
 #include "laparoscope_servo/ros/controller_conversions.h"
 
 namespace laparoscope_servo::skin {
@@ -11,6 +13,9 @@ namespace {
 
 // s. A correction of the machine's clock by less is no jump.
 constexpr double kClockCorrection = 0.1;
+
+// s. A velocity that was measured so long before, or after, has no place among the commands.
+constexpr double kOldestReport = 1.0;
 
 double steadyNow() {
   return ros::SteadyTime::now().toSec();
@@ -38,6 +43,9 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
   }
   if (config_.control.safety.dead_man_required) {
     dead_man_subscriber_ = node.subscribe("dead_man", 1, &ControllerNode::onDeadMan, this, at_once);
+  }
+  if (config_.control.predictor.measure_delay) {
+    measured_velocity_subscriber_ = node.subscribe("measured_cv", 1, &ControllerNode::onMeasuredVelocity, this, at_once);
   }
   engage_service_ = private_node.advertiseService("engage", &ControllerNode::onEngage, this);
   tick_timer_ =
@@ -69,6 +77,20 @@ void ControllerNode::onOperatingState(const OperatingState& message) {
 void ControllerNode::onDeadMan(const std_msgs::Bool& message) {
   dead_man_.pressed = message.data != 0;
   dead_man_arrival_ = steadyNow();
+}
+
+// Only the delay is measured with it: what is missing or wrong here is left out.
+void ControllerNode::onMeasuredVelocity(const geometry_msgs::TwistStamped& message) {
+  const double age = (ros::Time::now() - message.header.stamp).toSec();
+  if (message.header.stamp.isZero() || !(std::abs(age) < kOldestReport)) return;
+  try {
+    const auto rotation = tf_.lookupTransform(config_.shaft, message.header.frame_id, ros::Time(0)).transform.rotation;
+    robot_report_.velocity = fromTwist(message.twist, Eigen::Quaterniond(rotation.w, rotation.x, rotation.y, rotation.z).normalized());
+  } catch (const tf2::TransformException&) {
+    return;
+  }
+  robot_report_.present = true;
+  robot_report_arrival_ = steadyNow() - age;
 }
 
 bool ControllerNode::onEngage(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response) {
@@ -128,6 +150,9 @@ servo::ControllerInput ControllerNode::input() {
     }
   }
   input.depth = depth(steady_now);
+  input.robot_report = robot_report_;
+  input.robot_report.age = steady_now - robot_report_arrival_;
+  robot_report_.present = false;
   return input;
 }
 
@@ -135,7 +160,7 @@ servo::DepthInput ControllerNode::depth(double steady_now) {
   servo::DepthInput depth;
   try {
     const auto transform = tf_.lookupTransform(config_.camera, config_.insertion_point, ros::Time(0));
-    depth = fromTransform(transform.transform);
+    depth = fromTransforms(transform.transform, tf_.lookupTransform(config_.camera, config_.shaft, ros::Time(0)).transform);
     depth.problem.clear();
     if (transform.header.stamp.isZero()) {
       // d2 changes when the scope is inserted: a transform that cannot change says nothing about the arm.
@@ -208,6 +233,13 @@ void ControllerNode::report(diagnostic_updater::DiagnosticStatusWrapper& status)
   status.add("age of d2 [s]", last_input_.depth.age);
   status.add("d2 [m]", last_input_.depth.d2);
   status.add("insertion point beside the shaft [m]", last_input_.depth.lateral_offset);
+  const servo::InsertionPointEstimate& point = controller_.insertionPoint().estimate();
+  status.add("insertion point by the poses, from its frame [m]", point.valid ? point.point.norm() : 0.0);
+  status.add("its standard deviation [m]", point.valid ? std::sqrt(point.covariance.trace() / 3.0) : 0.0);
+  status.add("residual of the shafts [m]", controller_.insertionPoint().residual());
+  status.add("delay [s]", controller_.servo().delay());
+  status.add("breathing rate [Hz]", controller_.servo().breathingRate());
+  status.add("factor of the gains", controller_.servo().gainFactor());
   status.add("pan [rad/s]", last_output_.command.pan);
   status.add("tilt [rad/s]", last_output_.command.tilt);
   status.add("spin [rad/s]", last_output_.command.spin);

@@ -22,8 +22,10 @@ void readLaw(ParameterReader& reader, servo::ControllerConfig& config) {
   std::string law = "features", spin = "servo";
   reader.read("law", law, {"features", "paper"});
   config.law = law == "paper" ? servo::LawKind::kPaper : servo::LawKind::kFeatures;
-  reader.read("spin", spin, {"servo", "released"});
-  config.spin = spin == "released" ? servo::SpinMode::kReleased : servo::SpinMode::kServo;
+  reader.read("spin", spin, {"servo", "upright", "released"});
+  config.spin = spin == "released"  ? servo::SpinMode::kReleased
+                : spin == "upright" ? servo::SpinMode::kUpright
+                                    : servo::SpinMode::kServo;
   readNumber(reader, "gains/pan", config.gains.pan);
   readNumber(reader, "gains/tilt", config.gains.tilt);
   readNumber(reader, "gains/spin", config.gains.spin);
@@ -113,6 +115,19 @@ servo::ControllerConfig controllerConfig(ParameterReader& reader) {
   readNumber(reader, "oscillation/orientation", config.oscillation.orientation);
   readNumber(reader, "oscillation/step", config.oscillation.step);
   readNumber(reader, "oscillation/least", config.oscillation.least);
+  constexpr double kLarge = std::numeric_limits<double>::max();
+  readNumber(reader, "range/min_depth", config.range.min_depth);
+  readNumber(reader, "range/max_depth", config.range.max_depth);
+  readNumber(reader, "range/depth_margin", config.range.depth_margin);
+  reader.read("range/axis", config.range.axis, 3, -kLarge, kLarge);
+  readNumber(reader, "range/cone", config.range.cone);
+  readNumber(reader, "range/cone_margin", config.range.cone_margin);
+  reader.read("insertion_point/use", config.insertion_point.use);
+  readNumber(reader, "insertion_point/prior_stddev", config.insertion_point.prior_stddev);
+  readNumber(reader, "insertion_point/wobble", config.insertion_point.estimator.wobble);
+  readNumber(reader, "insertion_point/warning_residual", config.insertion_point.estimator.warning_residual);
+  readNumber(reader, "insertion_point/stop_residual", config.insertion_point.estimator.stop_residual);
+  reader.read("horizon/up", config.horizon.up, 3, -kLarge, kLarge);
   readVelocity(reader, "limits/velocity", config.limits.velocity);
   readVelocity(reader, "limits/acceleration", config.limits.acceleration);
   readSafety(reader, config.safety);
@@ -125,6 +140,7 @@ ControllerNodeConfig controllerNodeConfig(ParameterReader& reader) {
   reader.read("rate", config.rate, 10.0, 200.0);
   readFrame(reader, "frames/insertion_point", config.insertion_point);
   readFrame(reader, "frames/camera", config.camera);
+  readFrame(reader, "frames/shaft", config.shaft);
   config.control = controllerConfig(reader);
   double diagnostic_period = 1.0;  // read again by diagnostic_updater
   reader.read("diagnostic_period", diagnostic_period, 0.1, 60.0);

@@ -80,6 +80,7 @@ class Loop {
     input.depth.d2 = believedDepth();
     input.depth.camera_R_shaft = shaft_R_camera_.transpose();
     input.depth.lateral_offset = body_.lateralOffset();
+    if (config_.poses) input.depth.insertion_point_T_tip = measuredPose();
     if (config_.reports) {
       const Eigen::Vector2d a = noise_.draw(config_.report_noise), b = noise_.draw(config_.report_noise);
       input.robot_report.present = true;
@@ -104,6 +105,19 @@ class Loop {
   }
 
  private:
+  // The tip in the frame of the insertion point as it is believed: off by the factor along the shaft at the reference, z out of the body.
+  Eigen::Isometry3d measuredPose() {
+    Eigen::Isometry3d world_T_insertion_point = Eigen::Isometry3d::Identity();
+    world_T_insertion_point.linear() = shaft_R_camera_.transpose() * geometry::so3Exp({M_PI, 0.0, 0.0});
+    world_T_insertion_point.translation() = config_.believed_depth_factor * insertion_point_;
+    Eigen::Isometry3d pose = world_T_insertion_point.inverse() * body_.pose();
+    const Eigen::Vector2d xy = noise_.draw(config_.pose_noise), z = noise_.draw(config_.pose_noise);
+    const Eigen::Vector2d turn = noise_.draw(config_.direction_noise);
+    pose.translation() += Eigen::Vector3d(xy.x(), xy.y(), z.x());
+    pose.linear() = pose.linear() * geometry::so3Exp({turn.x(), turn.y(), 0.0});
+    return pose;
+  }
+
   // world_T_tip; the world is the camera's frame at the reference.
   Eigen::Isometry3d startPose() const {
     Eigen::Isometry3d world_T_shaft = Eigen::Isometry3d::Identity();  // at O_A

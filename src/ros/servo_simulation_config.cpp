@@ -42,6 +42,9 @@ void readScope(ParameterReader& reader, SimulationConfig& config) {
   reader.read(group + "start/insertion", config.start.insertion, -0.5, 0.5);
   reader.read(group + "reports", config.reports);
   reader.read(group + "report_noise", config.report_noise, 0.0, 1.0);
+  reader.read(group + "poses", config.poses);
+  reader.read(group + "pose_noise", config.pose_noise, 0.0, 0.1);
+  reader.read(group + "direction_noise", config.direction_noise, 0.0, 0.5);
   reader.read(group + "robot/delay", config.robot.delay, 0.0, 2.0);
   reader.read(group + "robot/dead_zone", config.robot.dead_zone, 4, 0.0, 1.0);
   reader.read(group + "robot/dead_zone_kind", config.robot.dead_zone_kind, {"subtract", "threshold"});

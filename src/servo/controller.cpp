@@ -14,13 +14,26 @@ ControllerConfig checked(const ControllerConfig& config) {
   return config;
 }
 
-SafetyFacts facts(const ControllerInput& input) {
+std::optional<InsertionPointPrior> priorOf(const InsertionPointUse& config) {
+  if (!(config.prior_stddev > 0.0)) return std::nullopt;
+  return InsertionPointPrior{Eigen::Vector3d::Zero(), config.prior_stddev};
+}
+
+}  // namespace
+
+Controller::Controller(const ControllerConfig& config)
+    : config_(checked(config)),
+      servo_(config),
+      machine_(config.safety),
+      insertion_point_(config.insertion_point.estimator, priorOf(config.insertion_point)) {}
+
+SafetyFacts Controller::facts(const ControllerInput& input) const {
   SafetyFacts facts;
   facts.time = input.time;
   facts.clock_jump = input.clock_jump;
-  facts.residual = input.residual;
+  facts.residual = insertion_point_.residualLevel();
   facts.robot = input.robot;
-  facts.pose = {input.depth.problem, input.depth.age, input.depth.d2, input.depth.lateral_offset};
+  facts.pose = {input.depth.problem, input.depth.age, d2(input), input.depth.lateral_offset};
   const TaskErrorInput& task = input.task_error;
   facts.tracker = {task.problem, task.age, task.image_age, task.valid, task.visible_fraction, task.corner_error};
   if (task.problem.empty() && task.valid && !isFinite(task.error)) facts.tracker.problem = "task error is not finite";
@@ -28,9 +41,13 @@ SafetyFacts facts(const ControllerInput& input) {
   return facts;
 }
 
-}  // namespace
-
-Controller::Controller(const ControllerConfig& config) : config_(checked(config)), servo_(config), machine_(config.safety) {}
+// What is estimated takes the place of the calibration where the poses tell it.
+double Controller::d2(const ControllerInput& input) const {
+  const InsertionPointEstimate& estimate = insertion_point_.estimate();
+  if (!config_.insertion_point.use || !input.depth.insertion_point_T_tip || !(estimate.valid && estimate.observable)) return input.depth.d2;
+  const Eigen::Isometry3d& tip = *input.depth.insertion_point_T_tip;
+  return shaftDepth(estimate, {tip.translation(), tip.linear().col(2)}, 0.0).d2;
+}
 
 std::string Controller::engage(const ControllerInput& input) {
   if (engaged()) return "";
@@ -60,6 +77,10 @@ std::string Controller::problem(const ControllerInput& input) const {
 
 ControllerOutput Controller::update(const ControllerInput& input) {
   if (input.robot_report.present) servo_.report(input.time - input.robot_report.age, input.robot_report.velocity);
+  if (config_.insertion_point.use && input.depth.problem.empty() && input.depth.insertion_point_T_tip) {
+    const Eigen::Isometry3d& tip = *input.depth.insertion_point_T_tip;
+    insertion_point_.update(input.time, {tip.translation(), tip.linear().col(2)});
+  }
   SafetyFacts known = facts(input);
   SafetyOutput safety = machine_.step(known);
   ControllerOutput output;
@@ -77,6 +98,9 @@ ControllerOutput Controller::update(const ControllerInput& input) {
   output.state = safety.state;
   output.reason = safety.reason;
   output.caution = safety.caution;
+  if (output.caution.empty() && safety.state == ControllerState::kServo && servo_.atBound()) {
+    output.caution = "the scope is at a bound of its range: depths or cone";
+  }
   output.speed_scale = safety.speed_scale;
   return output;
 }
@@ -86,7 +110,8 @@ ScopeVelocity Controller::servo(const ControllerInput& input, const SafetyOutput
   servo.time = input.time;
   servo.image_time = input.time - input.task_error.image_age;
   servo.error = input.task_error.error;
-  servo.scope = {input.depth.camera_R_shaft, input.depth.d2};
+  servo.scope = {input.depth.camera_R_shaft, d2(input)};
+  servo.insertion_point_T_tip = input.depth.insertion_point_T_tip;
   servo.period = has_time_ ? std::min(input.time - last_time_, config_.safety.max_period) : 0.0;
   return servo_.command(servo, {safety.speed_scale, safety.insertion_allowed});
 }

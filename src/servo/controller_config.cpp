@@ -82,6 +82,26 @@ void checkBreathing(const BreathingConfig& config, Checker& check) {
   }
 }
 
+void checkDirection(const std::string& name, const std::vector<double>& v, Checker& check) {
+  if (v.size() == 3 && Eigen::Vector3d(v[0], v[1], v[2]).norm() > 0.0 && Eigen::Vector3d(v[0], v[1], v[2]).allFinite()) return;
+  check.add(name + " is no direction, expected three finite numbers that are not all zero");
+}
+
+void checkRange(const WorkRange& range, Checker& check) {
+  check.range("range/min_depth", range.min_depth, 0.005, 0.5, "m");
+  check.range("range/max_depth", range.max_depth, 0.005, 0.5, "m");
+  check.atLeast("range/max_depth", range.max_depth, "range/min_depth", range.min_depth);
+  check.range("range/depth_margin", range.depth_margin, 0.0, 0.1, "m");
+  check.range("range/cone", range.cone, 0.0, 3.2, "rad");
+  check.range("range/cone_margin", range.cone_margin, 0.0, 1.6, "rad");
+  checkDirection("range/axis", range.axis, check);
+}
+
+void checkInsertionPoint(const InsertionPointUse& config, Checker& check) {
+  check.range("insertion_point/prior_stddev", config.prior_stddev, 0.0, 1.0, "m");
+  for (const std::string& error : validate(config.estimator)) check.add("insertion_point/" + error);
+}
+
 void checkOscillation(const OscillationConfig& config, Checker& check) {
   check.range("oscillation/half_period", config.half_period, 0.05, 5.0, "s");
   check.range("oscillation/changes", config.changes, 1, 100);
@@ -137,6 +157,9 @@ std::vector<std::string> validate(const ControllerConfig& config) {
   checkTarget(config.target, check);
   checkBreathing(config.breathing, check);
   checkOscillation(config.oscillation, check);
+  checkRange(config.range, check);
+  checkInsertionPoint(config.insertion_point, check);
+  checkDirection("horizon/up", config.horizon.up, check);
   checkDeadZone(config.dead_zone, check);
   checkRest(config.rest, check);
   // Not zero: since all components are scaled together, it would stop the others too. A gain of zero keeps one still.

@@ -1,8 +1,10 @@
 #include "laparoscope_servo/servo/scope_servo.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 
 #include "laparoscope_servo/servo/feature_law.h"
+#include "laparoscope_servo/servo/horizon.h"
 #include "laparoscope_servo/servo/paper_law.h"
 #include "laparoscope_servo/servo/scope_displacement.h"
 
@@ -74,17 +76,31 @@ void ScopeServo::remember(double time, const ScopeVelocity& executed) {
 
 void ScopeServo::report(double time, const ScopeVelocity& velocity) { delay_.report(time, velocity); }
 
+// With the picture's orientation in the place of the ROI's, where that is what is servoed.
+TaskError ScopeServo::oriented(const ServoInput& input) const {
+  TaskError error = input.error;
+  if (config_.spin != SpinMode::kUpright) return error;
+  error.alpha = error.desired_alpha = 0.0;
+  error.e_w.setZero();
+  if (!input.insertion_point_T_tip) return error;
+  const Eigen::Vector3d up(config_.horizon.up[0], config_.horizon.up[1], config_.horizon.up[2]);
+  const Eigen::Matrix3d camera_R_base = input.scope.camera_R_shaft * input.insertion_point_T_tip->linear().transpose();
+  error.alpha = horizonAngle(camera_R_base * up).value_or(0.0);
+  return error;
+}
+
 void ScopeServo::observe(const ServoInput& input) {
+  error_ = oriented(input);
   if (!has_image_) {
     jacobian_ = featureJacobian(input.error.desired_x, input.error.desired_y, config_.features.desired_depth, input.scope);
   }
   const Eigen::Vector4d executed =
       has_image_ ? history_.displacement(image_time_, input.image_time, delay()) : Eigen::Vector4d(Eigen::Vector4d::Zero());
   displacement_ += executed;
-  to_target_ = displacementToTarget(input.error, input.scope, config_.features.desired_depth);
+  to_target_ = displacementToTarget(error_, input.scope, config_.features.desired_depth);
   image_time_ = input.image_time;
   has_image_ = true;
-  oscillation_.update(image_time_, input.error);
+  oscillation_.update(image_time_, error_);
   if (!to_target_.allFinite()) return;
   const Features place = jacobian_ * (displacement_ + to_target_);
   if (breathing_.observe(image_time_, place)) target_.reset();
@@ -93,7 +109,7 @@ void ScopeServo::observe(const ServoInput& input) {
 
 ScopeVelocity ScopeServo::command(const ServoInput& input, const ServoLimits& limits) {
   if (!has_image_ || input.image_time > image_time_) observe(input);
-  TaskError error = input.error;
+  TaskError error = error_;
   ScopeVelocity follow;
   if (config_.predictor.enabled && to_target_.allFinite() && !target_.empty()) {
     const double executed_at = input.time + delay() + 0.5 * input.period;
@@ -113,10 +129,12 @@ ScopeVelocity ScopeServo::command(const ServoInput& input, const ServoLimits& li
   const double gain = limits.scale * gainFactor();
   ScopeVelocity velocity = limiter_.apply({scaled(follow, limits.scale), scaled(wanted.turning, gain), scaled(wanted.centring, gain)},
                                           input.period, limits.scale);
-  if (!limits.insertion_allowed && velocity.insertion > 0.0) {
-    velocity.insertion = 0.0;
-    limiter_.applied(velocity);
-  }
+  if (!limits.insertion_allowed) velocity.insertion = std::min(0.0, velocity.insertion);
+  const Eigen::Vector4d free = velocity.vector();
+  velocity = input.insertion_point_T_tip ? within(config_.range, velocity, input.scope.d2, input.insertion_point_T_tip->linear())
+                                         : within(config_.range, velocity, input.scope.d2);
+  at_bound_ = velocity.vector() != free;
+  limiter_.applied(velocity);
   const ScopeVelocity command = config_.dead_zone.inverse ? throughDeadZone(velocity, config_.dead_zone.width) : velocity;
   remember(input.time, afterDeadZone(command, config_.dead_zone.width));
   return command;

@@ -51,6 +51,7 @@ class AesopNode {
   void describe(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   AesopParameters parameters_;
+  Eigen::Matrix3d tip_R_optical_;
   aesop::Driver driver_;
   aesop::SerialTransport transport_;
   std::string line_warning_;

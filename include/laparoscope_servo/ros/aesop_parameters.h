@@ -15,6 +15,8 @@ struct AesopParameters {
   std::string port;          // required
   int baud_rate = 38400;     // 1200 to 1000000
   std::string frame_prefix;  // in front of every frame's name
+  double optics_angle = 0.0;  // rad, between the shaft and the optical axis, -1.3 to 1.3
+  double optics_roll = 0.0;   // rad, of the camera about the shaft, -3.2 to 3.2
 };
 
 // Missing parameters keep their defaults. All errors are left in the reader.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <geometry_msgs/Transform.h>
+#include <geometry_msgs/Twist.h>
 #include <laparoscope_servo/ControllerState.h>
 #include <laparoscope_servo/OperatingState.h>
 #include <laparoscope_servo/ScopeVelocity.h>
@@ -15,9 +16,12 @@ namespace laparoscope_servo::skin {
 servo::TaskErrorInput fromMessage(const TaskError& message);
 servo::RobotFacts fromMessage(const OperatingState& message);
 
-// d2 and the lateral offset from camera_T_insertion_point, O_A = (x, y, -d2) in camera coordinates. `problem` and `age`
-// are left to the caller.
-servo::DepthInput fromTransform(const geometry_msgs::Transform& camera_T_insertion_point);
+// From the insertion point in the camera's frame, and the shaft's frame in the camera's, whose axes count: d2, the lateral offset, the optics,
+// and the pose of the tip. `problem` and `age` are left to the caller.
+servo::DepthInput fromTransforms(const geometry_msgs::Transform& camera_T_insertion_point, const geometry_msgs::Transform& camera_T_shaft);
+
+// The scope's velocity from the camera's, both expressed in the frame from which `shaft_R_frame` leads to the shaft's axes.
+servo::ScopeVelocity fromTwist(const geometry_msgs::Twist& twist, const Eigen::Quaterniond& shaft_R_frame);
 
 // The header is left to the caller.
 ScopeVelocity toMessage(const servo::ScopeVelocity& velocity);

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <diagnostic_updater/diagnostic_updater.h>
+#include <geometry_msgs/TwistStamped.h>
 #include <laparoscope_servo/OperatingState.h>
 #include <laparoscope_servo/TaskError.h>
 #include <ros/ros.h>
@@ -33,6 +34,7 @@ class ControllerNode {
   void onTaskError(const TaskError& message);
   void onOperatingState(const OperatingState& message);
   void onDeadMan(const std_msgs::Bool& message);
+  void onMeasuredVelocity(const geometry_msgs::TwistStamped& message);
   bool onEngage(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
   void onTick();
   void checkTime();
@@ -51,6 +53,8 @@ class ControllerNode {
   double robot_arrival_ = 0.0;  // s, steady
   servo::DeadManFacts dead_man_;
   double dead_man_arrival_ = 0.0;  // s, steady
+  servo::RobotReport robot_report_;
+  double robot_report_arrival_ = 0.0;  // s, steady, of what it tells
   ros::Time last_now_;
   std::string clock_jump_;  // since the last step, in words
   servo::ControllerInput last_input_;
@@ -65,6 +69,7 @@ class ControllerNode {
   ros::Subscriber task_error_subscriber_;
   ros::Subscriber operating_state_subscriber_;
   ros::Subscriber dead_man_subscriber_;
+  ros::Subscriber measured_velocity_subscriber_;
   ros::ServiceServer engage_service_;
   ros::SteadyTimer tick_timer_;
   ros::SteadyTimer diagnostics_timer_;

@@ -12,6 +12,7 @@ struct ControllerNodeConfig {
   double rate = 50.0;                               // Hz, of the commands
   std::string insertion_point = "insertion_point";  // tf frame, O_A
   std::string camera = "laparoscope_optical";       // tf frame, O_C
+  std::string shaft = "scope_tip";                  // tf frame with its z axis along the shaft, into the body
   servo::ControllerConfig control;
 };
 

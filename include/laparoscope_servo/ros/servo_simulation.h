@@ -41,6 +41,9 @@ struct SimulationConfig {
   sim::ScopeActuatorConfig robot;
   bool reports = true;          // the robot says how fast it moves
   double report_noise = 0.002;  // rad/s, and a tenth of it in m/s
+  bool poses = false;           // the controller is told the shaft's pose, and may estimate the insertion point
+  double pose_noise = 0.0005;        // m, standard deviation per axis
+  double direction_noise = 0.0035;   // rad, of the shaft's direction, per axis
   sim::PatientConfig patient;
 };
 

@@ -4,9 +4,11 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <string>
 
 #include "laparoscope_servo/servo/controller_config.h"
+#include "laparoscope_servo/servo/insertion_point_estimator.h"
 #include "laparoscope_servo/servo/safety_machine.h"
 #include "laparoscope_servo/servo/scope_servo.h"
 
@@ -26,6 +28,8 @@ struct DepthInput {
   std::string problem = "depth d2 is unknown";  // why it cannot be used; empty: it can
   double d2 = 0.0;                              // m, along the shaft from the insertion point to the camera
   Eigen::Matrix3d camera_R_shaft = Eigen::Matrix3d::Identity();  // the optics, see scope_geometry.h
+  // Where the shaft's tip is in the insertion point's frame, with the shaft's axes; nothing: not known.
+  std::optional<Eigen::Isometry3d> insertion_point_T_tip;
   double lateral_offset = 0.0;                  // m, of the insertion point from the shaft
   double age = 0.0;                             // s
 };
@@ -45,7 +49,6 @@ struct ControllerInput {
   RobotReport robot_report;
   RobotFacts robot;       // where the configuration requires it
   DeadManFacts dead_man;  // the same
-  ResidualLevel residual = ResidualLevel::kOk;
 };
 
 using ControllerState = SafetyState;
@@ -73,6 +76,10 @@ class Controller {
 
   ControllerOutput update(const ControllerInput& input);
 
+  // Where the shafts of the last poses meet, in the insertion point's frame: where it is not at the origin, the calibration is off.
+  const InsertionPointEstimator& insertionPoint() const { return insertion_point_; }
+  const ScopeServo& servo() const { return servo_; }
+
   // Why engage() would be refused, or motion ends; empty when nothing is missing.
   std::string problem(const ControllerInput& input) const;
 
@@ -82,8 +89,12 @@ class Controller {
   ScopeVelocity servo(const ControllerInput& input, const SafetyOutput& safety);
 
   ControllerConfig config_;
+  SafetyFacts facts(const ControllerInput& input) const;
+  double d2(const ControllerInput& input) const;
+
   ScopeServo servo_;
   SafetyMachine machine_;
+  InsertionPointEstimator insertion_point_;
   bool has_time_ = false;
   double last_time_ = 0.0;  // s, of the last step
 };

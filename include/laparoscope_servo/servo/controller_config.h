@@ -7,12 +7,14 @@
 #include "laparoscope_servo/servo/dead_zone.h"
 #include "laparoscope_servo/servo/feature_law.h"
 #include "laparoscope_servo/servo/harmonic_filter_config.h"
+#include "laparoscope_servo/servo/insertion_point_config.h"
 #include "laparoscope_servo/servo/limiter.h"
 #include "laparoscope_servo/servo/oscillation_guard.h"
 #include "laparoscope_servo/servo/paper_law.h"
 #include "laparoscope_servo/servo/rest_band.h"
 #include "laparoscope_servo/servo/safety_config.h"
 #include "laparoscope_servo/servo/target_motion.h"
+#include "laparoscope_servo/servo/work_range.h"
 
 namespace laparoscope_servo::servo {
 
@@ -36,6 +38,18 @@ struct BreathingConfig {
   HarmonicFilterConfig filter;
 };
 
+// How what the poses of the shaft tell of the insertion point is used.
+struct InsertionPointUse {
+  bool use = true;             // false: the calibration is taken for true, and nothing watches it
+  double prior_stddev = 0.01;  // m, of the calibration, per axis; 0: it counts for nothing
+  InsertionPointConfig estimator;
+};
+
+// Which way is up, and what the scope's spin is for; needs the pose of the shaft.
+struct HorizonConfig {
+  std::vector<double> up{0.0, 0.0, 1.0};  // in the insertion point's frame, of any length but 0
+};
+
 struct ControllerConfig {
   LawKind law = LawKind::kFeatures;
   PaperGains gains;        // of kPaper
@@ -48,6 +62,9 @@ struct ControllerConfig {
   OscillationConfig oscillation;
   DeadZoneConfig dead_zone;
   Limits limits;
+  WorkRange range;
+  InsertionPointUse insertion_point;
+  HorizonConfig horizon;
   SafetyConfig safety;
 };
 

@@ -16,8 +16,12 @@ struct FeatureGains {
   double desired_depth = 0.08; // m, Z*: from the camera to the tissue at the reference; wrong by a factor, it changes how fast
 };
 
-// What becomes of alpha.
-enum class SpinMode { kServo, kReleased };  // it is servoed, or left as it comes: the scope does not spin
+// What becomes of the orientation.
+enum class SpinMode {
+  kServo,     // that of the ROI is servoed
+  kUpright,   // that of the picture is: what is up in space is up in it
+  kReleased,  // left as it comes: the scope does not spin
+};
 
 // The features' velocity per velocity of the scope: d(x, y, log depth, alpha)/dt = J (pan, tilt, spin, insertion). `depth` Z [m] > 0 of the
 // ROI's centre now, `x`, `y` normalised.

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "laparoscope_servo/servo/command_history.h"
 #include "laparoscope_servo/servo/control_law.h"
@@ -20,6 +21,7 @@ struct ServoInput {
   double image_time = 0.0;  // s, of the exposure, on the same clock
   TaskError error;
   ScopeGeometry scope;
+  std::optional<Eigen::Isometry3d> insertion_point_T_tip;  // with the shaft's axes; without it, no cone and no horizon
   double period = 0.0;  // s, since the last command, 0 for the first
 };
 
@@ -51,11 +53,15 @@ class ScopeServo {
   // Hz, of the breath that is followed; 0 when none is.
   double breathingRate() const { return breathing_.rate(); }
 
+  // The last command was cut at a bound of the range.
+  bool atBound() const { return at_bound_; }
+
   // s, from a command to its execution.
   double delay() const { return config_.predictor.measure_delay ? delay_.delay() : config_.predictor.delay; }
 
  private:
   void observe(const ServoInput& input);
+  TaskError oriented(const ServoInput& input) const;
   void remember(double time, const ScopeVelocity& executed);
 
   ControllerConfig config_;
@@ -68,7 +74,9 @@ class ScopeServo {
   TargetMotion target_;
   Breathing breathing_;
   double image_time_ = 0.0;  // s, of the last image
+  TaskError error_;          // in it
   bool has_image_ = false;
+  bool at_bound_ = false;
   Eigen::Matrix4d jacobian_ = Eigen::Matrix4d::Identity();  // of the features at the reference, see target_motion.h
   Eigen::Vector4d displacement_ = Eigen::Vector4d::Zero();  // of the scope at the last image, since the first
   Eigen::Vector4d to_target_ = Eigen::Vector4d::Zero();     // in the last image

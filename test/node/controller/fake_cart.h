@@ -198,7 +198,13 @@ class FakeCart {
     insertion_point.child_frame_id = "insertion_point";
     insertion_point.transform.translation.x = feed.lateral;
     insertion_point.transform.translation.z = -feed.d2;
-    broadcaster_.sendTransform({camera, insertion_point});
+    // As on the cart, its z axis points out of the body.
+    insertion_point.transform.rotation.x = 1.0;
+    insertion_point.transform.rotation.w = 0.0;
+    geometry_msgs::TransformStamped shaft = camera;
+    shaft.header.frame_id = "laparoscope_optical";
+    shaft.child_frame_id = "scope_tip";
+    broadcaster_.sendTransform({camera, insertion_point, shaft});
   }
 
   ros::NodeHandle node_;

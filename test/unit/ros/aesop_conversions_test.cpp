@@ -27,7 +27,7 @@ TEST(AesopConversions, framesChainFromTheBaseToTheCamera) {
   const aesop::Status status = someStatus();
   std::vector<geometry_msgs::TransformStamped> all =
       linkTransforms(kKinematics, status.position, "left/", ros::Time(5.0));
-  for (const auto& t : fixedTransforms(kKinematics, {0.5, 0.1, -0.2}, "left/", ros::Time(5.0))) all.push_back(t);
+  for (const auto& t : fixedTransforms(kKinematics, {0.5, 0.1, -0.2}, Eigen::Matrix3d::Identity(), "left/", ros::Time(5.0))) all.push_back(t);
   std::map<std::string, geometry_msgs::TransformStamped> parent;
   for (const auto& t : all) {
     EXPECT_EQ(t.header.stamp, ros::Time(5.0));
@@ -46,6 +46,20 @@ TEST(AesopConversions, framesChainFromTheBaseToTheCamera) {
   EXPECT_DOUBLE_EQ(parent["left/insertion_point"].transform.translation.z, -0.2);
 }
 
+TEST(AesopConversions, obliqueOpticsTurnTheCameraOnTheTip) {
+  const Eigen::Matrix3d optics = Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitX()).toRotationMatrix();
+  for (const auto& t : fixedTransforms(kKinematics, {0.5, 0.1, -0.2}, optics, "", ros::Time(5.0))) {
+    if (t.child_frame_id != "laparoscope_optical") continue;
+    EXPECT_TRUE(isometry(t.transform).linear().isApprox(optics, 1e-12));
+    EXPECT_EQ(isometry(t.transform).translation(), Eigen::Vector3d::Zero());
+  }
+  const aesop::Status status = someStatus();
+  const geometry_msgs::Quaternion q = opticalPose(kKinematics, status, optics, "", ros::Time(5.0)).pose.orientation;
+  EXPECT_TRUE(Eigen::Quaterniond(q.w, q.x, q.y, q.z)
+                  .toRotationMatrix()
+                  .isApprox(kKinematics.optical(status.position).linear() * optics, 1e-9));
+}
+
 TEST(AesopConversions, jointState) {
   const sensor_msgs::JointState message = jointState(someStatus(), ros::Time(5.0));
   ASSERT_EQ(message.name.size(), 7u);
@@ -58,9 +72,9 @@ TEST(AesopConversions, twistIsTheDerivativeOfThePose) {
   aesop::Status status = someStatus();
   const double dt = 1e-6;
   const geometry_msgs::TwistStamped twist = opticalTwist(kKinematics, status, "", ros::Time(5.0));
-  const geometry_msgs::Point before = opticalPose(kKinematics, status, "", ros::Time(5.0)).pose.position;
+  const geometry_msgs::Point before = opticalPose(kKinematics, status, Eigen::Matrix3d::Identity(), "", ros::Time(5.0)).pose.position;
   status.position += dt * status.velocity;
-  const geometry_msgs::Point after = opticalPose(kKinematics, status, "", ros::Time(5.0)).pose.position;
+  const geometry_msgs::Point after = opticalPose(kKinematics, status, Eigen::Matrix3d::Identity(), "", ros::Time(5.0)).pose.position;
   EXPECT_EQ(twist.header.frame_id, "aesop_base");
   EXPECT_NEAR(twist.twist.linear.x, (after.x - before.x) / dt, 1e-6);
   EXPECT_NEAR(twist.twist.linear.y, (after.y - before.y) / dt, 1e-6);

@@ -48,17 +48,66 @@ TEST(ControllerConversions, TaskErrorKeepsEveryField) {
   EXPECT_EQ(error.desired_alpha, 17.0);
 }
 
+geometry_msgs::Transform identity() {
+  geometry_msgs::Transform transform;
+  transform.rotation.w = 1.0;
+  return transform;
+}
+
 // The insertion point lies behind the camera: z < 0 in camera coordinates.
 TEST(ControllerConversions, DepthIsPositiveForACameraBeyondTheInsertionPoint) {
-  geometry_msgs::Transform transform;
+  geometry_msgs::Transform transform = identity();
   transform.translation.x = 0.003;
   transform.translation.y = -0.004;
   transform.translation.z = -0.1;
-  const servo::DepthInput depth = fromTransform(transform);
+  const servo::DepthInput depth = fromTransforms(transform, identity());
   EXPECT_EQ(depth.d2, 0.1);
   EXPECT_DOUBLE_EQ(depth.lateral_offset, 0.005);
+  EXPECT_TRUE(depth.camera_R_shaft.isIdentity(1e-15));
+  ASSERT_TRUE(depth.insertion_point_T_tip.has_value());
+  EXPECT_NEAR((depth.insertion_point_T_tip->translation() - Eigen::Vector3d(-0.003, 0.004, 0.1)).norm(), 0.0, 1e-15);
   transform.translation.z = 0.1;
-  EXPECT_EQ(fromTransform(transform).d2, -0.1);
+  EXPECT_EQ(fromTransforms(transform, identity()).d2, -0.1);
+}
+
+// Oblique optics: depth and offset count along and across the shaft, not the optical axis.
+TEST(ControllerConversions, DepthIsAlongTheShaft) {
+  const Eigen::Matrix3d camera_R_shaft = servo::obliqueOptics(0.5236, 0.8);
+  const Eigen::Matrix3d insertion_point_R_shaft = geometry::so3Exp({3.0, 0.2, -0.4});
+  const Eigen::Vector3d in_camera = camera_R_shaft * Eigen::Vector3d(0.002, 0.0, -0.12);
+  const Eigen::Quaterniond shaft(camera_R_shaft), point(camera_R_shaft * insertion_point_R_shaft.transpose());
+  geometry_msgs::Transform camera_T_insertion_point, camera_T_shaft;
+  camera_T_insertion_point.translation.x = in_camera.x();
+  camera_T_insertion_point.translation.y = in_camera.y();
+  camera_T_insertion_point.translation.z = in_camera.z();
+  const auto set = [](geometry_msgs::Quaternion& message, const Eigen::Quaterniond& q) {
+    message.x = q.x();
+    message.y = q.y();
+    message.z = q.z();
+    message.w = q.w();
+  };
+  set(camera_T_insertion_point.rotation, point);
+  set(camera_T_shaft.rotation, shaft);
+  const servo::DepthInput depth = fromTransforms(camera_T_insertion_point, camera_T_shaft);
+  EXPECT_NEAR(depth.d2, 0.12, 1e-12);
+  EXPECT_NEAR(depth.lateral_offset, 0.002, 1e-12);
+  EXPECT_TRUE(depth.camera_R_shaft.isApprox(camera_R_shaft, 1e-12));
+  EXPECT_TRUE(depth.insertion_point_T_tip->linear().isApprox(insertion_point_R_shaft, 1e-12));
+  EXPECT_NEAR((depth.insertion_point_T_tip->translation() - insertion_point_R_shaft * Eigen::Vector3d(-0.002, 0.0, 0.12)).norm(), 0.0, 1e-12);
+}
+
+TEST(ControllerConversions, ATwistIsTurnedIntoTheShaftsAxes) {
+  const Eigen::Matrix3d base_R_shaft = geometry::so3Exp({3.0, 0.2, -0.4});
+  const Eigen::Vector3d w = base_R_shaft * Eigen::Vector3d(0.2, 0.1, 0.3), v = base_R_shaft * Eigen::Vector3d(0.0, 0.0, 0.01);
+  geometry_msgs::Twist twist;
+  twist.angular.x = w.x();
+  twist.angular.y = w.y();
+  twist.angular.z = w.z();
+  twist.linear.x = v.x();
+  twist.linear.y = v.y();
+  twist.linear.z = v.z();
+  const Eigen::Vector4d velocity = fromTwist(twist, Eigen::Quaterniond(base_R_shaft.transpose())).vector();
+  EXPECT_NEAR((velocity - Eigen::Vector4d(0.1, 0.2, 0.3, 0.01)).norm(), 0.0, 1e-12);
 }
 
 TEST(ControllerConversions, VelocityKeepsItsComponents) {

@@ -69,6 +69,16 @@ std::vector<double> numbers(const ControllerNodeConfig& config) {
                           c.oscillation.orientation,
                           c.oscillation.step,
                           c.oscillation.least,
+                          c.range.min_depth,
+                          c.range.max_depth,
+                          c.range.depth_margin,
+                          c.range.cone,
+                          c.range.cone_margin,
+                          c.insertion_point.use ? 1.0 : 0.0,
+                          c.insertion_point.prior_stddev,
+                          c.insertion_point.estimator.warning_residual,
+                          c.insertion_point.estimator.stop_residual,
+                          c.insertion_point.estimator.wobble,
                           s.max_clock_step,
                           s.slow_below,
                           s.hold_below,
@@ -83,6 +93,7 @@ std::vector<double> numbers(const ControllerNodeConfig& config) {
        {c.dead_zone.width, c.limits.velocity, c.limits.acceleration}) {
     for (const double number : numbers(v)) all.push_back(number);
   }
+  for (const std::vector<double>& v : {c.range.axis, c.horizon.up}) all.insert(all.end(), v.begin(), v.end());
   return all;
 }
 
@@ -115,6 +126,9 @@ std::vector<double> numbers(const SimulationConfig& c) {
                           c.optics_roll,
                           c.reports ? 1.0 : 0.0,
                           c.report_noise,
+                          c.poses ? 1.0 : 0.0,
+                          c.pose_noise,
+                          c.direction_noise,
                           static_cast<double>(c.wrist),
                           c.patient.breathing.frequency,
                           c.patient.breathing.second_harmonic,
@@ -148,7 +162,8 @@ TEST(ControllerParameters, FileEqualsTheDefaults) {
   EXPECT_EQ(numbers(config), numbers(ControllerNodeConfig()));
   EXPECT_EQ(config.insertion_point, ControllerNodeConfig().insertion_point);
   EXPECT_EQ(config.camera, ControllerNodeConfig().camera);
-  EXPECT_EQ(leaves(tree), numbers(config).size() + 2);  // and the two frames
+  EXPECT_EQ(config.shaft, ControllerNodeConfig().shaft);
+  EXPECT_EQ(leaves(tree), numbers(config).size() - 2 * 2 + 3);  // lists are one leaf; and the three frames
 }
 
 TEST(ControllerParameters, FileOfTheSimulationEqualsTheDefaults) {
@@ -196,7 +211,7 @@ TEST(ControllerParameters, EveryNumberOfTheFileHasAFieldOfItsOwn) {
       }
     }
   }
-  EXPECT_EQ(changed, 69);
+  EXPECT_EQ(changed, 78);
 }
 
 TEST(ControllerParameters, NothingSetGivesTheDefaults) {

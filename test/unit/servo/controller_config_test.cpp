@@ -40,6 +40,15 @@ std::vector<Field> fields() {
       {"breathing/rate_stddev", [](ControllerConfig& c, double v) { c.breathing.rate_stddev = v; }},
       {"breathing/min_rate", [](ControllerConfig& c, double v) { c.breathing.filter.min_frequency = v; }},
       {"breathing/max_rate", [](ControllerConfig& c, double v) { c.breathing.filter.max_frequency = v; }},
+      {"range/min_depth", [](ControllerConfig& c, double v) { c.range.min_depth = v; }},
+      {"range/max_depth", [](ControllerConfig& c, double v) { c.range.max_depth = v; }},
+      {"range/depth_margin", [](ControllerConfig& c, double v) { c.range.depth_margin = v; }},
+      {"range/cone", [](ControllerConfig& c, double v) { c.range.cone = v; }},
+      {"range/cone_margin", [](ControllerConfig& c, double v) { c.range.cone_margin = v; }},
+      {"insertion_point/prior_stddev", [](ControllerConfig& c, double v) { c.insertion_point.prior_stddev = v; }},
+      {"insertion_point/wobble", [](ControllerConfig& c, double v) { c.insertion_point.estimator.wobble = v; }},
+      {"insertion_point/warning_residual", [](ControllerConfig& c, double v) { c.insertion_point.estimator.warning_residual = v; }},
+      {"insertion_point/stop_residual", [](ControllerConfig& c, double v) { c.insertion_point.estimator.stop_residual = v; }},
       {"target/centre_noise", [](ControllerConfig& c, double v) { c.target.centre_noise = v; }},
       {"target/depth_noise", [](ControllerConfig& c, double v) { c.target.depth_noise = v; }},
       {"target/orientation_noise", [](ControllerConfig& c, double v) { c.target.orientation_noise = v; }},
@@ -147,6 +156,16 @@ TEST(ControllerConfig, RefusesALimitOfZero) {
   config = ControllerConfig();
   config.gains.spin = 0.0;
   EXPECT_TRUE(validate(config).empty());
+}
+
+TEST(ControllerConfig, DirectionsNeedALength) {
+  ControllerConfig config;
+  config.range.axis = {0.0, 0.0, 0.0};
+  config.horizon.up = {0.0, std::numeric_limits<double>::quiet_NaN(), 1.0};
+  const std::vector<std::string> errors = validate(config);
+  ASSERT_EQ(errors.size(), 2u);
+  EXPECT_EQ(errors[0].rfind("range/axis", 0), 0u);
+  EXPECT_EQ(errors[1].rfind("horizon/up", 0), 0u);
 }
 
 TEST(ControllerConfig, TheInverseOfTheDeadZoneHasToFitIntoTheLimits) {

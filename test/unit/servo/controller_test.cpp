@@ -8,6 +8,8 @@
 #include <random>
 #include <stdexcept>
 
+#include "laparoscope_servo/geometry/se3.h"
+
 namespace laparoscope_servo::servo {
 namespace {
 
@@ -119,7 +121,6 @@ std::vector<Failure> faults() {
   return {
       {"shaft beside the insertion point", [](ControllerInput& i) { i.depth.lateral_offset = 0.02; }},
       {"lateral offset NaN", [](ControllerInput& i) { i.depth.lateral_offset = kNan; }},
-      {"residual", [](ControllerInput& i) { i.residual = ResidualLevel::kStop; }},
       {"clock jump", [](ControllerInput& i) { i.clock_jump = "ROS time jumped back"; }},
   };
 }
@@ -205,6 +206,55 @@ TEST(Controller, AVelocityThatIsNotFiniteIsAFaultAndNeverCommanded) {
   const ControllerOutput output = running.step(input);
   EXPECT_EQ(output.state, ControllerState::kFault);
   EXPECT_TRUE(isZero(output));
+}
+
+// The shafts of the poses pass beside the calibrated insertion point by more and more: that is no rigid set-up.
+TEST(Controller, ShaftsThatMissEachOtherAreAFault) {
+  Running running;
+  ControllerInput input = good(0.0);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const auto pose = [&](double spread) {
+    Eigen::Isometry3d tip = Eigen::Isometry3d::Identity();
+    tip.linear() = geometry::so3Exp({M_PI + 0.2 * uniform(random), 0.2 * uniform(random), 0.0});
+    tip.translation() = 0.1 * tip.linear().col(2) + spread * Eigen::Vector3d(uniform(random), uniform(random), 0.0);
+    return tip;
+  };
+  for (int k = 0; k < 200; ++k) {
+    input.depth.insertion_point_T_tip = pose(0.0005);
+    ASSERT_EQ(running.step(input).state, ControllerState::kServo) << running.last.reason;
+  }
+  EXPECT_LT(running.controller.insertionPoint().estimate().point.norm(), 0.001);
+  for (int k = 0; k < 200 && running.last.state == ControllerState::kServo; ++k) {
+    input.depth.insertion_point_T_tip = pose(0.05);
+    running.step(input);
+  }
+  EXPECT_EQ(running.last.state, ControllerState::kFault);
+  EXPECT_TRUE(isZero(running.last));
+}
+
+// A calibration that is off: d2 comes from where the shafts meet.
+TEST(Controller, TheEstimateTakesThePlaceOfAWrongDepth) {
+  ControllerConfig config;
+  config.insertion_point.prior_stddev = 0.03;
+  Running running(config);
+  ControllerInput input = good(0.0);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const Eigen::Vector3d real(0.0, 0.0, 0.04);  // the calibration says 0
+  for (int k = 0; k < 400; ++k) {
+    Eigen::Isometry3d tip = Eigen::Isometry3d::Identity();
+    tip.linear() = geometry::so3Exp({M_PI + 0.2 * uniform(random), 0.2 * uniform(random), 0.0});
+    tip.translation() = real + 0.14 * tip.linear().col(2);
+    input.depth.insertion_point_T_tip = tip;
+    running.step(input);
+  }
+  EXPECT_LT((running.controller.insertionPoint().estimate().point - real).norm(), 0.002);
+  ControllerInput deep = input;
+  deep.depth.d2 = 0.3;  // out of range by the calibration, but not by the poses
+  EXPECT_EQ(running.step(deep).state, ControllerState::kServo) << running.last.reason;
+  deep.depth.insertion_point_T_tip.reset();
+  EXPECT_EQ(running.step(deep).state, ControllerState::kHold);
 }
 
 TEST(Controller, StandsWhileTheDeadManSwitchIsReleased) {
