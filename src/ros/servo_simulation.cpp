@@ -43,11 +43,9 @@ class Loop {
         patient_(config.patient, {0.0, 0.0, config.tissue_distance}),
         noise_(seed),
         insertion_point_(shaft_R_camera_.transpose() * Eigen::Vector3d(0.0, 0.0, -config.depth)),
-        body_(startPose(), insertion_point_, config.scope_length, config.wrist) {
-    if (!(nearestToBorder(cornersAt(0.0)) >= 0.0)) {
-      throw std::invalid_argument("the start pose does not see the region of interest");
-    }
-  }
+        body_(startPose(), insertion_point_, config.scope_length, config.wrist) {}
+
+  bool seesRoi(double time) const { return nearestToBorder(cornersAt(time)) >= 0.0; }
 
   void expose(double time) {
     servo::TaskErrorInput input;
@@ -204,9 +202,12 @@ class Loop {
 
 }  // namespace
 
+bool startSeesRoi(const SimulationConfig& config) { return Loop(ControllerNodeConfig(), config, 0).seesRoi(0.0); }
+
 std::vector<SimulationSample> simulate(const ControllerNodeConfig& controller, const SimulationConfig& config,
                                        unsigned seed, double duration) {
   Loop loop(controller, config, seed);
+  if (!loop.seesRoi(0.0)) throw std::invalid_argument("the start pose does not see the region of interest");
   std::vector<SimulationSample> samples;
   std::int64_t images = 0;
   std::int64_t steps = 0;

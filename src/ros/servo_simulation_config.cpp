@@ -8,6 +8,8 @@ namespace {
 
 void readScene(ParameterReader& reader, SimulationConfig& config) {
   const std::string group = "simulation/";
+  reader.read(group + "duration", config.duration, 0.1, 36000.0);
+  reader.read(group + "rest_from", config.rest_from, 0.0, 0.999);
   reader.read(group + "frame_rate", config.frame_rate, 1.0, 200.0);
   reader.read(group + "image_delay", config.image_delay, 0.0, 1.0);
   reader.read(group + "corner_noise", config.corner_noise, 0.0, 20.0);
@@ -40,6 +42,10 @@ void readScope(ParameterReader& reader, SimulationConfig& config) {
   reader.read(group + "start/tilt", config.start.tilt, -1.2, 1.2);
   reader.read(group + "start/spin", config.start.spin, -3.2, 3.2);
   reader.read(group + "start/insertion", config.start.insertion, -0.5, 0.5);
+  reader.read(group + "start_spread/pan", config.start_spread.pan, 0.0, 1.2);
+  reader.read(group + "start_spread/tilt", config.start_spread.tilt, 0.0, 1.2);
+  reader.read(group + "start_spread/spin", config.start_spread.spin, 0.0, 3.2);
+  reader.read(group + "start_spread/insertion", config.start_spread.insertion, 0.0, 0.5);
   reader.read(group + "reports", config.reports);
   reader.read(group + "report_noise", config.report_noise, 0.0, 1.0);
   reader.read(group + "poses", config.poses);
@@ -81,11 +87,14 @@ SimulationConfig simulationConfig(ParameterReader& reader) {
     reader.addError(
         "simulation/roi does not lie in the image, expected x + width and y + height within image/width, image/height");
   }
-  if (!(config.depth + config.start.insertion > 0.0)) {
-    reader.addError("simulation/start/insertion pulls the camera out, expected more than minus scope/depth");
+  const double spread = config.start_spread.insertion;
+  if (!(config.depth + config.start.insertion - spread > 0.0)) {
+    reader.addError(
+        "simulation/start/insertion less start_spread/insertion pulls the camera out, expected more than minus scope/depth");
   }
-  if (!(config.scope_length > config.depth + config.start.insertion)) {
-    reader.addError("simulation/scope/length is too short, expected more than scope/depth + start/insertion");
+  if (!(config.scope_length > config.depth + config.start.insertion + spread)) {
+    reader.addError(
+        "simulation/scope/length is too short, expected more than scope/depth + start/insertion + start_spread/insertion");
   }
   return config;
 }

@@ -1,9 +1,11 @@
-// simulate_servo: the closed loop without ROS, see laparoscope_servo/ros/servo_simulation.h.
+// simulate_servo: the closed loop without ROS, see laparoscope_servo/ros/servo_simulation.h; many runs of it,
+// servo_runs.h.
 #include <boost/program_options.hpp>
 #include <fstream>
+#include <functional>
 #include <iostream>
 
-#include "laparoscope_servo/ros/servo_simulation.h"
+#include "laparoscope_servo/ros/servo_runs.h"
 
 namespace options = boost::program_options;
 namespace skin = laparoscope_servo::skin;
@@ -23,6 +25,80 @@ void print(const skin::SimulationSummary& summary) {
             << " m/s, lateral offset at most " << summary.max_lateral_offset << " m\n";
 }
 
+void save(const std::string& name, const std::function<void(std::ostream&)>& write) {
+  std::ofstream file(name);
+  write(file);
+  file.close();
+  if (!file) throw std::runtime_error("cannot write '" + name + "'");
+}
+
+struct Request {
+  unsigned seed = 1;
+  int runs = 1;
+  double duration = 0.0;  // s
+  skin::RunBounds bounds;
+  std::string csv;      // empty: not asked for
+  std::string summary;  // the same
+};
+
+double positive(const options::variables_map& values, const std::string& name, skin::ParameterReader& reader) {
+  const double value = values[name].as<double>();
+  if (!(value > 0.0 && value <= 1e6)) {
+    reader.addError("--" + name + " = " + std::to_string(value) + ", expected a number above 0, at most 1e6");
+  }
+  return value;
+}
+
+// Errors go to the reader.
+Request requestFrom(const options::variables_map& values, const skin::SimulationConfig& simulation,
+                    skin::ParameterReader& reader) {
+  Request request;
+  request.seed = values["seed"].as<unsigned>();
+  request.runs = values["runs"].as<int>();
+  if (!(request.runs >= 1 && request.runs <= 100000)) {
+    reader.addError("--runs = " + std::to_string(request.runs) + ", expected 1 to 100000");
+  }
+  request.duration = values.count("duration") > 0 ? values["duration"].as<double>() : simulation.duration;
+  if (!(request.duration > 0.0 && request.duration <= 36000.0)) {
+    reader.addError("--duration = " + std::to_string(request.duration) +
+                    ", expected a number above 0, at most 36000 s");
+  }
+  request.bounds.centre = positive(values, "settled-px", reader);
+  request.bounds.scale = 0.01 * positive(values, "settled-scale", reader);
+  request.bounds.orientation = M_PI / 180.0 * positive(values, "settled-degrees", reader);
+  request.bounds.rest_after = simulation.rest_from * request.duration;
+  if (values.count("rest-after") > 0) request.bounds.rest_after = values["rest-after"].as<double>();
+  if (!(request.bounds.rest_after >= 0.0 && request.bounds.rest_after < request.duration)) {
+    reader.addError("--rest-after = " + std::to_string(request.bounds.rest_after) +
+                    ", expected 0 s to less than the duration");
+  }
+  if (values.count("csv") > 0) request.csv = values["csv"].as<std::string>();
+  if (values.count("summary") > 0) request.summary = values["summary"].as<std::string>();
+  if (request.csv.empty() && request.summary.empty())
+    reader.addError("neither --csv nor --summary, expected one of them");
+  return request;
+}
+
+void runAll(const Request& request, const skin::ControllerNodeConfig& controller,
+            const skin::SimulationConfig& simulation) {
+  std::vector<skin::RunSummary> runs;
+  for (int k = 0; k < request.runs; ++k) {
+    const unsigned seed = request.seed + static_cast<unsigned>(k);
+    const skin::DrawnStart drawn = skin::drawStart(simulation, seed);
+    skin::SimulationConfig started = simulation;
+    started.start = drawn.start;
+    const auto samples = skin::simulate(controller, started, seed, request.duration);
+    runs.push_back(skin::summariseRun(samples, started, request.bounds));
+    runs.back().seed = seed;
+    runs.back().drawn = drawn;
+    if (k > 0) continue;
+    if (!request.csv.empty()) save(request.csv, [&](std::ostream& stream) { skin::writeCsv(samples, stream); });
+    if (request.runs == 1) print(skin::summarise(samples, started));
+  }
+  if (!request.summary.empty()) save(request.summary, [&](std::ostream& stream) { skin::writeRuns(runs, stream); });
+  if (request.runs > 1) skin::printRuns(runs, request.bounds, std::cout);
+}
+
 int run(const options::variables_map& values) {
   XmlRpc::XmlRpcValue tree;
   if (values.count("params") > 0) {
@@ -33,23 +109,12 @@ int run(const options::variables_map& values) {
   skin::ParameterReader reader(tree, "");
   const skin::SimulationConfig simulation = skin::simulationConfig(reader);
   const skin::ControllerNodeConfig controller = skin::controllerNodeConfig(reader);
-  const double duration = values["duration"].as<double>();
-  if (!(duration > 0.0 && duration <= 36000.0)) {
-    reader.addError("--duration = " + std::to_string(duration) + ", expected a number above 0, at most 36000 s");
-  }
+  const Request request = requestFrom(values, simulation, reader);
   if (!reader.errors().empty()) {
     std::cerr << "simulate_servo: " << reader.report() << '\n';
     return 1;
   }
-  const auto samples = skin::simulate(controller, simulation, values["seed"].as<unsigned>(), duration);
-  std::ofstream file(values["csv"].as<std::string>());
-  skin::writeCsv(samples, file);
-  file.close();
-  if (!file) {
-    std::cerr << "simulate_servo: cannot write '" << values["csv"].as<std::string>() << "'\n";
-    return 1;
-  }
-  print(skin::summarise(samples, simulation));
+  runAll(request, controller, simulation);
   return 0;
 }
 
@@ -58,13 +123,23 @@ int run(const options::variables_map& values) {
 int main(int argc, char** argv) {
   options::options_description description(
       "simulate_servo [--params FILE.yaml]... [--seed N] [--duration S] --csv OUT.csv\n"
+      "simulate_servo [--params FILE.yaml]... [--seed N] [--duration S] --runs N --summary OUT.csv [--csv OUT.csv]\n"
       "Runs the controller against an ideal scope about the insertion point, deterministically");
   description.add_options()("help,h", "print this text")(
       "params", options::value<std::vector<std::string>>()->composing(),
-      "parameters, as in config/controller.yaml and config/simulate_servo.yaml; later files overrule earlier ones")(
-      "seed", options::value<unsigned>()->default_value(1), "seed of the noise")(
-      "duration", options::value<double>()->default_value(20.0), "s, simulated time")(
-      "csv", options::value<std::string>()->required(), "the file to write, a line per step of the controller");
+      "parameters, as in config/controller.yaml, config/simulate_servo.yaml and config/scenarios; later files overrule "
+      "earlier ones")("seed", options::value<unsigned>()->default_value(1),
+                      "seed of the noise, and of a start that is drawn")(
+      "duration", options::value<double>(), "s, simulated time, instead of simulation/duration")(
+      "csv", options::value<std::string>(), "the file to write, a line per step of the controller; of the first run")(
+      "runs", options::value<int>()->default_value(1), "so many runs, with as many seeds from --seed on")(
+      "summary", options::value<std::string>(), "the file to write, a line per run")(
+      "settled-px", options::value<double>()->default_value(1.0),
+      "px, of the summary: the centre is settled within it")(
+      "settled-scale", options::value<double>()->default_value(1.0), "%, the same of the scale")(
+      "settled-degrees", options::value<double>()->default_value(0.5), "degrees, the same of the orientation")(
+      "rest-after", options::value<double>(),
+      "s, from when on the summary's figures of rest are taken, instead of simulation/rest_from");
   try {
     options::variables_map values;
     options::store(options::parse_command_line(argc, argv, description), values);

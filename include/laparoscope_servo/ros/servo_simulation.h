@@ -38,6 +38,9 @@ struct SimulationConfig {
   sim::Wrist wrist = sim::Wrist::kStiff;
   // Where the loop starts, from the reference pose: turned about the insertion point [rad], then pushed in [m].
   servo::ScopeVelocity start{0.1511, 0.0873, 0.1745, 0.02};
+  servo::ScopeVelocity start_spread{0.0, 0.0, 0.0, 0.0};  // the same units: drawStart() draws from `start` plus or minus this
+  double duration = 20.0;   // s, of simulated time
+  double rest_from = 0.75;  // of the duration: figures of rest are of what follows
   sim::ScopeActuatorConfig robot;
   bool reports = true;          // the robot says how fast it moves
   double report_noise = 0.002;  // rad/s, and a tenth of it in m/s
@@ -67,6 +70,9 @@ struct SimulationSample {
   double worst_corner = 0.0;    // px, of the ROI from the image's border, the nearest; negative: outside
   std::string state;            // of the controller
 };
+
+// Whether the whole ROI is in the image where the loop starts.
+bool startSeesRoi(const SimulationConfig& config);
 
 // Runs for `duration` [s] of simulated time. Throws std::invalid_argument when the start pose does not see the tissue.
 std::vector<SimulationSample> simulate(const ControllerNodeConfig& controller, const SimulationConfig& config,

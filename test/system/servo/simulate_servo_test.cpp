@@ -3,11 +3,15 @@
 #include <stdlib.h>
 #include <sys/wait.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -104,6 +108,117 @@ TEST_F(SimulateServo, LaterFilesOverrule) {
   run(kFiles + "--params " + overlay + " --duration 1 --csv " + file("a.csv"));
   EXPECT_EQ(status_, 0);
   EXPECT_NEAR(std::stod(readCsv("a.csv")[1][10]), 0.11, 1e-9);
+}
+
+double number(const std::vector<std::vector<std::string>>& rows, std::size_t row, const std::string& column) {
+  const auto found = std::find(rows.at(0).begin(), rows.at(0).end(), column);
+  return std::stod(rows.at(row).at(static_cast<std::size_t>(found - rows[0].begin())));
+}
+
+TEST_F(SimulateServo, SummaryHasALinePerRun) {
+  const std::string overlay = write("overlay.yaml",
+                                    "simulation: {start: {pan: 0, tilt: 0, spin: 0, insertion: 0},\n"
+                                    "             start_spread: {pan: 0.3, tilt: 0.1, spin: 0.2, insertion: 0.01}}\n");
+  const std::string output = run("--params " + overlay + " --runs 6 --seed 3 --duration 8 --rest-after 4 --summary " +
+                                 file("s.csv") + " --csv " + file("a.csv"));
+  ASSERT_EQ(status_, 0) << output;
+  const auto rows = readCsv("s.csv");
+  ASSERT_EQ(rows.size(), 7u);
+  const auto steps = readCsv("a.csv");
+  ASSERT_EQ(steps.size(), 402u);
+  int refused = 0;
+  for (std::size_t k = 1; k <= 6; ++k) {
+    ASSERT_EQ(rows[k].size(), rows[0].size());
+    EXPECT_EQ(number(rows, k, "seed"), 2.0 + static_cast<double>(k));
+    EXPECT_LE(std::abs(number(rows, k, "start_pan")), 0.3);
+    EXPECT_LE(std::abs(number(rows, k, "start_tilt")), 0.1);
+    EXPECT_LE(std::abs(number(rows, k, "start_spin")), 0.2);
+    EXPECT_LE(std::abs(number(rows, k, "start_insertion")), 0.01);
+    refused += static_cast<int>(number(rows, k, "refused_starts"));
+    EXPECT_EQ(number(rows, k, "settled"), std::max({number(rows, k, "settled_centre"), number(rows, k, "settled_scale"),
+                                                    number(rows, k, "settled_orientation")}));
+    EXPECT_GE(number(rows, k, "settled"), 0.1);
+    EXPECT_LE(number(rows, k, "settled"), 6.0);
+    EXPECT_EQ(number(rows, k, "left_image"), 0.0);
+    EXPECT_GT(number(rows, k, "centre_rms"), 0.0);
+    EXPECT_LT(number(rows, k, "centre_rms"), 1.0);
+    EXPECT_LT(number(rows, k, "scale_rms"), 0.01);
+    EXPECT_LT(number(rows, k, "orientation_rms"), 0.0087);
+    EXPECT_LE(number(rows, k, "moving_share"), 0.5);
+    EXPECT_GE(number(rows, k, "reversals"), 0.0);
+    EXPECT_LE(number(rows, k, "max_commanded_lateral_speed"), 1e-9);
+    EXPECT_LE(number(rows, k, "max_lateral_speed"), 1e-9);
+    EXPECT_LE(number(rows, k, "max_lateral_offset"), 1e-9);
+    EXPECT_EQ(rows[k].back(), "SERVO");
+  }
+  // Half of these starts do not see the region.
+  EXPECT_NE(output.find("6 runs, " + std::to_string(refused) + " starts"), std::string::npos) << output;
+  EXPECT_GT(refused, 0);
+  // The file of steps is the first run's: same start, same end.
+  EXPECT_NEAR(number(steps, 1, "d2"), 0.1 + number(rows, 1, "start_insertion"), 1e-8);
+  EXPECT_NEAR(number(steps, 1, "alpha"), -number(rows, 1, "start_spin"), 0.05);
+}
+
+TEST_F(SimulateServo, SummaryIsTheSameAgainAndOneByOne) {
+  const std::string overlay = write("overlay.yaml", "simulation: {start_spread: {pan: 0.05, spin: 0.2}}\n");
+  const std::string arguments = "--params " + overlay + " --duration 2 ";
+  run(arguments + "--runs 3 --seed 4 --summary " + file("a.csv"));
+  run(arguments + "--runs 3 --seed 4 --summary " + file("b.csv"));
+  run(arguments + "--runs 1 --seed 6 --summary " + file("c.csv"));
+  ASSERT_EQ(readCsv("a.csv").size(), 4u);
+  EXPECT_EQ(read("a.csv"), read("b.csv"));
+  ASSERT_EQ(readCsv("c.csv").size(), 2u);
+  EXPECT_EQ(readCsv("a.csv")[3], readCsv("c.csv")[1]);
+  EXPECT_NE(readCsv("a.csv")[1][1], readCsv("a.csv")[2][1]);
+}
+
+TEST_F(SimulateServo, SettlesLaterWithinNarrowerBounds) {
+  const auto settled = [this](const std::string& bounds) {
+    run("--duration 10 " + bounds + " --summary " + file("s.csv"));
+    return readCsv("s.csv");
+  };
+  const auto rows = settled("");
+  for (const auto& [option, column] : {std::pair<const char*, const char*>{"--settled-px 20", "settled_centre"},
+                                       {"--settled-scale 10", "settled_scale"},
+                                       {"--settled-degrees 5", "settled_orientation"}}) {
+    const auto wide = settled(option);
+    EXPECT_LT(number(wide, 1, column), number(rows, 1, column)) << option;
+    EXPECT_GT(number(wide, 1, column), 0.0) << option;
+  }
+}
+
+TEST_F(SimulateServo, DurationIsTheFilesUnlessItIsGiven) {
+  const std::string overlay = write("overlay.yaml", "simulation: {duration: 1.0}\n");
+  run("--params " + overlay + " --csv " + file("a.csv"));
+  EXPECT_EQ(readCsv("a.csv").size(), 52u);
+  run("--params " + overlay + " --duration 2 --csv " + file("a.csv"));
+  EXPECT_EQ(readCsv("a.csv").size(), 102u);
+}
+
+TEST_F(SimulateServo, RefusesBadRunsAndBounds) {
+  const std::string output =
+      run("--runs 0 --settled-px -1 --settled-scale nan --settled-degrees 0 --duration 2 --rest-after 2 --summary " +
+          file("s.csv"));
+  EXPECT_EQ(status_, 1);
+  for (const char* part : {"--runs = 0", "--settled-px", "--settled-scale", "--settled-degrees", "--rest-after"}) {
+    EXPECT_NE(output.find(part), std::string::npos) << part << " is not in:\n" << output;
+  }
+  EXPECT_EQ(read("s.csv"), "");
+}
+
+// Every scenario's parameters exist, it starts where the region is seen, and the controller follows.
+TEST_F(SimulateServo, EveryScenarioRuns) {
+  int scenarios = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(std::string(LAPAROSCOPE_SERVO_CONFIG) + "/scenarios")) {
+    if (entry.path().extension() != ".yaml") continue;
+    const std::string output =
+        run(kFiles + "--params " + entry.path().string() + " --duration 2 --summary " + file("s.csv"));
+    ASSERT_EQ(status_, 0) << entry.path() << '\n' << output;
+    ASSERT_EQ(readCsv("s.csv").size(), 2u);
+    EXPECT_EQ(readCsv("s.csv")[1].back(), "SERVO") << entry.path();
+    ++scenarios;
+  }
+  EXPECT_GE(scenarios, 22);
 }
 
 TEST_F(SimulateServo, AsksForTheCsv) {
