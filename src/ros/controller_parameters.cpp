@@ -59,6 +59,7 @@ void readTarget(ParameterReader& reader, servo::ControllerConfig& config) {
   readNumber(reader, "target/orientation_acceleration", config.target.orientation_acceleration);
   readNumber(reader, "target/calibration", config.target.calibration);
   readNumber(reader, "target/significance", config.target.significance);
+  readNumber(reader, "target/jump", config.target.jump);
   readNumber(reader, "target/damping", config.target.damping);
 }
 

@@ -66,6 +66,7 @@ void checkTarget(const TargetMotionConfig& config, Checker& check) {
   check.range("target/orientation_acceleration", config.orientation_acceleration, 0.0, 10.0, "rad/s/sqrt(s)");
   check.range("target/calibration", config.calibration, 0.0, 2.0);
   check.range("target/significance", config.significance, 0.0, 100.0);
+  check.range("target/jump", config.jump, 3.0, 1000.0);
   check.range("target/damping", config.damping, 0.0, 10.0, "1/s");
 }
 

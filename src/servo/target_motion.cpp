@@ -28,8 +28,14 @@ void TargetMotion::observe(double time, const Features& place, const Features& m
     axis.covariance.diagonal() += Eigen::Vector2d(wander[k] + acceleration[k] * dt * dt / 3.0, acceleration[k]);
     axis.covariance(0, 1) += 0.5 * acceleration[k] * dt;
     axis.covariance(1, 0) = axis.covariance(0, 1);
-    const Eigen::Vector2d gain = axis.covariance.col(0) / (axis.covariance(0, 0) + noise[k]);
-    axis.state += gain * (place[k] - axis.state[0]);
+    const double innovation = place[k] - axis.state[0];
+    const double expected = axis.covariance(0, 0) + noise[k];
+    if (!(innovation * innovation < config_.jump * config_.jump * expected)) {  // another target: it stands until it is seen to move
+      axis = {Eigen::Vector2d(place[k], 0.0), Eigen::Vector2d(noise[k], 0.0).asDiagonal(), false};
+      continue;
+    }
+    const Eigen::Vector2d gain = axis.covariance.col(0) / expected;
+    axis.state += gain * innovation;
     axis.covariance -= gain * axis.covariance.row(0).eval();
     const double significance = std::abs(axis.state[1]) / std::sqrt(axis.covariance(1, 1));
     axis.moves = significance > (axis.moves ? config_.significance / 3.0 : config_.significance);

@@ -26,6 +26,7 @@ struct TargetMotionConfig {
   double orientation_acceleration = 0.012;  // rad/s/sqrt(s)
   double calibration = 0.3;      // no unit: share of the scope's own motion that its displacement may be wrong by
   double significance = 3.0;     // standard deviations: a velocity is believed from here on, until it falls below a third of that
+  double jump = 8.0;             // standard deviations: what is seen further off is another target, not the old one in motion
   double damping = 0.1;          // 1/s: a velocity that is not seen any more decays
 };
 

@@ -50,6 +50,7 @@ std::vector<double> numbers(const ControllerNodeConfig& config) {
                           c.target.orientation_acceleration,
                           c.target.calibration,
                           c.target.significance,
+                          c.target.jump,
                           c.target.damping,
                           c.rest.enabled ? 1.0 : 0.0,
                           c.rest.centre_stop,
@@ -217,7 +218,7 @@ TEST(ControllerParameters, EveryNumberOfTheFileHasAFieldOfItsOwn) {
       }
     }
   }
-  EXPECT_EQ(changed, 78);
+  EXPECT_EQ(changed, 79);
 }
 
 TEST(ControllerParameters, NothingSetGivesTheDefaults) {

@@ -60,6 +60,7 @@ std::vector<Field> fields() {
       {"target/orientation_acceleration", [](ControllerConfig& c, double v) { c.target.orientation_acceleration = v; }},
       {"target/calibration", [](ControllerConfig& c, double v) { c.target.calibration = v; }},
       {"target/significance", [](ControllerConfig& c, double v) { c.target.significance = v; }},
+      {"target/jump", [](ControllerConfig& c, double v) { c.target.jump = v; }},
       {"target/damping", [](ControllerConfig& c, double v) { c.target.damping = v; }},
       {"rest/centre_stop", [](ControllerConfig& c, double v) { c.rest.centre_stop = v; }},
       {"rest/centre_start", [](ControllerConfig& c, double v) { c.rest.centre_start = v; }},

@@ -53,6 +53,16 @@ TEST(TargetMotion, IsCarefulWhileTheScopeMoves) {
   EXPECT_EQ(observed(1.0, drift, 0.01).predict(1.1).velocity[0], 0.0);
 }
 
+// Another region is selected, or the tissue is pulled: no velocity comes of it, which would take the scope past it.
+TEST(TargetMotion, AJumpIsAnotherTargetAndNoMotion) {
+  const auto jump = [](double t) { return t < 3.0 ? 0.0 : 0.1; };
+  for (double t = 3.02; t < 4.0; t += kPeriod) {
+    const TargetPrediction prediction = observed(t, jump).predict(t + 0.2);
+    EXPECT_NEAR(prediction.place[0], 0.1, 0.002) << t;
+    EXPECT_EQ(prediction.velocity[0], 0.0) << t;
+  }
+}
+
 TEST(TargetMotion, AJumpIsReachedWithinASecond) {
   const TargetPrediction prediction = observed(4.0, [](double t) { return t < 3.0 ? 0.0 : 0.1; }).predict(4.0);
   EXPECT_NEAR(prediction.place[0], 0.1, 0.01);
