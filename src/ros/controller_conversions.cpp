@@ -83,6 +83,14 @@ servo::RobotFacts fromMessage(const OperatingState& message) {
   return robot;
 }
 
+std::string taskName(servo::Task task) {
+  return task == servo::Task::kManual ? ControllerState::MANUAL : ControllerState::HOLD_VIEW;
+}
+
+servo::ScopeVelocity servoVelocity(const ScopeVelocity& message) {
+  return {message.pan, message.tilt, message.spin, message.insertion};
+}
+
 ScopeVelocity toMessage(const servo::ScopeVelocity& velocity) {
   ScopeVelocity message;
   message.pan = velocity.pan;
@@ -94,6 +102,7 @@ ScopeVelocity toMessage(const servo::ScopeVelocity& velocity) {
 
 ControllerState toMessage(const servo::ControllerOutput& output) {
   ControllerState message;
+  message.task = taskName(output.task);
   message.state = name(output.state);
   message.engaged = output.engaged();
   message.reason = output.reason;

@@ -3,6 +3,7 @@
 #include <laparoscope_servo/ControllerState.h>
 #include <laparoscope_servo/ScopeVelocity.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "laparoscope_servo/ros/controller_conversions.h"
@@ -14,11 +15,16 @@ namespace {
 // s. A correction of the machine's clock by less is no jump.
 constexpr double kClockCorrection = 0.1;
 
+constexpr double kWarningPeriod = 5.0;  // s
 // s. A velocity that was measured so long before, or after, has no place among the commands.
 constexpr double kOldestReport = 1.0;
 
 double steadyNow() {
   return ros::SteadyTime::now().toSec();
+}
+
+const char* doing(servo::Task task) {
+  return task == servo::Task::kManual ? "is driven by hand" : "follows the region of interest";
 }
 
 }  // namespace
@@ -44,6 +50,8 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
   if (config_.control.safety.dead_man_required) {
     dead_man_subscriber_ = node.subscribe("dead_man", 1, &ControllerNode::onDeadMan, this, at_once);
   }
+  manual_subscriber_ = private_node.subscribe("manual", 1, &ControllerNode::onManual, this, at_once);
+  select_task_service_ = private_node.advertiseService("select_task", &ControllerNode::onSelectTask, this);
   if (config_.control.predictor.measure_delay) {
     measured_velocity_subscriber_ = node.subscribe("measured_cv", 1, &ControllerNode::onMeasuredVelocity, this, at_once);
   }
@@ -64,7 +72,8 @@ void ControllerNode::onTaskError(const TaskError& message) {
   checkTime();
   const StampWatch::Arrival arrival = task_error_watch_.arrived(message.header.stamp, steadyNow());
   if (arrival == StampWatch::Arrival::kRepeated) return;
-  if (arrival == StampWatch::Arrival::kBack) clock_jump_ = "stamps of the task error jumped back";
+  const bool counts = controller_.task() == servo::Task::kHoldView;
+  if (arrival == StampWatch::Arrival::kBack && counts) clock_jump_ = "stamps of the task error jumped back";
   task_error_ = fromMessage(message);
 }
 
@@ -77,6 +86,31 @@ void ControllerNode::onOperatingState(const OperatingState& message) {
 void ControllerNode::onDeadMan(const std_msgs::Bool& message) {
   dead_man_.pressed = message.data != 0;
   dead_man_arrival_ = steadyNow();
+}
+
+void ControllerNode::onManual(const ScopeVelocity& message) {
+  manual_ = message;
+  manual_arrival_ = steadyNow();
+  if (!servoVelocity(message).vector().allFinite()) {
+    ROS_WARN_STREAM_THROTTLE(kWarningPeriod, "The manual command counts as zero: pan "
+                                                 << message.pan << ", tilt " << message.tilt << ", spin "
+                                                 << message.spin << ", insertion " << message.insertion
+                                                 << ", expected finite numbers.");
+  }
+}
+
+bool ControllerNode::onSelectTask(SelectTask::Request& request, SelectTask::Response& response) {
+  checkTime();
+  response.success = request.task == SelectTask::Request::HOLD_VIEW || request.task == SelectTask::Request::MANUAL;
+  if (!response.success) {
+    response.message =
+        "no task '" + request.task + "', expected HOLD_VIEW or MANUAL; " + taskName(controller_.task()) + " goes on";
+    return true;
+  }
+  controller_.select(request.task == SelectTask::Request::MANUAL ? servo::Task::kManual : servo::Task::kHoldView);
+  onTick();
+  response.message = request.task + ", " + toMessage(last_output_).state + ": " + last_output_.reason;
+  return true;
 }
 
 // Only the delay is measured with it: what is missing or wrong here is left out.
@@ -140,6 +174,12 @@ servo::ControllerInput ControllerNode::input() {
   input.robot.age = steady_now - robot_arrival_;
   input.dead_man = dead_man_;
   input.dead_man.age = steady_now - dead_man_arrival_;
+  input.manual.velocity = servoVelocity(manual_);
+  input.manual.age = steady_now - manual_arrival_;
+  // Sliders and command lines set no stamp. One that is set tells what waited on its way.
+  if (!manual_.header.stamp.isZero()) {
+    input.manual.age = std::max(input.manual.age, (ros::Time::now() - manual_.header.stamp).toSec());
+  }
   input.task_error = task_error_;
   if (!task_error_watch_.empty()) {
     const ros::Time now = ros::Time::now();
@@ -187,13 +227,14 @@ void ControllerNode::publish(const servo::ControllerOutput& output) {
   command.header.stamp = ros::Time::now();
   command.header.frame_id = config_.camera;
   command_publisher_.publish(command);
-  const bool changed = output.state != last_output_.state || output.reason != last_output_.reason;
+  const bool changed =
+      output.state != last_output_.state || output.reason != last_output_.reason || output.task != last_output_.task;
   const servo::ControllerState before = last_output_.state;
   last_output_ = output;
   if (!changed && state_published_) return;
   publishState(output);
   if (output.state == servo::ControllerState::kServo) {
-    ROS_INFO("The scope follows the region of interest.");
+    ROS_INFO("The scope %s.", doing(output.task));
   } else if (output.state == servo::ControllerState::kFault) {
     ROS_ERROR("The scope stands still: %s.", output.reason.c_str());
   } else if (before != servo::ControllerState::kIdle || output.engaged()) {
@@ -215,12 +256,13 @@ void ControllerNode::report(diagnostic_updater::DiagnosticStatusWrapper& status)
   const std::string& caution = last_output_.caution;
   if (last_output_.state == State::kServo) {
     status.summary(caution.empty() ? DiagnosticStatus::OK : DiagnosticStatus::WARN,
-                   "follows the region of interest" + (caution.empty() ? "" : ", " + caution));
+                   doing(last_output_.task) + (caution.empty() ? "" : ", " + caution));
   } else {
     const bool is_bad = last_output_.state == State::kHold || last_output_.state == State::kLost;
     status.summary(is_bad ? DiagnosticStatus::WARN : DiagnosticStatus::OK, state.state + ": " + state.reason);
     if (last_output_.state == State::kFault) status.level = DiagnosticStatus::ERROR;
   }
+  status.add("task", state.task);
   status.add("state", state.state);
   status.add("reason", state.reason);
   status.add("speed scale", last_output_.speed_scale);
@@ -233,6 +275,7 @@ void ControllerNode::report(diagnostic_updater::DiagnosticStatusWrapper& status)
   status.add("age of d2 [s]", last_input_.depth.age);
   status.add("d2 [m]", last_input_.depth.d2);
   status.add("insertion point beside the shaft [m]", last_input_.depth.lateral_offset);
+  status.add("age of the manual command [s]", last_input_.manual.age);
   const servo::InsertionPointEstimate& point = controller_.insertionPoint().estimate();
   status.add("insertion point by the poses, from its frame [m]", point.valid ? point.point.norm() : 0.0);
   status.add("its standard deviation [m]", point.valid ? std::sqrt(point.covariance.trace() / 3.0) : 0.0);

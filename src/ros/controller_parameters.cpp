@@ -81,6 +81,7 @@ void readSafety(ParameterReader& reader, servo::SafetyConfig& safety) {
   readNumber(reader, "safety/max_dead_man_age", safety.max_dead_man_age);
   reader.read("safety/robot_required", safety.robot_required);
   readNumber(reader, "safety/max_robot_state_age", safety.max_robot_state_age);
+  readNumber(reader, "safety/max_manual_age", safety.max_manual_age);
 }
 
 void readFrame(ParameterReader& reader, const std::string& path, std::string& frame) {

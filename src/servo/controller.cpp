@@ -1,6 +1,7 @@
 #include "laparoscope_servo/servo/controller.h"
 
 #include <algorithm>
+#include <sstream>
 #include <stdexcept>
 
 namespace laparoscope_servo::servo {
@@ -12,6 +13,16 @@ ControllerConfig checked(const ControllerConfig& config) {
   for (const std::string& error : validate(config)) text += (text.empty() ? "" : "; ") + error;
   if (!text.empty()) throw std::invalid_argument("controller: " + text);
   return config;
+}
+
+// Of a tracker that nobody looks at.
+TrackerFacts nothingMissing() {
+  TrackerFacts facts;
+  facts.problem.clear();
+  facts.valid = true;
+  facts.age = facts.image_age = facts.corner_error = 0.0;
+  facts.visible_fraction = 1.0;
+  return facts;
 }
 
 std::optional<InsertionPointPrior> priorOf(const InsertionPointUse& config) {
@@ -34,10 +45,14 @@ SafetyFacts Controller::facts(const ControllerInput& input) const {
   facts.residual = insertion_point_.residualLevel();
   facts.robot = input.robot;
   facts.pose = {input.depth.problem, input.depth.age, d2(input), input.depth.lateral_offset};
+  facts.dead_man = input.dead_man;
+  if (task_ == Task::kManual) {
+    facts.tracker = nothingMissing();
+    return facts;
+  }
   const TaskErrorInput& task = input.task_error;
   facts.tracker = {task.problem, task.age, task.image_age, task.valid, task.visible_fraction, task.corner_error};
   if (task.problem.empty() && task.valid && !isFinite(task.error)) facts.tracker.problem = "task error is not finite";
-  facts.dead_man = input.dead_man;
   return facts;
 }
 
@@ -71,6 +86,13 @@ void Controller::disengage(const std::string& reason) {
   servo_.reset();
 }
 
+void Controller::select(Task task) {
+  if (task == task_) return;
+  task_ = task;
+  task_changed_ = true;
+  servo_.restart(last_time_);
+}
+
 std::string Controller::problem(const ControllerInput& input) const {
   return machine_.refusal(facts(input));
 }
@@ -84,8 +106,10 @@ ControllerOutput Controller::update(const ControllerInput& input) {
   SafetyFacts known = facts(input);
   SafetyOutput safety = machine_.step(known);
   ControllerOutput output;
-  if (safety.state == ControllerState::kServo) {
-    output.command = servo(input, safety);
+  if (safety.state == ControllerState::kServo && !task_changed_) {
+    output.command = task_ == Task::kManual
+                         ? drive(input)
+                         : servo_.command(servoInput(input), {safety.speed_scale, safety.insertion_allowed});
     known.command_finite = output.command.vector().allFinite();
     if (!known.command_finite) {
       safety = machine_.step(known);
@@ -95,6 +119,8 @@ ControllerOutput Controller::update(const ControllerInput& input) {
   if (safety.reset_history) servo_.stop(input.time);
   last_time_ = input.time;
   has_time_ = true;
+  task_changed_ = false;
+  output.task = task_;
   output.state = safety.state;
   output.reason = safety.reason;
   output.caution = safety.caution;
@@ -102,10 +128,14 @@ ControllerOutput Controller::update(const ControllerInput& input) {
     output.caution = "the scope is at a bound of its range: depths or cone";
   }
   output.speed_scale = safety.speed_scale;
+  if (safety.state == ControllerState::kServo && task_ == Task::kManual) {
+    const std::string problem = manualProblem(input.manual);
+    if (!problem.empty()) output.caution += (output.caution.empty() ? "" : "; ") + problem;
+  }
   return output;
 }
 
-ScopeVelocity Controller::servo(const ControllerInput& input, const SafetyOutput& safety) {
+ServoInput Controller::servoInput(const ControllerInput& input) const {
   ServoInput servo;
   servo.time = input.time;
   servo.image_time = input.time - input.task_error.image_age;
@@ -113,7 +143,25 @@ ScopeVelocity Controller::servo(const ControllerInput& input, const SafetyOutput
   servo.scope = {input.depth.camera_R_shaft, d2(input)};
   servo.insertion_point_T_tip = input.depth.insertion_point_T_tip;
   servo.period = has_time_ ? std::min(input.time - last_time_, config_.safety.max_period) : 0.0;
-  return servo_.command(servo, {safety.speed_scale, safety.insertion_allowed});
+  return servo;
+}
+
+ScopeVelocity Controller::drive(const ControllerInput& input) {
+  if (!manualProblem(input.manual).empty()) {
+    servo_.stop(input.time);
+    return ScopeVelocity();
+  }
+  return servo_.drive(servoInput(input), input.manual.velocity);
+}
+
+// Empty when it can be used.
+std::string Controller::manualProblem(const ManualInput& manual) const {
+  if (!(manual.age >= 0.0 && manual.age <= config_.safety.max_manual_age)) {
+    std::ostringstream text;
+    text << "stands: no manual command for " << config_.safety.max_manual_age << " s";
+    return text.str();
+  }
+  return manual.velocity.vector().allFinite() ? "" : "stands: the manual command is not finite";
 }
 
 }  // namespace laparoscope_servo::servo

@@ -148,6 +148,7 @@ void checkSafety(const SafetyConfig& config, Checker& check) {
   check.range("safety/max_corner_error_for_insertion", config.max_corner_error_for_insertion, 0.0, 100.0, "px");
   check.range("safety/max_dead_man_age", config.max_dead_man_age, 0.01, 1.0, "s");
   check.range("safety/max_robot_state_age", config.max_robot_state_age, 0.01, 2.0, "s");
+  check.range("safety/max_manual_age", config.max_manual_age, 0.01, 1.0, "s");
 }
 
 }  // namespace

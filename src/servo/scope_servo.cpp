@@ -51,10 +51,19 @@ ScopeServo::ScopeServo(const ControllerConfig& config)
       breathing_(config.breathing, config.target) {}
 
 void ScopeServo::reset() {
-  band_.reset();
   limiter_.reset();
   history_.clear();
   delay_.reset(false);
+  forgetTarget();
+}
+
+void ScopeServo::restart(double time) {
+  stop(time);
+  forgetTarget();
+}
+
+void ScopeServo::forgetTarget() {
+  band_.reset();
   oscillation_.reset();
   target_.reset();
   breathing_.reset();
@@ -63,6 +72,7 @@ void ScopeServo::reset() {
 }
 
 void ScopeServo::stop(double time) {
+  at_bound_ = false;
   band_.reset();
   limiter_.reset();
   remember(time, ScopeVelocity());
@@ -130,6 +140,14 @@ ScopeVelocity ScopeServo::command(const ServoInput& input, const ServoLimits& li
   ScopeVelocity velocity = limiter_.apply({scaled(follow, limits.scale), scaled(wanted.turning, gain), scaled(wanted.centring, gain)},
                                           input.period, limits.scale);
   if (!limits.insertion_allowed) velocity.insertion = std::min(0.0, velocity.insertion);
+  return send(input, velocity);
+}
+
+ScopeVelocity ScopeServo::drive(const ServoInput& input, const ScopeVelocity& wanted) {
+  return send(input, limiter_.apply(wanted, input.period));
+}
+
+ScopeVelocity ScopeServo::send(const ServoInput& input, ScopeVelocity velocity) {
   const Eigen::Vector4d free = velocity.vector();
   velocity = input.insertion_point_T_tip ? within(config_.range, velocity, input.scope.d2, input.insertion_point_T_tip->linear())
                                          : within(config_.range, velocity, input.scope.d2);

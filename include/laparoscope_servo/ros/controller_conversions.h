@@ -12,6 +12,11 @@
 
 namespace laparoscope_servo::skin {
 
+std::string taskName(servo::Task task);
+
+// As it is, finite or not.
+servo::ScopeVelocity servoVelocity(const ScopeVelocity& message);
+
 // The ages are left to the caller.
 servo::TaskErrorInput fromMessage(const TaskError& message);
 servo::RobotFacts fromMessage(const OperatingState& message);

@@ -1,20 +1,24 @@
 // The controller as a node: task error and tf in, scope velocity out.
 //
-// Subscribes `task_error` (TaskError) and, where they are required, `operating_state` (OperatingState) and `dead_man`
-// (std_msgs/Bool); publishes `servo_command` (ScopeVelocity, at a fixed rate, zero unless the arm may move), `~state`
-// (ControllerState, latched) and diagnostics; service `~engage` (std_srvs/SetBool). d2 comes from tf. The rate and all
-// ages run on a steady clock: ROS time that stands still or jumps back stops the arm. Not thread-safe: one thread calls
-// all callbacks.
+// Subscribes `task_error` (TaskError), `~manual` (ScopeVelocity) and, where they are required, `operating_state`
+// (OperatingState) and `dead_man` (std_msgs/Bool); publishes `servo_command` (ScopeVelocity, at a fixed rate, zero
+// unless the arm may move), `~state` (ControllerState, latched) and diagnostics; services `~engage` (std_srvs/SetBool),
+// `~select_task` (SelectTask). d2 comes from tf. The rate and all ages run on a steady clock: ROS time that stands
+// still or jumps back stops the arm. Not thread-safe: one thread calls all callbacks.
 #pragma once
 
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <geometry_msgs/TwistStamped.h>
 #include <laparoscope_servo/OperatingState.h>
+#include <laparoscope_servo/ScopeVelocity.h>
+#include <laparoscope_servo/SelectTask.h>
 #include <laparoscope_servo/TaskError.h>
 #include <ros/ros.h>
 #include <std_msgs/Bool.h>
 #include <std_srvs/SetBool.h>
 #include <tf2_ros/transform_listener.h>
+
+#include <limits>
 
 #include "laparoscope_servo/ros/controller_parameters.h"
 #include "laparoscope_servo/ros/stamp_watch.h"
@@ -34,6 +38,8 @@ class ControllerNode {
   void onTaskError(const TaskError& message);
   void onOperatingState(const OperatingState& message);
   void onDeadMan(const std_msgs::Bool& message);
+  void onManual(const ScopeVelocity& message);
+  bool onSelectTask(SelectTask::Request& request, SelectTask::Response& response);
   void onMeasuredVelocity(const geometry_msgs::TwistStamped& message);
   bool onEngage(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
   void onTick();
@@ -53,6 +59,8 @@ class ControllerNode {
   double robot_arrival_ = 0.0;  // s, steady
   servo::DeadManFacts dead_man_;
   double dead_man_arrival_ = 0.0;  // s, steady
+  ScopeVelocity manual_;
+  double manual_arrival_ = -std::numeric_limits<double>::infinity();  // s, steady
   servo::RobotReport robot_report_;
   double robot_report_arrival_ = 0.0;  // s, steady, of what it tells
   ros::Time last_now_;
@@ -69,8 +77,10 @@ class ControllerNode {
   ros::Subscriber task_error_subscriber_;
   ros::Subscriber operating_state_subscriber_;
   ros::Subscriber dead_man_subscriber_;
+  ros::Subscriber manual_subscriber_;
   ros::Subscriber measured_velocity_subscriber_;
   ros::ServiceServer engage_service_;
+  ros::ServiceServer select_task_service_;
   ros::SteadyTimer tick_timer_;
   ros::SteadyTimer diagnostics_timer_;
 };

@@ -1,4 +1,5 @@
-// The controller: from a task error and a depth to a command for the scope, or to zero with a reason.
+// The controller: from a task error and a depth, or from a manual command, to a command for the scope, or to zero with a
+// reason.
 //
 // The scope moves in the state SERVO only, see safety_machine.h; whatever is not SERVO commands exactly zero, at once.
 #pragma once
@@ -13,6 +14,12 @@
 #include "laparoscope_servo/servo/scope_servo.h"
 
 namespace laparoscope_servo::servo {
+
+// What moves the scope in SERVO.
+enum class Task {
+  kHoldView,  // the control law, so that the region of interest stays where it is
+  kManual,    // somebody, by four velocities. Nothing that comes from a camera counts
+};
 
 struct TaskErrorInput {
   std::string problem = "no task error was received";  // why there is none that could be used; empty: there is
@@ -41,10 +48,16 @@ struct RobotReport {
   ScopeVelocity velocity;  // of the scope
 };
 
+struct ManualInput {
+  ScopeVelocity velocity;
+  double age = std::numeric_limits<double>::infinity();  // s
+};
+
 struct ControllerInput {
   double time = 0.0;       // s, on a clock that never jumps
   std::string clock_jump;  // which other clock jumped since the last step, in words; empty: none
   TaskErrorInput task_error;
+  ManualInput manual;  // too old or not finite: the scope stands, at once
   DepthInput depth;
   RobotReport robot_report;
   RobotFacts robot;       // where the configuration requires it
@@ -58,6 +71,7 @@ struct ControllerOutput {
   std::string reason;   // why it is this state, never empty; without numbers that change from one step to the next
   std::string caution;  // in SERVO: what slows the scope or lets it go no deeper; empty: nothing
   double speed_scale = 0.0;
+  Task task = Task::kHoldView;
   ScopeVelocity command;
   bool engaged() const { return isEngaged(state); }
 };
@@ -74,6 +88,10 @@ class Controller {
   // Back to IDLE, from every state; `reason` is kept for the output.
   void disengage(const std::string& reason);
 
+  // Another task: the next command is zero, and the task starts from rest. Engages nothing, clears nothing; what the new
+  // task misses ends the motion as ever. The same task again has no effect.
+  void select(Task task);
+
   ControllerOutput update(const ControllerInput& input);
 
   // Where the shafts of the last poses meet, in the insertion point's frame: where it is not at the origin, the calibration is off.
@@ -84,16 +102,20 @@ class Controller {
   std::string problem(const ControllerInput& input) const;
 
   bool engaged() const { return isEngaged(machine_.state()); }
+  Task task() const { return task_; }
 
  private:
-  ScopeVelocity servo(const ControllerInput& input, const SafetyOutput& safety);
-
-  ControllerConfig config_;
   SafetyFacts facts(const ControllerInput& input) const;
   double d2(const ControllerInput& input) const;
+  ServoInput servoInput(const ControllerInput& input) const;
+  ScopeVelocity drive(const ControllerInput& input);
+  std::string manualProblem(const ManualInput& manual) const;
 
+  ControllerConfig config_;
   ScopeServo servo_;
   SafetyMachine machine_;
+  Task task_ = Task::kHoldView;
+  bool task_changed_ = false;  // since the last step
   InsertionPointEstimator insertion_point_;
   bool has_time_ = false;
   double last_time_ = 0.0;  // s, of the last step

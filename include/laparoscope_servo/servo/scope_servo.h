@@ -38,11 +38,18 @@ class ScopeServo {
   // The command; not finite where the law's velocity is not.
   ScopeVelocity command(const ServoInput& input, const ServoLimits& limits);
 
+  // The command for a velocity that somebody else wants, finite: without a law, within the same limits and range and
+  // through the same dead zone. What the input says of an image does not count.
+  ScopeVelocity drive(const ServoInput& input, const ScopeVelocity& wanted);
+
   // What the robot says that it executed at `time` [s], on the clock of the commands; from this the delay is measured.
   void report(double time, const ScopeVelocity& velocity);
 
   // The arm has been told to stand still since `time`: what was in the way of motion starts anew.
   void stop(double time);
+
+  // Another task begins: as stop(), and what was seen of the target is forgotten. What the robot has been told is not.
+  void restart(double time);
 
   // Forgets everything.
   void reset();
@@ -61,6 +68,8 @@ class ScopeServo {
 
  private:
   void observe(const ServoInput& input);
+  ScopeVelocity send(const ServoInput& input, ScopeVelocity velocity);
+  void forgetTarget();
   TaskError oriented(const ServoInput& input) const;
   void remember(double time, const ScopeVelocity& executed);
 

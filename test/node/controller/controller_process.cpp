@@ -113,6 +113,27 @@ TEST_P(Ending, LastCommandIsZero) {
 
 INSTANTIATE_TEST_SUITE_P(ByEachWay, Ending, ::testing::Values(SIGINT, SIGTERM, 0 /* rosnode kill */));
 
+// A machine that stood still, a debugger: nobody knows what the arm has done in between.
+TEST(ControllerProcess, APauseOfTheProcessIsAFault) {
+  Process process({"__name:=paused", "servo_command:=paused/servo_command"});
+  FakeCart cart("/paused", "/paused/servo_command");
+  ASSERT_TRUE(cart.waitForController());
+  ASSERT_TRUE(cart.engageWhenReady());
+  ASSERT_TRUE(waitFor([&] { return cart.moves(); }));
+  process.signal(SIGSTOP);
+  std::this_thread::sleep_for(std::chrono::milliseconds(1200));
+  process.signal(SIGCONT);
+  ASSERT_TRUE(cart.waitForState(ControllerState::FAULT));
+  EXPECT_NE(cart.state().reason.find("steady clock jumped"), std::string::npos) << cart.state().reason;
+  EXPECT_TRUE(cart.stands());
+  bool success = true;
+  EXPECT_NE(cart.engage(true, success).find("disengage"), std::string::npos);
+  EXPECT_FALSE(success);
+  cart.engage(false, success);
+  EXPECT_TRUE(cart.engageWhenReady());
+  EXPECT_TRUE(waitFor([&] { return cart.moves(); }));
+}
+
 TEST(ControllerProcess, NamesAFrameThatDoesNotExist) {
   Process process({"__name:=nowhere", "servo_command:=nowhere/servo_command", "_frames/insertion_point:=atlantis"});
   FakeCart cart("/nowhere", "/nowhere/servo_command");
@@ -136,7 +157,8 @@ TEST(ControllerProcess, RefusesAStaticDepth) {
   transform.transform.rotation.w = 1.0;
   broadcaster.sendTransform(transform);
   Process process({"__name:=fixed", "servo_command:=fixed/servo_command",
-                   "_frames/insertion_point:=fixed_insertion_point", "_frames/camera:=fixed_camera"});
+                   "_frames/insertion_point:=fixed_insertion_point", "_frames/camera:=fixed_camera",
+                   "_frames/shaft:=fixed_camera"});
   FakeCart cart("/fixed", "/fixed/servo_command");
   ASSERT_TRUE(cart.waitForController());
   bool success = true;

@@ -1,12 +1,14 @@
-// Stands in for tracker and robot: publishes task errors (25 Hz) and tf (50 Hz) from a thread of its own, and listens
-// to what the controller says.
+// Stands in for tracker, robot and dead-man switch: publishes task errors (25 Hz), tf and the switch (50 Hz) and the
+// robot's state (10 Hz) from a thread of its own, and listens to what the controller says.
 #pragma once
 
 #include <gtest/gtest.h>
 #include <laparoscope_servo/ControllerState.h>
+#include <laparoscope_servo/OperatingState.h>
 #include <laparoscope_servo/ScopeVelocity.h>
 #include <laparoscope_servo/TaskError.h>
 #include <ros/ros.h>
+#include <std_msgs/Bool.h>
 #include <std_srvs/SetBool.h>
 #include <tf2_ros/transform_broadcaster.h>
 
@@ -25,6 +27,11 @@ inline bool isZero(const ScopeVelocity& c) {
   return c.pan == 0.0 && c.tilt == 0.0 && c.spin == 0.0 && c.insertion == 0.0;
 }
 
+// s
+inline double steadyNow() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
 // Waits until `condition` holds, at most `seconds`; polls, since what is waited for happens in other processes.
 inline bool waitFor(const std::function<bool()>& condition, double seconds = 5.0) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
@@ -39,11 +46,16 @@ inline bool waitFor(const std::function<bool()>& condition, double seconds = 5.0
 struct Feed {
   bool task_error = true;
   bool tf = true;
+  bool robot = true;
+  bool dead_man = true;
+  bool pressed = true;
+  bool images_stop = false;      // the tracker goes on, over images that are hardly newer each time
   double stamp_offset = 0.0;     // s, added to the stamps of task errors
   ros::Time fixed_stamp;         // not zero: every task error has this stamp
   double tf_stamp_offset = 0.0;  // s
   double d2 = 0.1;               // m
   double lateral = 0.0;          // m
+  std::string robot_state = "ENABLED";
   TaskError message;
 };
 
@@ -71,10 +83,11 @@ class FakeCart {
       : spinner_(2) {
     feed_.message = offTarget();
     task_error_publisher_ = node_.advertise<TaskError>("/task_error", 1);
-    command_subscriber_ = node_.subscribe<ScopeVelocity>(command, 100, [this](const ScopeVelocity::ConstPtr& message) {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      commands_.push_back(*message);
-    });
+    robot_publisher_ = node_.advertise<OperatingState>("/operating_state", 1);
+    dead_man_publisher_ = node_.advertise<std_msgs::Bool>("/dead_man", 1);
+    command_subscriber_ = node_.subscribe<ScopeVelocity>(
+        command, 100, [this](const ScopeVelocity::ConstPtr& message) { onCommand(*message); }, ros::VoidConstPtr(),
+        ros::TransportHints().tcpNoDelay());
     state_subscriber_ =
         node_.subscribe<ControllerState>(controller + "/state", 100, [this](const ControllerState::ConstPtr& message) {
           const std::lock_guard<std::mutex> lock(mutex_);
@@ -98,6 +111,30 @@ class FakeCart {
   void set(const std::function<void(Feed&)>& change) {
     const std::lock_guard<std::mutex> lock(mutex_);
     change(feed_);
+  }
+
+  // Changes what is published and sends it at once; the time of that, s on the steady clock.
+  double strike(const std::function<void(Feed&)>& change) {
+    const std::lock_guard<std::mutex> one_at_a_time(publish_mutex_);
+    set(change);
+    const double time = steadyNow();
+    publish(0);
+    return time;
+  }
+
+  // Sends everything once more as it was, then changes it: for what falls silent. The time of the last words.
+  double fallSilent(const std::function<void(Feed&)>& change) {
+    const std::lock_guard<std::mutex> one_at_a_time(publish_mutex_);
+    const double time = steadyNow();
+    publish(0);
+    set(change);
+    return time;
+  }
+
+  // When the first command of zero came after the last one that was not, s on the steady clock.
+  double stoodAt() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return stood_at_;
   }
 
   ControllerState state() {
@@ -169,21 +206,48 @@ class FakeCart {
   }
 
  private:
+  void onCommand(const ScopeVelocity& command) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const bool stands = isZero(command);
+    if (stands && !stood_) stood_at_ = steadyNow();
+    stood_ = stands;
+    commands_.push_back(command);
+  }
+
   void publishUntilEnd() {
     for (int k = 0; !end_; ++k) {
-      Feed feed;
       {
-        const std::lock_guard<std::mutex> lock(mutex_);
-        feed = feed_;
-      }
-      const ros::Time now = ros::Time::now();
-      if (feed.tf) publishTransforms(feed, now);
-      if (feed.task_error && k % 2 == 0) {
-        feed.message.header.stamp = now + ros::Duration(feed.stamp_offset);
-        if (!feed.fixed_stamp.isZero()) feed.message.header.stamp = feed.fixed_stamp;
-        task_error_publisher_.publish(feed.message);
+        const std::lock_guard<std::mutex> one_at_a_time(publish_mutex_);
+        publish(k);
       }
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+  }
+
+  // What is due in step k; in step 0, everything.
+  void publish(int k) {
+    Feed feed;
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      feed = feed_;
+    }
+    const ros::Time now = ros::Time::now();
+    if (feed.dead_man) {
+      std_msgs::Bool switch_message;
+      switch_message.data = feed.pressed;
+      dead_man_publisher_.publish(switch_message);
+    }
+    if (feed.robot && k % 5 == 0) {
+      OperatingState robot;
+      robot.header.stamp = now;
+      robot.state = feed.robot_state;
+      robot_publisher_.publish(robot);
+    }
+    if (feed.tf) publishTransforms(feed, now);
+    if (feed.task_error && k % 2 == 0) {
+      last_image_ = feed.images_stop ? last_image_ + ros::Duration(0.001) : now + ros::Duration(feed.stamp_offset);
+      feed.message.header.stamp = feed.fixed_stamp.isZero() ? last_image_ : feed.fixed_stamp;
+      task_error_publisher_.publish(feed.message);
     }
   }
 
@@ -211,12 +275,18 @@ class FakeCart {
   ros::AsyncSpinner spinner_;
   tf2_ros::TransformBroadcaster broadcaster_;
   ros::Publisher task_error_publisher_;
+  ros::Publisher robot_publisher_;
+  ros::Publisher dead_man_publisher_;
   ros::Subscriber command_subscriber_;
   ros::Subscriber state_subscriber_;
   ros::ServiceClient engage_;
 
+  std::mutex publish_mutex_;  // locked before mutex_
+  ros::Time last_image_;
   std::mutex mutex_;
   Feed feed_;
+  bool stood_ = true;
+  double stood_at_ = 0.0;  // s
   ControllerState state_;
   std::vector<std::string> states_;
   std::vector<ScopeVelocity> commands_;

@@ -118,6 +118,22 @@ TEST(ControllerConversions, VelocityKeepsItsComponents) {
   EXPECT_EQ(message.insertion, 4.0);
 }
 
+TEST(ControllerConversions, AManualCommandKeepsItsComponents) {
+  ScopeVelocity message;
+  message.pan = 1.0;
+  message.tilt = 2.0;
+  message.spin = 3.0;
+  message.insertion = 4.0;
+  EXPECT_EQ(servoVelocity(message).vector(), Eigen::Vector4d(1.0, 2.0, 3.0, 4.0));
+}
+
+TEST(ControllerConversions, TasksHaveTheirNames) {
+  servo::ControllerOutput output;
+  EXPECT_EQ(toMessage(output).task, "HOLD_VIEW");
+  output.task = servo::Task::kManual;
+  EXPECT_EQ(toMessage(output).task, "MANUAL");
+}
+
 TEST(ControllerConversions, OnlyAnEnabledRobotIsEnabled) {
   for (const char* state : {"DISABLED", "PAUSED", "FAULT", "", "enabled"}) {
     OperatingState message;

@@ -87,6 +87,7 @@ std::vector<double> numbers(const ControllerNodeConfig& config) {
                           s.min_visible_for_insertion,
                           s.max_dead_man_age,
                           s.max_robot_state_age,
+                          s.max_manual_age,
                           s.max_corner_error_for_insertion,
                           s.dead_man_required ? 1.0 : 0.0,
                           s.robot_required ? 1.0 : 0.0};
@@ -218,7 +219,7 @@ TEST(ControllerParameters, EveryNumberOfTheFileHasAFieldOfItsOwn) {
       }
     }
   }
-  EXPECT_EQ(changed, 79);
+  EXPECT_EQ(changed, 80);
 }
 
 TEST(ControllerParameters, NothingSetGivesTheDefaults) {

@@ -92,6 +92,7 @@ std::vector<Field> fields() {
        [](ControllerConfig& c, double v) { c.safety.min_visible_for_insertion = v; }},
       {"safety/max_corner_error_for_insertion",
        [](ControllerConfig& c, double v) { c.safety.max_corner_error_for_insertion = v; }},
+      {"safety/max_manual_age", [](ControllerConfig& c, double v) { c.safety.max_manual_age = v; }},
       {"safety/max_dead_man_age", [](ControllerConfig& c, double v) { c.safety.max_dead_man_age = v; }},
       {"safety/max_robot_state_age", [](ControllerConfig& c, double v) { c.safety.max_robot_state_age = v; }}};
   const auto add = [&all](const std::vector<Field>& more) { all.insert(all.end(), more.begin(), more.end()); };
