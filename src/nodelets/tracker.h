@@ -4,6 +4,7 @@
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <image_transport/image_transport.h>
 #include <laparoscope_servo/SelectRoi.h>
+#include <laparoscope_servo/StoredView.h>
 #include <nodelet/nodelet.h>
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
@@ -19,6 +20,7 @@
 #include "laparoscope_servo/ros/tracker_diagnostics.h"
 #include "laparoscope_servo/ros/tracker_request.h"
 #include "laparoscope_servo/ros/tracker_session.h"
+#include "laparoscope_servo/ros/view_library.h"
 
 namespace laparoscope_servo::nodelets {
 
@@ -37,8 +39,12 @@ class Tracker : public nodelet::Nodelet {
   void cameraInfoCallback(const sensor_msgs::CameraInfoConstPtr& message);
   bool reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
-  // In a queue and a thread of its own, because it waits for an image.
+  // In a queue and a thread of their own, because they wait for an image, and views take their time.
   bool selectRoi(SelectRoi::Request& request, SelectRoi::Response& response);
+
+  bool storeView(StoredView::Request& request, StoredView::Response& response);
+  bool recallView(StoredView::Request& request, StoredView::Response& response);
+  skin::TrackerRequest::Answer ask(const skin::TrackerRequest::Question& question);
 
   void process(const sensor_msgs::ImageConstPtr& message);
   void publish(const skin::Processed& processed);
@@ -51,7 +57,8 @@ class Tracker : public nodelet::Nodelet {
   std::unique_ptr<diagnostic_updater::Updater> diagnostics_;
   std::string why_aside_;
 
-  skin::RoiRequest request_;
+  skin::TrackerRequest request_;
+  std::unique_ptr<skin::ViewLibrary> views_;  // of the services' thread
   ros::CallbackQueue request_queue_;
   std::unique_ptr<ros::AsyncSpinner> request_spinner_;
 
@@ -65,6 +72,8 @@ class Tracker : public nodelet::Nodelet {
   ros::Publisher mask_publisher_;
   ros::Publisher overlay_publisher_;
   ros::ServiceServer select_server_;
+  ros::ServiceServer store_server_;
+  ros::ServiceServer recall_server_;
   ros::ServiceServer reset_server_;
   ros::WallTimer diagnostics_timer_;
 };
