@@ -56,9 +56,10 @@ class AnswerGuard {
 }  // namespace
 
 Tracker::~Tracker() {
-  // The service first: it may be waiting for an image that will not come any more.
+  // The services first: they may be waiting for an image that will not come any more.
   request_.close();
   if (request_spinner_) request_spinner_->stop();
+  if (view_spinner_) view_spinner_->stop();
   select_server_.shutdown();
   store_server_.shutdown();
   recall_server_.shutdown();
@@ -113,10 +114,15 @@ void Tracker::start(const skin::TrackerParameters& parameters) {
   ros::NodeHandle request_node(private_node);
   request_node.setCallbackQueue(&request_queue_);
   select_server_ = request_node.advertiseService("select_roi", &Tracker::selectRoi, this);
-  store_server_ = request_node.advertiseService("store_view", &Tracker::storeView, this);
-  recall_server_ = request_node.advertiseService("recall_view", &Tracker::recallView, this);
   request_spinner_ = std::make_unique<ros::AsyncSpinner>(1, &request_queue_);
   request_spinner_->start();
+
+  ros::NodeHandle view_node(private_node);
+  view_node.setCallbackQueue(&view_queue_);
+  store_server_ = view_node.advertiseService("store_view", &Tracker::storeView, this);
+  recall_server_ = view_node.advertiseService("recall_view", &Tracker::recallView, this);
+  view_spinner_ = std::make_unique<ros::AsyncSpinner>(1, &view_queue_);
+  view_spinner_->start();
 }
 
 void Tracker::followRobot(const skin::RobotMotionConfig& config) {

@@ -39,8 +39,9 @@ class Tracker : public nodelet::Nodelet {
   void cameraInfoCallback(const sensor_msgs::CameraInfoConstPtr& message);
   bool reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
-  // In a queue and a thread of their own, because they wait for an image, and views take their time.
+  // In a queue and a thread of its own, because it waits for an image.
   bool selectRoi(SelectRoi::Request& request, SelectRoi::Response& response);
+  // In one of theirs, too: comparing views takes seconds, for which no selection should wait.
 
   bool storeView(StoredView::Request& request, StoredView::Response& response);
   bool recallView(StoredView::Request& request, StoredView::Response& response);
@@ -58,9 +59,11 @@ class Tracker : public nodelet::Nodelet {
   std::string why_aside_;
 
   skin::TrackerRequest request_;
-  std::unique_ptr<skin::ViewLibrary> views_;  // of the services' thread
   ros::CallbackQueue request_queue_;
   std::unique_ptr<ros::AsyncSpinner> request_spinner_;
+  std::unique_ptr<skin::ViewLibrary> views_;  // of the views' thread
+  ros::CallbackQueue view_queue_;
+  std::unique_ptr<ros::AsyncSpinner> view_spinner_;
 
   std::unique_ptr<image_transport::ImageTransport> transport_;
   image_transport::Subscriber image_subscriber_;

@@ -1,4 +1,4 @@
-// The services of the tracker that wait for an image: they run in a thread of their own.
+// The services of the tracker that wait for an image: they run in threads of their own.
 #include <memory>
 #include <sstream>
 #include <stdexcept>

@@ -37,13 +37,19 @@ std::string ViewLibrary::store(const std::string& name, const Snapshot& snapshot
   if (!snapshot.roi) throw std::invalid_argument(snapshot.roi_error);
   store_.store(name, snapshot.image, *snapshot.roi);
   stamps_[name] = snapshot.stamp;
-  std::string overlapping;
+  // It may see the region of another whose image does not show its own: it then leads there, and not back.
+  std::string from;
+  std::string to;
+  const auto list = [](std::string& names, const std::string& other) {
+    names += (names.empty() ? "'" : ", '") + other + "'";
+  };
   for (const std::string& other : store_.names()) {
-    if (other == name || !(store_.leads(name, other) || store_.leads(other, name))) continue;
-    overlapping += (overlapping.empty() ? "'" : ", '") + other + "'";
+    if (other == name) continue;
+    if (store_.leads(other, name)) list(from, other);
+    if (store_.leads(name, other)) list(to, other);
   }
-  return "stored view '" + name + "' with ROI " + roiText(store_.get(name).roi) + ", " +
-         (overlapping.empty() ? "which overlaps with no other" : "which overlaps with " + overlapping);
+  return "stored view '" + name + "' with ROI " + roiText(store_.get(name).roi) + "; reached from " +
+         (from.empty() ? "no other" : from) + ", leads to " + (to.empty() ? "no other" : to);
 }
 
 RecallRoute ViewLibrary::route(const std::string& name, const Snapshot& snapshot) {

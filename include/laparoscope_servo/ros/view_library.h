@@ -16,7 +16,7 @@ class ViewLibrary {
  public:
   explicit ViewLibrary(const TrackerParameters& parameters);
 
-  // Stores the snapshot's image and region. Returns what was stored, and which views it overlaps with. Throws
+  // Stores the snapshot's image and region. Returns what was stored, and how it is linked with the others. Throws
   // std::invalid_argument when it cannot be stored.
   std::string store(const std::string& name, const Snapshot& snapshot);
   // The way from the snapshot to a view. Throws std::invalid_argument when there is none, or no such view.

@@ -108,6 +108,16 @@ TEST_F(TrackerSessionViewsTest, StoresThePictureAsItIsWithTheRegionWhereItIs) {
   EXPECT_EQ(store("here", now).find("stored view 'here' with ROI 90,75,100,90"), 0u);
 }
 
+TEST_F(TrackerSessionViewsTest, SaysFromWhereAViewIsReachedAndWhereItLeads) {
+  EXPECT_EQ(store("a", see(0, kRoi)),
+            "stored view 'a' with ROI 110,75,100,90; reached from no other, leads to no other");
+  EXPECT_EQ(store("b", see(kStep, kRoi)), "stored view 'b' with ROI 110,75,100,90; reached from 'a', leads to 'a'");
+  // A region at the far side: in the image of b, not in that of a; it sees theirs as b does.
+  const geometry::Rectangle right{210.0, 75.0, 100.0, 90.0};
+  EXPECT_EQ(store("c", see(kStep, right)),
+            "stored view 'c' with ROI 210,75,100,90; reached from 'b', leads to 'a', 'b'");
+}
+
 TEST_F(TrackerSessionViewsTest, StoresNothingWhileItDoesNotTrackOrTheRegionIsCovered) {
   const Snapshot idle = session_.snapshot(see(0));
   EXPECT_FALSE(idle.roi);
