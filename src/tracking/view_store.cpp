@@ -19,7 +19,6 @@ constexpr double kBetweenViews = 10.0;
 TrackerConfig forOneImage(TrackerConfig config) {
   config.quality.confirmations = 1;
   config.search.features = true;
-  config.search.correlation = false;
   config.search.keyframes = 0;
   return config;
 }
@@ -34,7 +33,9 @@ bool found(const View& view, const cv::Mat& image, const TrackerConfig& config, 
   RegionTracker tracker(config);
   if (lens != nullptr) tracker.setLens(*lens);
   tracker.recall(view.image, -kBetweenViews, view.roi, 0.0);
-  return tracker.track(image, 0.0).state == State::kTracking;
+  // By points, then by sliding the region over the image, as the tracker's search takes turns.
+  if (tracker.track(image, 0.0).state == State::kTracking) return true;
+  return config.search.correlation && tracker.track(image, 0.0).state == State::kTracking;
 }
 
 }  // namespace
