@@ -5,9 +5,9 @@
 #include <exception>
 #include <optional>
 #include <pluginlib/class_list_macros.hpp>
-#include <sstream>
 #include <stdexcept>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "laparoscope_servo/ros/overlay.h"
@@ -33,29 +33,36 @@ void publishIfHeard(const ros::Publisher& publisher, Message (*make)(const skin:
 // Whoever takes a request has to answer it, also when an exception passes.
 class AnswerGuard {
  public:
-  explicit AnswerGuard(skin::RoiRequest& request) : request_(request), roi_(request.take()) {}
+  explicit AnswerGuard(skin::TrackerRequest& request) : request_(request), question_(request.take()) {}
   ~AnswerGuard() {
-    if (roi_) request_.answer(answer_);
+    if (question_) request_.answer(answer_);
   }
   AnswerGuard(const AnswerGuard&) = delete;
   AnswerGuard& operator=(const AnswerGuard&) = delete;
 
-  const std::optional<geometry::Rectangle>& roi() const { return roi_; }
-  void set(bool success, const std::string& message) { answer_ = {success, message}; }
+  // Null when nothing of this kind is asked.
+  template <class Kind>
+  const Kind* get() const {
+    return question_ ? std::get_if<Kind>(&*question_) : nullptr;
+  }
+  void set(const skin::TrackerRequest::Answer& answer) { answer_ = answer; }
 
  private:
-  skin::RoiRequest& request_;
-  std::optional<geometry::Rectangle> roi_;
-  skin::RoiRequest::Answer answer_{false, "the image could not be processed"};
+  skin::TrackerRequest& request_;
+  std::optional<skin::TrackerRequest::Question> question_;
+  skin::TrackerRequest::Answer answer_{false, "the image could not be processed"};
 };
 
 }  // namespace
 
 Tracker::~Tracker() {
-  // The service first: it may be waiting for an image that will not come any more.
+  // The services first: they may be waiting for an image that will not come any more.
   request_.close();
   if (request_spinner_) request_spinner_->stop();
+  if (view_spinner_) view_spinner_->stop();
   select_server_.shutdown();
+  store_server_.shutdown();
+  recall_server_.shutdown();
 }
 
 void Tracker::onInit() {
@@ -84,6 +91,7 @@ void Tracker::standAside(const std::string& why) {
 
 void Tracker::start(const skin::TrackerParameters& parameters) {
   session_ = std::make_unique<skin::TrackerSession>(parameters);
+  views_ = std::make_unique<skin::ViewLibrary>(parameters);
   statistics_ = std::make_unique<skin::TrackerDiagnostics>(parameters.tracking, parameters.robot_motion.enabled);
   if (parameters.robot_motion.enabled) followRobot(parameters.robot_motion);
 
@@ -108,6 +116,13 @@ void Tracker::start(const skin::TrackerParameters& parameters) {
   select_server_ = request_node.advertiseService("select_roi", &Tracker::selectRoi, this);
   request_spinner_ = std::make_unique<ros::AsyncSpinner>(1, &request_queue_);
   request_spinner_->start();
+
+  ros::NodeHandle view_node(private_node);
+  view_node.setCallbackQueue(&view_queue_);
+  store_server_ = view_node.advertiseService("store_view", &Tracker::storeView, this);
+  recall_server_ = view_node.advertiseService("recall_view", &Tracker::recallView, this);
+  view_spinner_ = std::make_unique<ros::AsyncSpinner>(1, &view_queue_);
+  view_spinner_->start();
 }
 
 void Tracker::followRobot(const skin::RobotMotionConfig& config) {
@@ -136,14 +151,20 @@ void Tracker::process(const sensor_msgs::ImageConstPtr& message) {
   AnswerGuard guard(request_);
   skin::Processed processed;
   try {
-    processed = session_->process(*message, guard.roi());
+    const auto* roi = guard.get<geometry::Rectangle>();
+    processed = session_->process(*message, roi != nullptr ? std::make_optional(*roi) : std::nullopt);
   } catch (const std::exception& error) {
-    guard.set(false, std::string("the image could not be used: ") + error.what());
+    guard.set({false, std::string("the image could not be used: ") + error.what()});
     throw;
   }
-  if (guard.roi()) {
+  if (const auto* roi = guard.get<geometry::Rectangle>()) {
     const bool selected = processed.result.selected_now;
-    guard.set(selected, selected ? "selected " + skin::roiText(*guard.roi()) : processed.selection_error);
+    guard.set({selected, selected ? "selected " + skin::roiText(*roi) : processed.selection_error});
+  } else if (const auto* route = guard.get<skin::RecallRoute>()) {
+    const std::string error = session_->recall(*route);
+    guard.set({error.empty(), error});
+  } else if (guard.get<skin::TrackerRequest::WantSnapshot>() != nullptr) {
+    guard.set({true, "", std::make_shared<const skin::Snapshot>(session_->snapshot(processed))});
   }
   if (!processed.selection_error.empty()) {
     NODELET_ERROR_THROTTLE(kThrottle, "the ROI could not be selected: %s", processed.selection_error.c_str());
@@ -169,18 +190,6 @@ void Tracker::publish(const skin::Processed& processed) {
 void Tracker::refuse(const std::string& error) {
   statistics_->refused(steadySeconds(), error);
   NODELET_ERROR_THROTTLE(kThrottle, "image refused: %s", error.c_str());
-}
-
-bool Tracker::selectRoi(SelectRoi::Request& request, SelectRoi::Response& response) {
-  const geometry::Rectangle roi{static_cast<double>(request.roi.x_offset), static_cast<double>(request.roi.y_offset),
-                                static_cast<double>(request.roi.width), static_cast<double>(request.roi.height)};
-  std::ostringstream timeout;
-  timeout << "no image came on " << image_subscriber_.getTopic() << " within " << session_->parameters().select_timeout
-          << " s (parameter select_timeout)";
-  const skin::RoiRequest::Answer answer = request_.ask(roi, session_->parameters().select_timeout, timeout.str());
-  response.success = static_cast<std::uint8_t>(answer.success);
-  response.message = answer.message;
-  return true;
 }
 
 bool Tracker::reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {

@@ -4,6 +4,7 @@
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <image_transport/image_transport.h>
 #include <laparoscope_servo/SelectRoi.h>
+#include <laparoscope_servo/StoredView.h>
 #include <nodelet/nodelet.h>
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
@@ -19,6 +20,7 @@
 #include "laparoscope_servo/ros/tracker_diagnostics.h"
 #include "laparoscope_servo/ros/tracker_request.h"
 #include "laparoscope_servo/ros/tracker_session.h"
+#include "laparoscope_servo/ros/view_library.h"
 
 namespace laparoscope_servo::nodelets {
 
@@ -39,6 +41,11 @@ class Tracker : public nodelet::Nodelet {
   void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
   // In a queue and a thread of its own, because it waits for an image.
   bool selectRoi(SelectRoi::Request& request, SelectRoi::Response& response);
+  // In one of theirs, too: comparing views takes seconds, for which no selection should wait.
+
+  bool storeView(StoredView::Request& request, StoredView::Response& response);
+  bool recallView(StoredView::Request& request, StoredView::Response& response);
+  skin::TrackerRequest::Answer ask(const skin::TrackerRequest::Question& question);
 
   void process(const sensor_msgs::ImageConstPtr& message);
   void publish(const skin::Processed& processed);
@@ -51,9 +58,12 @@ class Tracker : public nodelet::Nodelet {
   std::unique_ptr<diagnostic_updater::Updater> diagnostics_;
   std::string why_aside_;
 
-  skin::RoiRequest request_;
+  skin::TrackerRequest request_;
   ros::CallbackQueue request_queue_;
   std::unique_ptr<ros::AsyncSpinner> request_spinner_;
+  std::unique_ptr<skin::ViewLibrary> views_;  // of the views' thread
+  ros::CallbackQueue view_queue_;
+  std::unique_ptr<ros::AsyncSpinner> view_spinner_;
 
   std::unique_ptr<image_transport::ImageTransport> transport_;
   image_transport::Subscriber image_subscriber_;
@@ -65,6 +75,8 @@ class Tracker : public nodelet::Nodelet {
   ros::Publisher mask_publisher_;
   ros::Publisher overlay_publisher_;
   ros::ServiceServer select_server_;
+  ros::ServiceServer store_server_;
+  ros::ServiceServer recall_server_;
   ros::ServiceServer reset_server_;
   ros::WallTimer diagnostics_timer_;
 };

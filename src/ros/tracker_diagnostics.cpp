@@ -31,6 +31,7 @@ std::string withReason(const tracking::TrackResult& result) {
 }  // namespace
 
 void TrackerDiagnostics::processed(double now, const Processed& processed, bool ignores_distortion) {
+  recall_ = processed.recall;
   const bool had_roi = result_.state != State::kIdle;
   result_ = processed.result;
   if (had_roi && result_.state == State::kIdle) last_reset_ = result_.reason;
@@ -60,6 +61,16 @@ void TrackerDiagnostics::refused(double now, const std::string& error) {
   refusal_ = last_refusal_ = error;
 }
 
+void TrackerDiagnostics::recallRefused(const std::string& why) {
+  const std::lock_guard<std::mutex> lock(recall_mutex_);
+  recall_refusal_ = why;
+}
+
+std::string TrackerDiagnostics::recall() const {
+  const std::lock_guard<std::mutex> lock(recall_mutex_);
+  return recall_ + (recall_refusal_.empty() ? "" : "; last request refused: " + recall_refusal_);
+}
+
 void TrackerDiagnostics::summarise(double now, diagnostic_updater::DiagnosticStatusWrapper& status) const {
   if (!last_image_) {
     status.summary(DiagnosticStatus::WARN, "no image has come yet");
@@ -69,6 +80,7 @@ void TrackerDiagnostics::summarise(double now, diagnostic_updater::DiagnosticSta
     status.summary(DiagnosticStatus::ERROR, "image refused: " + refusal_);
   } else {
     status.summary(static_cast<unsigned char>(levelOf(result_.state)), withReason(result_));
+    if (recall_ != "none") status.message += "; " + recall_;
     if (selection_failed_) status.mergeSummary(DiagnosticStatus::ERROR, "no region selected");
     if (!has_camera_)
       status.mergeSummary(DiagnosticStatus::WARN, "no homography in normalised coordinates: " + camera_error_);
@@ -109,6 +121,7 @@ void TrackerDiagnostics::fill(double now, diagnostic_updater::DiagnosticStatusWr
   status.add("lens distortion", rectifies_            ? "corrected by the tracker"
                                 : ignores_distortion_ ? "not corrected: camera_info has some; see parameter rectify"
                                                       : "none, or corrected");
+  status.add("recall", recall());
   status.add("colour gate", colourGate());
   status.add("robot motion", robotMotion());
   window_ = Window();

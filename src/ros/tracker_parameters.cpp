@@ -113,6 +113,14 @@ void readRobotMotion(ParameterReader& reader, const std::string& name, RobotMoti
   }
 }
 
+void readViews(ParameterReader& reader, tracking::ViewConfig& config) {
+  reader.read("views/capacity", config.capacity, 1, 256);
+  reader.read("views/min_visible_fraction", config.min_visible_fraction, 0.0, 1.0);
+  reader.read("views/arrival_centre", config.arrival_centre, 0.1, 10000.0);
+  reader.read("views/arrival_scale", config.arrival_scale, 0.001, 1.0);
+  reader.refuseUnknown("views");
+}
+
 }  // namespace
 
 TrackerParameters readTrackerParameters(const XmlRpc::XmlRpcValue& tree, const std::string& name,
@@ -122,6 +130,7 @@ TrackerParameters readTrackerParameters(const XmlRpc::XmlRpcValue& tree, const s
   readTracking(reader, parameters.tracking);
   readRoi(reader, name, parameters.roi);
   readRobotMotion(reader, name, parameters.robot_motion);
+  readViews(reader, parameters.views);
   bool rectified = false;
   reader.read("rectified_images", rectified);
   bool rectify = false;

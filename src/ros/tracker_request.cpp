@@ -4,10 +4,11 @@
 
 namespace laparoscope_servo::skin {
 
-RoiRequest::Answer RoiRequest::ask(const geometry::Rectangle& roi, double timeout, const std::string& timeout_message) {
+TrackerRequest::Answer TrackerRequest::ask(const Question& question, double timeout,
+                                           const std::string& timeout_message) {
   const std::lock_guard<std::mutex> turn(turn_);
   std::unique_lock<std::mutex> lock(mutex_);
-  waiting_ = roi;
+  waiting_ = question;
   answer_.reset();
   taken_ = false;
   const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>(timeout);
@@ -17,26 +18,26 @@ RoiRequest::Answer RoiRequest::ask(const geometry::Rectangle& roi, double timeou
   if (taken_) changed_.wait(lock, [this] { return answer_.has_value() || closed_; });
   waiting_.reset();
   if (answer_) return *answer_;
-  return {false, closed_ ? "the tracker is shutting down" : timeout_message};
+  return {false, closed_ ? "the tracker is shutting down" : timeout_message, nullptr};
 }
 
-std::optional<geometry::Rectangle> RoiRequest::take() {
+std::optional<TrackerRequest::Question> TrackerRequest::take() {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (!waiting_) return std::nullopt;
-  const std::optional<geometry::Rectangle> roi = waiting_;
+  const std::optional<Question> question = waiting_;
   waiting_.reset();
   taken_ = true;
   changed_.notify_all();
-  return roi;
+  return question;
 }
 
-void RoiRequest::answer(const Answer& answer) {
+void TrackerRequest::answer(const Answer& answer) {
   const std::lock_guard<std::mutex> lock(mutex_);
   answer_ = answer;
   changed_.notify_all();
 }
 
-void RoiRequest::close() {
+void TrackerRequest::close() {
   const std::lock_guard<std::mutex> lock(mutex_);
   closed_ = true;
   changed_.notify_all();

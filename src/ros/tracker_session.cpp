@@ -1,6 +1,7 @@
 #include "laparoscope_servo/ros/tracker_session.h"
 
 #include <chrono>
+#include <sstream>
 #include <stdexcept>
 
 #include "laparoscope_servo/ros/image_conversion.h"
@@ -20,7 +21,10 @@ class Stopwatch {
 }  // namespace
 
 TrackerSession::TrackerSession(const TrackerParameters& parameters)
-    : parameters_(parameters), tracker_(parameters.tracking), intrinsics_(parameters.image_kind) {
+    : parameters_(parameters),
+      tracker_(parameters.tracking),
+      recall_(parameters.views),
+      intrinsics_(parameters.image_kind) {
   start_roi_pending_ = start_roi_in_force_ = parameters.roi.has_value();
 }
 
@@ -50,14 +54,21 @@ void TrackerSession::complete(Processed& processed, const std::optional<geometry
   const ros::Time stamp = processed.header.stamp;
   const bool jumped_back = last_stamp_ && stamp < *last_stamp_;
   if (jumped_back && start_roi_in_force_) start_roi_pending_ = true;
-  processed.result = track(processed, request);
+  if (jumped_back) recall_.end("time jumped back");
+  const bool had_roi = tracker_.hasRoi();
+  bool new_reference = false;
+  processed.result = track(processed, request, new_reference);
+  if (had_roi && !tracker_.hasRoi()) ++epoch_;
+  if (!tracker_.hasRoi() && recall_.due() == nullptr) recall_.end(processed.result.reason);
+  recall_.see(processed.result);
+  processed.recall = recall_.text();
   if (processed.result.state == tracking::State::kTracking) believed_stamp_ = stamp;
   if (!tracker_.hasRoi()) believed_stamp_.reset();
   last_stamp_ = stamp;
   image_size_ = processed.image.size();
   if (processed.result.selected_now) reference_stamp_ = stamp;
   processed.reference_stamp = reference_stamp_;
-  intrinsics_.update(processed.image.size(), processed.result.selected_now || !tracker_.hasRoi());
+  intrinsics_.update(processed.image.size(), new_reference || !tracker_.hasRoi());
   processed.camera = intrinsics_.camera();
   processed.camera_error = intrinsics_.error();
   if (!lens_error_.empty()) {
@@ -97,13 +108,33 @@ void TrackerSession::updateLens(const cv::Size& size) {
   const std::shared_ptr<const image::Lens>& lens = lens_source_.lensFor(size);
   lens_error_ = lens ? "" : "images cannot be rectified: " + lens_source_.error();
   if (!lens || lens == lens_) return;
+  recall_.end("the lens changed");
   tracker_.setLens(*lens);
   lens_ = lens;
 }
 
-tracking::TrackResult TrackerSession::track(Processed& processed, const std::optional<geometry::Rectangle>& request) {
+// A view of a recall becomes the reference. True when the camera of this image is taken for that of the reference: for
+// the first view only, so that intrinsics which change on the way take H away.
+bool TrackerSession::takeDueView(double stamp) {
+  const RecallStep* step = recall_.due();
+  if (step == nullptr || !lens_error_.empty()) return false;
+  try {
+    tracker_.recall(step->view.image, step->stamp.toSec(), step->view.roi, stamp);
+  } catch (const std::invalid_argument& error) {
+    recall_.end(error.what());
+    return false;
+  }
+  recall_.taken();
+  start_roi_pending_ = start_roi_in_force_ = false;
+  believed_stamp_.reset();
+  reference_stamp_ = step->stamp;
+  return recall_.first();
+}
+
+tracking::TrackResult TrackerSession::track(Processed& processed, const std::optional<geometry::Rectangle>& request,
+                                            bool& new_reference) {
   const double stamp = processed.header.stamp.toSec();
-  const bool from_parameters = !request && start_roi_pending_;
+  const bool from_parameters = !request && start_roi_pending_ && recall_.due() == nullptr;
   updateLens(processed.image.size());
   if (!lens_error_.empty()) {
     if (request || from_parameters) processed.selection_error = lens_error_;
@@ -112,6 +143,9 @@ tracking::TrackResult TrackerSession::track(Processed& processed, const std::opt
       const auto result = tracker_.select(processed.image, stamp, request ? *request : *parameters_.roi);
       start_roi_pending_ = false;
       if (request) start_roi_in_force_ = false;
+      recall_.end("a region was selected");
+      ++epoch_;
+      new_reference = true;
       return result;
     } catch (const std::invalid_argument& error) {
       // The parameters' ROI stays pending: the first images of a camera may be black.
@@ -119,6 +153,7 @@ tracking::TrackResult TrackerSession::track(Processed& processed, const std::opt
     }
   }
   const bool had_roi = tracker_.hasRoi();
+  if (takeDueView(stamp)) new_reference = true;
   tracking::TrackResult result = tracker_.track(processed.image, stamp, motionBefore(processed));
   if (!lens_error_.empty() && !had_roi) result.reason = lens_error_;
   if (!processed.selection_error.empty() && result.state == tracking::State::kIdle) {
@@ -132,7 +167,44 @@ cv::Mat TrackerSession::occlusionMask() const {
   return mask.empty() ? cv::Mat(cv::Mat::zeros(image_size_, CV_8UC1)) : mask;
 }
 
+Snapshot TrackerSession::snapshot(const Processed& processed) const {
+  Snapshot result;
+  result.image = processed.image.clone();
+  result.stamp = processed.header.stamp;
+  result.camera = processed.camera;
+  result.lens = processed.lens;
+  result.epoch = epoch_;
+  const tracking::TrackResult& now = processed.result;
+  std::ostringstream why;
+  why.precision(2);
+  if (now.state != tracking::State::kTracking) {
+    why << "no view can be stored while the tracker is " << tracking::stateName(now.state) << ": " << now.reason;
+  } else if (!(now.visible_fraction >= parameters_.views.min_visible_fraction)) {
+    why << "visible fraction " << now.visible_fraction << ", expected at least "
+        << parameters_.views.min_visible_fraction << " while a view is stored";
+  } else {
+    const cv::Rect whole(cv::Point(0, 0), processed.image.size());
+    try {
+      result.roi = tracking::uprightRoi(
+          now.g, now.roi, processed.lens ? image::rectifiedBox(*processed.lens, processed.image.size()) : whole);
+    } catch (const std::invalid_argument& error) {
+      why << error.what();
+    }
+  }
+  result.roi_error = why.str();
+  return result;
+}
+
+std::string TrackerSession::recall(const RecallRoute& route) {
+  if (route.steps.empty()) return "the way to the view is empty";
+  if (route.epoch != epoch_) return "a region was selected or forgotten in the meantime";
+  recall_.begin(route.steps);
+  return "";
+}
+
 void TrackerSession::reset() {
+  recall_.end("the tracker was reset");
+  ++epoch_;
   tracker_.reset();
   believed_stamp_.reset();
   start_roi_pending_ = start_roi_in_force_ = false;

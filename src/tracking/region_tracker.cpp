@@ -41,6 +41,7 @@ class RegionTracker::Implementation {
 
   void setLens(const std::optional<image::Lens>& lens);
   TrackResult select(const cv::Mat& image, double stamp, const geometry::Rectangle& roi);
+  void recall(const cv::Mat& reference, double reference_stamp, const geometry::Rectangle& roi, double now);
   const TrackResult& track(const cv::Mat& image, double stamp, const std::optional<Eigen::Matrix3d>& motion);
   void reset();
   cv::Mat occlusionMask() const;
@@ -48,6 +49,7 @@ class RegionTracker::Implementation {
   const TrackerConfig& config() const { return config_; }
 
  private:
+  double setReference(const cv::Mat& image, double stamp, const geometry::Rectangle& wanted);
   std::optional<Eigen::Matrix3d> carriedBy(const std::optional<Eigen::Matrix3d>& motion) const;
   Attempt attempt(const cv::Mat& image, double stamp, const EsmState& start, const MotionPrior* prior);
   Attempt search(const cv::Mat& image, double stamp);
@@ -67,6 +69,7 @@ class RegionTracker::Implementation {
   cv::Size image_size_;
   double reference_stamp_ = 0.0;
   double last_stamp_ = 0.0;
+  double unseen_before_ = 0.0;              // s, from the reference until it was recalled; 0 once it was found
   EsmState last_;                           // last estimate that was believed
   std::optional<Eigen::Matrix3d> carried_;  // the same, moved as a robot says: where the last attempt started from
   TrackRecord record_;
@@ -81,8 +84,9 @@ void RegionTracker::Implementation::setLens(const std::optional<image::Lens>& le
   if (had_roi) reset_reason_ = "the lens changed since the ROI was selected: select it again";
 }
 
-TrackResult RegionTracker::Implementation::select(const cv::Mat& image, double stamp,
-                                                  const geometry::Rectangle& wanted) {
+// The expected corner error [px] of the reference with itself.
+double RegionTracker::Implementation::setReference(const cv::Mat& image, double stamp,
+                                                   const geometry::Rectangle& wanted) {
   checkImage(image);
   const geometry::Rectangle roi = checkedRoi(image, wanted, config_.min_roi_side, lens_.get());
 
@@ -91,11 +95,19 @@ TrackResult RegionTracker::Implementation::select(const cv::Mat& image, double s
   fresh.aligner_.setReference(image, roi);
   const double error = checkedCornerError(fresh.aligner_, config_.min_texture);
   fresh.search_.setReference(image, fresh.aligner_);
-  fresh.filter_.start(roi, fresh.aligner_.esm().normalisation(), stamp);
-  fresh.state_ = State::kTracking;
   fresh.image_size_ = image.size();
-  fresh.reference_stamp_ = fresh.last_stamp_ = stamp;
+  fresh.reference_stamp_ = stamp;
   *this = std::move(fresh);
+  return error;
+}
+
+TrackResult RegionTracker::Implementation::select(const cv::Mat& image, double stamp,
+                                                  const geometry::Rectangle& wanted) {
+  const double error = setReference(image, stamp, wanted);
+  const geometry::Rectangle& roi = aligner_.roi();
+  filter_.start(roi, aligner_.esm().normalisation(), stamp);
+  state_ = State::kTracking;
+  last_stamp_ = stamp;
 
   Attempt attempt;
   attempt.evidence.roi = roi;
@@ -106,6 +118,17 @@ TrackResult RegionTracker::Implementation::select(const cv::Mat& image, double s
   TrackResult result = report(attempt);
   result.selected_now = true;
   return result;
+}
+
+void RegionTracker::Implementation::recall(const cv::Mat& reference, double reference_stamp,
+                                           const geometry::Rectangle& wanted, double now) {
+  setReference(reference, reference_stamp, wanted);
+  filter_.start(aligner_.roi(), aligner_.esm().normalisation(), now);
+  filter_.stop();
+  state_ = State::kSearching;
+  last_stamp_ = now;
+  unseen_before_ = std::max(0.0, now - reference_stamp);
+  search_.restart();
 }
 
 const TrackResult& RegionTracker::Implementation::track(const cv::Mat& image, double stamp,
@@ -177,7 +200,7 @@ Attempt RegionTracker::Implementation::attempt(const cv::Mat& image, double stam
   e.predicted = start.g;
   e.from_track = prior != nullptr;
   e.last_gain = last_.gain;
-  e.unseen = stamp - filter_.lastStamp();
+  e.unseen = unseen_before_ + stamp - filter_.lastStamp();
   e.record = record_;
   e.esm = found.esm;
   e.visible_fraction = found.visible_fraction;
@@ -217,6 +240,7 @@ void RegionTracker::Implementation::decide(const Attempt& best, const MotionPrio
     filter_.update(prior, e.esm, stamp, e.visible_fraction >= kRecordVisible, carried_);
   }
   search_.confirmation().forget();
+  unseen_before_ = 0.0;
   last_ = e.esm.state;
 }
 
@@ -285,6 +309,10 @@ void RegionTracker::setLens(const std::optional<image::Lens>& lens) { implementa
 
 TrackResult RegionTracker::select(const cv::Mat& image, double stamp, const geometry::Rectangle& roi) {
   return implementation_->select(image, stamp, roi);
+}
+void RegionTracker::recall(const cv::Mat& reference, double reference_stamp, const geometry::Rectangle& roi,
+                           double now) {
+  implementation_->recall(reference, reference_stamp, roi, now);
 }
 const TrackResult& RegionTracker::track(const cv::Mat& image, double stamp,
                                         const std::optional<Eigen::Matrix3d>& motion) {

@@ -4,6 +4,7 @@
 #include <diagnostic_updater/DiagnosticStatusWrapper.h>
 
 #include <cstdint>
+#include <mutex>
 #include <optional>
 #include <string>
 
@@ -20,6 +21,8 @@ class TrackerDiagnostics {
   void processed(double now, const Processed& processed, bool ignores_distortion);
   // An image came that could not be used.
   void refused(double now, const std::string& error);
+  // A view could not be recalled; empty: it could. From any thread.
+  void recallRefused(const std::string& why);
 
   // Level: OK while idle or tracking, WARN while searching, without images, or without intrinsics, ERROR when lost or
   // when the newest image could not be used. Rate and times are those since the last call.
@@ -27,6 +30,7 @@ class TrackerDiagnostics {
 
  private:
   void summarise(double now, diagnostic_updater::DiagnosticStatusWrapper& status) const;
+  std::string recall() const;
   std::string colourGate() const;
   std::string robotMotion() const;
 
@@ -47,6 +51,9 @@ class TrackerDiagnostics {
   std::uint64_t images_ = 0;
   std::uint64_t refused_ = 0;
   std::optional<double> last_image_;
+  std::string recall_ = "none";
+  mutable std::mutex recall_mutex_;
+  std::string recall_refusal_;  // of the newest request, empty when it was fine
   std::string refusal_;  // of the newest image, empty when it was fine
   std::string last_refusal_;
   std::string last_reset_;

@@ -11,6 +11,7 @@
 #include "laparoscope_servo/ros/camera_info.h"
 #include "laparoscope_servo/ros/robot_motion.h"
 #include "laparoscope_servo/tracking/tracker_config.h"
+#include "laparoscope_servo/tracking/view_config.h"
 
 namespace laparoscope_servo::skin {
 
@@ -19,11 +20,13 @@ struct TrackerParameters {
   std::optional<geometry::Rectangle> roi;  // px, selected in the first image
   ImageKind image_kind = ImageKind::kRaw;
   RobotMotionConfig robot_motion;
-  double select_timeout = 5.0;  // s, 0.1 to 60: how long the service select_roi waits for an image
+  tracking::ViewConfig views;
+  double select_timeout = 5.0;  // s, 0.1 to 60: how long a service waits for an image
 };
 
 // Reads `tree`, called `name` in errors; what is absent keeps its default. Every error is appended to `errors`: the
-// result may be used only when there is none. A parameter under tracking/ that does not exist is an error, too.
+// result may be used only when there is none. A parameter under tracking/ or views/ that does not exist is an error,
+// too.
 TrackerParameters readTrackerParameters(const XmlRpc::XmlRpcValue& tree, const std::string& name,
                                         std::vector<std::string>& errors);
 

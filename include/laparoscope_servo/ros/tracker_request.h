@@ -1,28 +1,36 @@
-// Hands a request for a ROI from the thread of a service to the thread of the images, and the answer back.
+// Hands a request from the thread of the services to the thread of the images, and the answer back.
 #pragma once
 
 #include <condition_variable>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <variant>
 
 #include "laparoscope_servo/geometry/homography.h"
+#include "laparoscope_servo/ros/view_recall.h"
 
 namespace laparoscope_servo::skin {
 
-class RoiRequest {
+class TrackerRequest {
  public:
+  struct WantSnapshot {};  // of the next image
+  // A ROI to select in the next image, a snapshot, or a way to follow from the next image on.
+  using Question = std::variant<geometry::Rectangle, WantSnapshot, RecallRoute>;
+
   struct Answer {
     bool success = false;
     std::string message;
+    std::shared_ptr<const Snapshot> snapshot = nullptr;  // to WantSnapshot
   };
 
   // Service: waits until the image thread has answered, at most `timeout` s (steady clock) until it takes the request;
   // without an answer `timeout_message` says so. One at a time: others wait for their turn.
-  Answer ask(const geometry::Rectangle& roi, double timeout, const std::string& timeout_message);
+  Answer ask(const Question& question, double timeout, const std::string& timeout_message);
 
   // Images: the request, if one waits; whoever takes it has to answer.
-  std::optional<geometry::Rectangle> take();
+  std::optional<Question> take();
   void answer(const Answer& answer);
 
   // Ends all waiting, now and later, e.g. because the node shuts down.
@@ -32,7 +40,7 @@ class RoiRequest {
   std::mutex turn_;
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::optional<geometry::Rectangle> waiting_;
+  std::optional<Question> waiting_;
   std::optional<Answer> answer_;
   bool taken_ = false;
   bool closed_ = false;

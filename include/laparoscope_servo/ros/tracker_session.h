@@ -7,6 +7,7 @@
 #include <sensor_msgs/Image.h>
 #include <std_msgs/Header.h>
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <opencv2/core.hpp>
@@ -17,6 +18,7 @@
 #include "laparoscope_servo/geometry/homography.h"
 #include "laparoscope_servo/ros/camera_info.h"
 #include "laparoscope_servo/ros/tracker_parameters.h"
+#include "laparoscope_servo/ros/view_recall.h"
 #include "laparoscope_servo/tracking/region_tracker.h"
 
 namespace laparoscope_servo::skin {
@@ -38,6 +40,7 @@ struct Processed {
   bool motion_wanted = false;                     // the camera's motion was asked for
   std::string motion_error;                       // why it was not given
   std::string selection_error;                    // a ROI should have been selected in this image and was not: why
+  std::string recall = "none";                    // of a stored view: see ViewRecall::text
   double processing_time = 0.0;                   // s, from the decoded image to the result
 };
 
@@ -67,7 +70,14 @@ class TrackerSession {
   Processed process(const cv::Mat& decoded, const std_msgs::Header& header,
                     const std::optional<geometry::Rectangle>& request = std::nullopt);
 
-  // Forgets the ROI, also that of the parameters.
+  // What was processed last, with the tracked ROI where it is now: the picture as the surgeon sees it.
+  Snapshot snapshot(const Processed& processed) const;
+  // From the next image on: each view of the way is the reference until it has been reached; the last one stays.
+  // Returns why not: something else was selected, or the session was reset, after the image that the way was planned
+  // from.
+  std::string recall(const RecallRoute& route);
+
+  // Forgets the ROI, also that of the parameters, and ends a recall.
   void reset();
 
   // Of the image processed last, with its size: see tracking::RegionTracker. All 0 while no ROI is selected.
@@ -77,13 +87,17 @@ class TrackerSession {
   const TrackerParameters& parameters() const { return parameters_; }
 
  private:
-  tracking::TrackResult track(Processed& processed, const std::optional<geometry::Rectangle>& request);
+  tracking::TrackResult track(Processed& processed, const std::optional<geometry::Rectangle>& request,
+                              bool& new_reference);
+  bool takeDueView(double stamp);
   void updateLens(const cv::Size& size);
   std::optional<Eigen::Matrix3d> motionBefore(Processed& processed) const;
   void complete(Processed& processed, const std::optional<geometry::Rectangle>& request);
 
   TrackerParameters parameters_;
   tracking::RegionTracker tracker_;
+  ViewRecall recall_;
+  std::uint64_t epoch_ = 0;  // selections and resets until now
   Intrinsics intrinsics_;
   LensSource lens_source_;
   std::shared_ptr<const image::Lens> lens_;  // in force

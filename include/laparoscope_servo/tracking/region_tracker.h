@@ -67,6 +67,11 @@ class RegionTracker {
   // too small, mostly outside the image or without texture; the tracker then goes on as before.
   TrackResult select(const cv::Mat& image, double stamp, const geometry::Rectangle& roi);
 
+  // Takes an older image for the reference, whose ROI is then to be found in the images that come: SEARCHING, as after
+  // a loss, since `now`, the stamp [s] of the next image or of one before it. `reference_stamp` may lie any time
+  // before. Throws as select() does, and leaves the tracker as it was.
+  void recall(const cv::Mat& reference, double reference_stamp, const geometry::Rectangle& roi, double now);
+
   // Processes the next image. A stamp before the last one, or an image of another size than the reference, resets to
   // IDLE, with the reason. Throws std::invalid_argument for an image that is empty or of another type than those above;
   // the tracker then goes on as if the image had not come. `motion`: where something else than the images, a robot,

@@ -8,6 +8,7 @@
 #include <laparoscope_servo/AreaSelection.h>
 #include <laparoscope_servo/Homography.h>
 #include <laparoscope_servo/SelectRoi.h>
+#include <laparoscope_servo/StoredView.h>
 #include <laparoscope_servo/TaskError.h>
 #include <ros/ros.h>
 #include <sensor_msgs/CameraInfo.h>
@@ -117,6 +118,18 @@ class CameraBench {
     call.request.roi.width = static_cast<std::uint32_t>(roi.width);
     call.request.roi.height = static_cast<std::uint32_t>(roi.height);
     const std::string name = node_.resolveName("tracker/select_roi");
+    return std::async(std::launch::async, [call, name]() mutable {
+      ros::service::waitForService(name, 10000);
+      if (!ros::service::call(name, call)) call.response.message = "the service call failed";
+      return call.response;
+    });
+  }
+
+  // The same for store_view and recall_view.
+  std::future<StoredViewResponse> askForView(const std::string& service, const std::string& view) {
+    StoredView call;
+    call.request.name = view;
+    const std::string name = node_.resolveName("tracker/" + service);
     return std::async(std::launch::async, [call, name]() mutable {
       ros::service::waitForService(name, 10000);
       if (!ros::service::call(name, call)) call.response.message = "the service call failed";

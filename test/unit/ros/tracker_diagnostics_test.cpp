@@ -156,5 +156,27 @@ TEST(TrackerDiagnosticsTest, SaysWhoTakesTheLensOut) {
   EXPECT_EQ(value(status, "lens distortion"), "corrected by the tracker");
 }
 
+TEST(TrackerDiagnosticsTest, SaysWhichViewIsRecalledAndWhyTheLastOneWasNot) {
+  TrackerDiagnostics diagnostics{tracking::TrackerConfig()};
+  diagnostics.processed(1.0, processed(State::kTracking), false);
+  DiagnosticStatusWrapper without;
+  diagnostics.fill(1.1, without);
+  EXPECT_EQ(value(without, "recall"), "none");
+  EXPECT_EQ(without.message, "TRACKING");
+  Processed going = processed(State::kTracking);
+  going.recall = "going to view 'liver'";
+  diagnostics.processed(2.0, going, false);
+  diagnostics.recallRefused("view 'bile duct': not stored");
+  DiagnosticStatusWrapper status;
+  diagnostics.fill(2.1, status);
+  EXPECT_EQ(status.level, DiagnosticStatus::OK);
+  EXPECT_EQ(status.message, "TRACKING; going to view 'liver'");
+  EXPECT_EQ(value(status, "recall"), "going to view 'liver'; last request refused: view 'bile duct': not stored");
+  diagnostics.recallRefused("");
+  DiagnosticStatusWrapper after;
+  diagnostics.fill(2.2, after);
+  EXPECT_EQ(value(after, "recall"), "going to view 'liver'");
+}
+
 }  // namespace
 }  // namespace laparoscope_servo::skin

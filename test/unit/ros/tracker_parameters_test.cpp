@@ -38,6 +38,10 @@ TEST(DefaultFile, EqualsTheDefaultsOfTheStructs) {
   EXPECT_EQ(file.robot_motion.enabled, code.robot_motion.enabled);
   EXPECT_EQ(file.robot_motion.fixed_frame, code.robot_motion.fixed_frame);
   EXPECT_EQ(file.robot_motion.depth, code.robot_motion.depth);
+  EXPECT_EQ(file.views.capacity, code.views.capacity);
+  EXPECT_EQ(file.views.min_visible_fraction, code.views.min_visible_fraction);
+  EXPECT_EQ(file.views.arrival_centre, code.views.arrival_centre);
+  EXPECT_EQ(file.views.arrival_scale, code.views.arrival_scale);
   const tracking::TrackerConfig& f = file.tracking;
   const tracking::TrackerConfig& c = code.tracking;
   EXPECT_EQ(f.velocity_damping, c.velocity_damping);
@@ -74,6 +78,10 @@ TEST(DefaultFile, NamesEveryParameter) {
                            "robot_motion/fixed_frame",
                            "robot_motion/depth",
                            "select_timeout",
+                           "views/capacity",
+                           "views/min_visible_fraction",
+                           "views/arrival_centre",
+                           "views/arrival_scale",
                            "tracking/velocity_damping",
                            "tracking/min_roi_side",
                            "tracking/min_texture",
@@ -148,6 +156,19 @@ TEST(TrackerParametersTest, NameWhatIsWrongWithTheRobotsMotion) {
   const std::vector<std::string> errors = errorsOf(tree);
   EXPECT_EQ(errors.size(), 3u) << errorReport(errors);
   for (const char* field : {"fixed_frame", "robot_motion/depth", "robot_motion/dept"})
+    EXPECT_TRUE(mentions(errors, field)) << field;
+}
+
+TEST(TrackerParametersTest, NameWhatIsWrongWithTheViews) {
+  XmlRpc::XmlRpcValue tree;
+  tree["views"]["capacity"] = 0;
+  tree["views"]["min_visible_fraction"] = 1.5;
+  tree["views"]["arrival_centre"] = -1.0;
+  tree["views"]["arrival_scale"] = 0.0;
+  tree["views"]["arrival"] = 1.0;
+  const std::vector<std::string> errors = errorsOf(tree);
+  EXPECT_EQ(errors.size(), 5u) << errorReport(errors);
+  for (const char* field : {"capacity", "min_visible_fraction", "arrival_centre", "arrival_scale", "views/arrival"})
     EXPECT_TRUE(mentions(errors, field)) << field;
 }
 

@@ -1,0 +1,21 @@
+// What can be set of stored views. Defaults are those of config/tracker.yaml.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace laparoscope_servo::tracking {
+
+struct ViewConfig {
+  int capacity = 32;  // 1 to 256 views
+  double min_visible_fraction =
+      0.5;  // 0 to 1, of the region while a view is stored: an instrument is no part of a view
+  // When a recall goes on from a view on the way to the next one.
+  double arrival_centre = 20.0;  // px, 0.1 to 10000: distance of the region's centre from its place in the view
+  double arrival_scale = 0.1;    // 0.001 to 1: relative difference between the region's scale and that in the view
+};
+
+// Every error, each naming the field, its value and what was expected. Empty when the configuration can be used.
+std::vector<std::string> validate(const ViewConfig& config);
+
+}  // namespace laparoscope_servo::tracking
