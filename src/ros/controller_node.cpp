@@ -17,7 +17,7 @@ constexpr double kClockCorrection = 0.1;
 
 constexpr double kWarningPeriod = 5.0;  // s
 // s. A velocity that was measured so long before, or after, has no place among the commands.
-constexpr double kOldestReport = 1.0;
+constexpr double kOldestReport = 0.3;
 
 double steadyNow() {
   return ros::SteadyTime::now().toSec();
@@ -75,6 +75,8 @@ void ControllerNode::onTaskError(const TaskError& message) {
   const bool counts = controller_.task() == servo::Task::kHoldView;
   if (arrival == StampWatch::Arrival::kBack && counts) clock_jump_ = "stamps of the task error jumped back";
   task_error_ = fromMessage(message);
+  // Once for each image: the two clocks need not agree on it later.
+  task_error_.image_time = steadyNow() - task_error_watch_.stampAge(ros::Time::now());
 }
 
 // A message without a stamp counts from when it came: whoever sends it repeats it.
@@ -116,7 +118,7 @@ bool ControllerNode::onSelectTask(SelectTask::Request& request, SelectTask::Resp
 // Only the delay is measured with it: what is missing or wrong here is left out.
 void ControllerNode::onMeasuredVelocity(const geometry_msgs::TwistStamped& message) {
   const double age = (ros::Time::now() - message.header.stamp).toSec();
-  if (message.header.stamp.isZero() || !(std::abs(age) < kOldestReport)) return;
+  if (message.header.stamp.isZero() || !(age > -kClockCorrection && age < kOldestReport)) return;
   try {
     const auto rotation = tf_.lookupTransform(config_.shaft, message.header.frame_id, ros::Time(0)).transform.rotation;
     robot_report_.velocity = fromTwist(message.twist, Eigen::Quaterniond(rotation.w, rotation.x, rotation.y, rotation.z).normalized());
@@ -208,7 +210,7 @@ servo::DepthInput ControllerNode::depth(double steady_now) {
           "tf from " + config_.camera + " to " + config_.insertion_point + " is static, expected the robot's";
       return depth;
     }
-    depth_watch_.arrived(transform.header.stamp, steady_now);
+    depth.pose_is_new = depth_watch_.arrived(transform.header.stamp, steady_now) != StampWatch::Arrival::kRepeated;
     const ros::Time now = ros::Time::now();
     depth.age = depth_watch_.age(now, steady_now);
     if (depth_watch_.isAhead(now, config_.control.safety.max_depth_age)) {
@@ -225,7 +227,7 @@ servo::DepthInput ControllerNode::depth(double steady_now) {
 void ControllerNode::publish(const servo::ControllerOutput& output) {
   ScopeVelocity command = toMessage(output.command);
   command.header.stamp = ros::Time::now();
-  command.header.frame_id = config_.camera;
+  command.header.frame_id = config_.shaft;
   command_publisher_.publish(command);
   const bool changed =
       output.state != last_output_.state || output.reason != last_output_.reason || output.task != last_output_.task;

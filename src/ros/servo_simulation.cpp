@@ -71,6 +71,7 @@ class Loop {
       images_.pop_front();
     }
     input.task_error = latest_.second;
+    input.task_error.image_time = latest_.first;
     input.task_error.age = input.task_error.image_age = std::max(0.0, time - latest_.first);
     input.robot = {"", true, 0.0};
     input.dead_man = {true, 0.0};

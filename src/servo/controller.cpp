@@ -56,10 +56,10 @@ SafetyFacts Controller::facts(const ControllerInput& input) const {
   return facts;
 }
 
-// What is estimated takes the place of the calibration where the poses tell it.
+// What is estimated takes the place of the calibration, which is its prior: where the poses tell nothing, they agree.
 double Controller::d2(const ControllerInput& input) const {
   const InsertionPointEstimate& estimate = insertion_point_.estimate();
-  if (!config_.insertion_point.use || !input.depth.insertion_point_T_tip || !(estimate.valid && estimate.observable)) return input.depth.d2;
+  if (!config_.insertion_point.use || !input.depth.insertion_point_T_tip || !estimate.valid) return input.depth.d2;
   const Eigen::Isometry3d& tip = *input.depth.insertion_point_T_tip;
   return shaftDepth(estimate, {tip.translation(), tip.linear().col(2)}, 0.0).d2;
 }
@@ -99,7 +99,12 @@ std::string Controller::problem(const ControllerInput& input) const {
 
 ControllerOutput Controller::update(const ControllerInput& input) {
   if (input.robot_report.present) servo_.report(input.time - input.robot_report.age, input.robot_report.velocity);
-  if (config_.insertion_point.use && input.depth.problem.empty() && input.depth.insertion_point_T_tip) {
+  if (!input.clock_jump.empty()) insertion_point_.reset();
+  // A pose that is told again says nothing new, and one of a scope that is not in the body nothing at all.
+  const bool poses_count = input.depth.problem.empty() && input.depth.pose_is_new && input.depth.d2 > 0.0 &&
+                           input.depth.age <= config_.safety.max_depth_age &&
+                           input.depth.lateral_offset <= config_.safety.max_lateral_offset;
+  if (config_.insertion_point.use && poses_count && input.depth.insertion_point_T_tip) {
     const Eigen::Isometry3d& tip = *input.depth.insertion_point_T_tip;
     insertion_point_.update(input.time, {tip.translation(), tip.linear().col(2)});
   }
@@ -127,6 +132,9 @@ ControllerOutput Controller::update(const ControllerInput& input) {
   if (output.caution.empty() && safety.state == ControllerState::kServo && servo_.atBound()) {
     output.caution = "the scope is at a bound of its range: depths or cone";
   }
+  if (output.caution.empty() && safety.state == ControllerState::kServo && servo_.blocked()) {
+    output.caution = "the robot does not do what it is told";
+  }
   output.speed_scale = safety.speed_scale;
   if (safety.state == ControllerState::kServo && task_ == Task::kManual) {
     const std::string problem = manualProblem(input.manual);
@@ -138,7 +146,7 @@ ControllerOutput Controller::update(const ControllerInput& input) {
 ServoInput Controller::servoInput(const ControllerInput& input) const {
   ServoInput servo;
   servo.time = input.time;
-  servo.image_time = input.time - input.task_error.image_age;
+  servo.image_time = input.task_error.image_time.value_or(input.time - input.task_error.image_age);
   servo.error = input.task_error.error;
   servo.scope = {input.depth.camera_R_shaft, d2(input)};
   servo.insertion_point_T_tip = input.depth.insertion_point_T_tip;

@@ -34,7 +34,9 @@ TaskError moved(const TaskError& error, const Eigen::Vector4d& displacement, con
 
   TaskError result = error;
   if (!(seen.z() > 0.0)) {
-    result.x = result.y = result.log_depth = std::numeric_limits<double>::quiet_NaN();
+    result.x = result.y = result.log_depth = result.alpha = std::numeric_limits<double>::quiet_NaN();
+    result.e_v.setConstant(result.x);
+    result.e_w.setConstant(result.x);
     return result;
   }
   result.x = seen.x() / seen.z();

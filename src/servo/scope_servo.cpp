@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 
 #include "laparoscope_servo/servo/feature_law.h"
 #include "laparoscope_servo/servo/horizon.h"
@@ -12,6 +13,8 @@ namespace laparoscope_servo::servo {
 
 namespace {
 
+constexpr double kSameImage = 1e-6;  // s, rounding
+constexpr double kBlocked = 0.3;     // s, for which the robot does not do what it was told
 constexpr double kHistory = 5.0;  // s, more than the oldest image and the longest delay
 
 std::unique_ptr<ControlLaw> lawOf(const ControllerConfig& config) {
@@ -84,22 +87,45 @@ void ScopeServo::remember(double time, const ScopeVelocity& executed) {
   delay_.command(time, executed);
 }
 
-void ScopeServo::report(double time, const ScopeVelocity& velocity) { delay_.report(time, velocity); }
+void ScopeServo::report(double time, const ScopeVelocity& velocity) {
+  delay_.report(time, velocity);
+  const Eigen::Vector4d told = history_.velocity(time, delay()), done = velocity.vector();
+  bool differs = false;
+  for (int k = 0; k < 4; ++k) {
+    const bool fast = std::abs(told[k]) > 2.0 * config_.dead_zone.width.vector()[k] && told[k] != 0.0;
+    differs |= fast && !(done[k] * told[k] > 0.25 * told[k] * told[k]);
+  }
+  if (!differs || time < blocked_since_) blocked_since_ = time;
+  blocked_ = time - blocked_since_ > kBlocked;
+}
 
 // With the picture's orientation in the place of the ROI's, where that is what is servoed.
 TaskError ScopeServo::oriented(const ServoInput& input) const {
   TaskError error = input.error;
-  if (config_.spin != SpinMode::kUpright) return error;
+  if (config_.spin == SpinMode::kServo) return error;
   error.alpha = error.desired_alpha = 0.0;
   error.e_w.setZero();
-  if (!input.insertion_point_T_tip) return error;
+  if (config_.spin == SpinMode::kReleased || !input.insertion_point_T_tip) return error;
   const Eigen::Vector3d up(config_.horizon.up[0], config_.horizon.up[1], config_.horizon.up[2]);
   const Eigen::Matrix3d camera_R_base = input.scope.camera_R_shaft * input.insertion_point_T_tip->linear().transpose();
   error.alpha = horizonAngle(camera_R_base * up).value_or(0.0);
   return error;
 }
 
+// The scope's velocity that goes along with the target's.
+ScopeVelocity ScopeServo::following(const Features& velocity) const {
+  if (config_.spin != SpinMode::kReleased) return ScopeVelocity::fromVector(jacobian_.inverse() * velocity);
+  Eigen::Matrix3d without_spin;
+  without_spin << jacobian_.block<3, 2>(0, 0), jacobian_.block<3, 1>(0, 3);
+  const Eigen::Vector3d v = without_spin.inverse() * velocity.head<3>();
+  return {v[0], v[1], 0.0, v[2]};
+}
+
 void ScopeServo::observe(const ServoInput& input) {
+  const Eigen::Vector2d desired(input.error.desired_x, input.error.desired_y);
+  if (has_image_ && (desired != desired_ || input.error.m_star != m_star_)) restart(input.time);  // another region was selected
+  desired_ = desired;
+  m_star_ = input.error.m_star;
   error_ = oriented(input);
   if (!has_image_) {
     jacobian_ = featureJacobian(input.error.desired_x, input.error.desired_y, config_.features.desired_depth, input.scope);
@@ -113,12 +139,13 @@ void ScopeServo::observe(const ServoInput& input) {
   oscillation_.update(image_time_, error_);
   if (!to_target_.allFinite()) return;
   const Features place = jacobian_ * (displacement_ + to_target_);
-  if (breathing_.observe(image_time_, place)) target_.reset();
+  // A scope that does not go where it was told to makes a target that stands look as if it went along.
+  if (breathing_.observe(image_time_, place) || blocked_) target_.reset();
   target_.observe(image_time_, place - breathing_.predict(image_time_).place, jacobian_ * executed);
 }
 
 ScopeVelocity ScopeServo::command(const ServoInput& input, const ServoLimits& limits) {
-  if (!has_image_ || input.image_time > image_time_) observe(input);
+  if (!has_image_ || std::abs(input.image_time - image_time_) > kSameImage) observe(input);
   TaskError error = error_;
   ScopeVelocity follow;
   if (config_.predictor.enabled && to_target_.allFinite() && !target_.empty()) {
@@ -131,8 +158,11 @@ ScopeVelocity ScopeServo::command(const ServoInput& input, const ServoLimits& li
     // A loop that has swung may have been driven by what it took for the target's motion, and was its own. A breath is not.
     Features velocity = breath.velocity;
     if (!(gainFactor() < 1.0)) velocity += target.velocity;
-    if (config_.predictor.feed_forward) follow = ScopeVelocity::fromVector(inverse * velocity);
+    if (config_.predictor.feed_forward) follow = following(velocity);
+  } else if (config_.predictor.enabled) {  // how far it is to the target is not known, but what is under way is
+    error = moved(error, history_.displacement(image_time_, input.time + delay(), delay()), input.scope, config_.features.desired_depth);
   }
+  if (!follow.vector().allFinite()) return follow;
   const bool follows = follow.vector() != Eigen::Vector4d::Zero();
   const LawVelocity wanted = law_->velocity(follows ? error : band_.apply(error, input.time), input.scope);
   if (!wanted.sum().vector().allFinite()) return wanted.sum();

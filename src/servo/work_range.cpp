@@ -29,7 +29,10 @@ ScopeVelocity within(const WorkRange& range, const ScopeVelocity& velocity, doub
   const double angle = std::acos(std::clamp(there.z(), -1.0, 1.0));
   // z moves by (pan, -tilt) in x and y. Outwards is away from the cone's axis; on the axis everything is, and there is room.
   const Eigen::Vector2d outwards = -there.head<2>();
-  if (!(outwards.norm() > 1e-9)) return result;
+  if (!(outwards.norm() > 1e-9)) {
+    if (!(there.z() > 0.0)) result.pan = result.tilt = 0.0;  // it looks out of the body, or nobody knows where
+    return result;
+  }
   const Eigen::Vector2d out = outwards.normalized();
   Eigen::Vector2d motion(result.pan, -result.tilt);
   const double speed = motion.dot(out);

@@ -27,6 +27,7 @@ struct TaskErrorInput {
   TaskError error;
   double age = std::numeric_limits<double>::infinity();           // s, since the message came
   double image_age = std::numeric_limits<double>::infinity();     // s, since the image was taken
+  std::optional<double> image_time;                               // s, when that was, on the clock of ControllerInput::time
   double visible_fraction = 0.0;                                  // 0 to 1, of the region of interest
   double corner_error = std::numeric_limits<double>::infinity();  // px, expected of the worst corner
 };
@@ -37,6 +38,7 @@ struct DepthInput {
   Eigen::Matrix3d camera_R_shaft = Eigen::Matrix3d::Identity();  // the optics, see scope_geometry.h
   // Where the shaft's tip is in the insertion point's frame, with the shaft's axes; nothing: not known.
   std::optional<Eigen::Isometry3d> insertion_point_T_tip;
+  bool pose_is_new = true;  // not the one of the last step again
   double lateral_offset = 0.0;                  // m, of the insertion point from the shaft
   double age = 0.0;                             // s
 };

@@ -63,6 +63,9 @@ class ScopeServo {
   // The last command was cut at a bound of the range.
   bool atBound() const { return at_bound_; }
 
+  // The robot says that it does not do what it was told.
+  bool blocked() const { return blocked_; }
+
   // s, from a command to its execution.
   double delay() const { return config_.predictor.measure_delay ? delay_.delay() : config_.predictor.delay; }
 
@@ -70,6 +73,7 @@ class ScopeServo {
   void observe(const ServoInput& input);
   ScopeVelocity send(const ServoInput& input, ScopeVelocity velocity);
   void forgetTarget();
+  ScopeVelocity following(const Features& velocity) const;
   TaskError oriented(const ServoInput& input) const;
   void remember(double time, const ScopeVelocity& executed);
 
@@ -86,6 +90,10 @@ class ScopeServo {
   TaskError error_;          // in it
   bool has_image_ = false;
   bool at_bound_ = false;
+  bool blocked_ = false;
+  double blocked_since_ = 0.0;  // s
+  Eigen::Vector2d desired_ = Eigen::Vector2d::Zero();  // of the region that is servoed, and below
+  Eigen::Vector3d m_star_ = Eigen::Vector3d::Zero();
   Eigen::Matrix4d jacobian_ = Eigen::Matrix4d::Identity();  // of the features at the reference, see target_motion.h
   Eigen::Vector4d displacement_ = Eigen::Vector4d::Zero();  // of the scope at the last image, since the first
   Eigen::Vector4d to_target_ = Eigen::Vector4d::Zero();     // in the last image

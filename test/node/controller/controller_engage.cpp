@@ -88,7 +88,7 @@ TEST_F(ControllerEngage, FollowsOnceEngagedAndStopsWhenDisengaged) {
   EXPECT_GT(command.tilt, 0.0);
   EXPECT_LT(command.spin, 0.0);
   EXPECT_GT(command.insertion, 0.0);
-  EXPECT_EQ(command.header.frame_id, "laparoscope_optical");
+  EXPECT_EQ(command.header.frame_id, "scope_tip");
   EXPECT_FALSE(command.header.stamp.isZero());
   EXPECT_EQ(cart_.state().reason, "engaged, nothing is missing");
   bool success = false;

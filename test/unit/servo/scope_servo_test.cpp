@@ -228,6 +228,67 @@ TEST(ScopeServo, FollowsFromWhereItWasDriven) {
   EXPECT_LT(overshoot, 0.002);  // 0.02 when it is not
 }
 
+// The image turns, the tissue goes along: a released scope does not spin, with any optics.
+TEST(ScopeServo, ReleasedItNeverSpins) {
+  ControllerConfig config;
+  config.spin = SpinMode::kReleased;
+  ScopeServo servo(config);
+  bool moved_at_all = false;
+  for (int k = 0; k < 300; ++k) {
+    ServoInput input;
+    input.time = input.image_time = 0.04 * k;
+    input.period = 0.04;
+    input.scope = {obliqueOptics(0.5236), 0.1};
+    input.error.x = 0.002 * k;
+    input.error.alpha = 0.004 * k;
+    const ScopeVelocity command = servo.command(input, ServoLimits());
+    ASSERT_EQ(command.spin, 0.0) << k;
+    moved_at_all |= command.pan != 0.0;
+  }
+  EXPECT_TRUE(moved_at_all);
+}
+
+// An arm that is held: what it was told is not taken for the target's motion when it goes on.
+TEST(ScopeServo, KnowsARobotThatDoesNotMove) {
+  ScopeServo servo{ControllerConfig()};
+  ServoInput input;
+  input.scope = straight();
+  input.error.x = 0.05;
+  for (int k = 0; k < 100; ++k) {
+    input.time = input.image_time = 0.02 * k;
+    input.period = 0.02;
+    servo.report(input.time, ScopeVelocity());
+    servo.command(input, ServoLimits());
+  }
+  EXPECT_TRUE(servo.blocked());
+  Loop loop(ControllerConfig(), 0.16);
+  loop.loop.offset({0.1, 0.0, 0.0, 0.0});
+  for (int k = 0; k < 100; ++k) {
+    loop.step(true);
+    ASSERT_FALSE(loop.servo.blocked()) << k;
+  }
+}
+
+// Another region is selected while the scope moves: it starts from rest.
+TEST(ScopeServo, AnotherRegionStartsFromRest) {
+  ScopeServo servo{ControllerConfig()};
+  ServoInput input;
+  input.scope = straight();
+  input.error.x = 0.3;
+  double fast = 0.0;
+  for (int k = 0; k < 50; ++k) {
+    input.time = input.image_time = 0.02 * k;
+    input.period = 0.02;
+    fast = servo.command(input, ServoLimits()).pan;
+  }
+  EXPECT_GT(std::abs(fast), 0.05);
+  input.time = input.image_time = 1.0;
+  input.error.desired_x = 0.25;
+  input.error.m_star.x() = 0.25;
+  const double limit = 0.02 * Limits().acceleration.pan + DeadZoneConfig().width.pan;
+  EXPECT_LE(std::abs(servo.command(input, ServoLimits()).pan), limit * (1.0 + 1e-9));
+}
+
 TEST(ScopeServo, WhatIsNotFiniteComesOutSo) {
   ScopeServo servo{ControllerConfig()};
   ServoInput input;

@@ -52,6 +52,14 @@ TEST(WorkRange, KeepsTheShaftInTheCone) {
   }
 }
 
+TEST(WorkRange, DoesNotTurnWhereItLooksOutOfTheBodyOrNobodyKnowsWhere) {
+  const ScopeVelocity velocity{0.1, 0.1, 0.1, 0.0};
+  const Eigen::Matrix3d out = Eigen::Matrix3d::Identity();  // against the axis
+  EXPECT_EQ(within(WorkRange(), velocity, 0.1, out).vector(), Eigen::Vector4d(0.0, 0.0, 0.1, 0.0));
+  const Eigen::Matrix3d unknown = Eigen::Matrix3d::Constant(std::nan(""));
+  EXPECT_EQ(within(WorkRange(), velocity, 0.1, unknown).pan, 0.0);
+}
+
 TEST(WorkRange, LetsBackFromOutsideTheConeAndAlongIt) {
   WorkRange range;
   range.cone = 0.5;
