@@ -34,6 +34,11 @@ std::string text(const Parts&... parts) {
   return stream.str();
 }
 
+bool isOfTracker(Condition condition) {
+  return condition == Condition::kTrackerUnusable || condition == Condition::kTrackerSilent ||
+         condition == Condition::kImageOld || condition == Condition::kTrackerInvalid || condition == Condition::kOccluded;
+}
+
 std::string when(bool holds, const std::string& reason) {
   return holds ? reason : std::string();
 }
@@ -103,7 +108,9 @@ void SafetyMachine::enter(const SafetyTransition& transition, const std::string&
   if (transition.to == State::kHold && state_ != State::kHold) {
     hold_since_ = facts.time;
     held_region_ = facts.tracker.region;
+    held_for_arm_ = false;
   }
+  if (transition.to == State::kHold && !isOfTracker(transition.condition)) held_for_arm_ = true;
   const bool needs_somebody = transition.to == State::kLost || transition.to == State::kFault;
   reason_ = needs_somebody ? cause + "; " + transition.way_on : cause;
   state_ = transition.to;
@@ -139,8 +146,8 @@ std::string SafetyMachine::cause(SafetyCondition condition, const SafetyFacts& f
     case Condition::kHeldTooLong:
       return when(facts.time - hold_since_ >= c.resume_time, text("held for ", c.resume_time, " s: ", reason_));
     case Condition::kRegionChanged:
-      return when(held_region_ && tracker.region && *tracker.region != *held_region_,
-                  "another region was selected during a hold");
+      return when(held_for_arm_ && held_region_ && tracker.region && *tracker.region != *held_region_,
+                  "another region was selected while the arm was waited for");
     case Condition::kRobotSilent:
       if (!c.robot_required) return "";
       if (!robot.problem.empty()) return robot.problem;

@@ -5,8 +5,8 @@
 //   SERVO  the only state in which the scope moves
 //   HOLD   engaged, but something that motion relies on is missing for now; goes on by itself when it comes back within
 //          `resume_time`, so that an instrument may cross the region
-//   LOST   was missing for longer, or what comes back is another region: engaged no more, somebody has to look at the
-//          arm and engage again
+//   LOST   was missing for longer, or another region was selected while it was the arm that was waited for: engaged no
+//          more, somebody has to look at the arm and engage again
 //   FAULT  something that must not be: only disengaging clears it
 //
 // Whatever is not SERVO commands exactly zero, at once. One table holds all transitions, see safetyTransitions(). Pure:
@@ -153,6 +153,7 @@ class SafetyMachine {
   double last_time_ = 0.0;   // s, of the last step while engaged
   double hold_since_ = 0.0;  // s
   std::optional<double> held_region_;
+  bool held_for_arm_ = false;  // not for the tracker alone, which says nothing while it learns another region
 };
 
 }  // namespace laparoscope_servo::servo

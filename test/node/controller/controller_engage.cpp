@@ -101,12 +101,12 @@ TEST_F(ControllerEngage, HoldsWhenTheTrackerLosesAndResumes) {
 }
 
 // A region that somebody selects while the scope is held is not followed by itself.
-TEST_F(ControllerEngage, AnotherRegionDuringAHoldIsLost) {
+TEST_F(ControllerEngage, AnotherRegionWhileTheArmIsWaitedForIsLost) {
   engageAndMove();
-  cart_.set([](Feed& feed) { feed.message.valid = false; });
+  cart_.set([](Feed& feed) { feed.tf = false; });
   ASSERT_TRUE(cart_.waitForState(ControllerState::HOLD, 1.0));
   cart_.set([](Feed& feed) {
-    feed.message.valid = true;
+    feed.tf = true;
     feed.message.reference_stamp = ros::Time(1.0);
   });
   ASSERT_TRUE(cart_.waitForState(ControllerState::LOST, 1.0));

@@ -109,7 +109,7 @@ struct Reached {
       return machine.step(facts).state;
     };
     const Change nothing = [](SafetyFacts&) {};
-    const Change lost = [](SafetyFacts& f) { f.tracker.valid = false; };
+    const Change lost = [](SafetyFacts& f) { f.robot.enabled = false; };
     if (state == State::kIdle) step(time, nothing);
     if (state == State::kIdle) return;
     step(time - 1.0, [](SafetyFacts& f) { f.request = EngageRequest::kOn; });

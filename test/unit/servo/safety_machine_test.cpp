@@ -47,35 +47,34 @@ TEST(SafetyMachine, AHoldEndsWithinItsTimeOrIsLost) {
 
   Reached other(State::kHold);
   facts = good(10.4);
-  facts.robot.enabled = false;  // another cause is the same hold
+  facts.tracker.valid = false;  // another cause is the same hold
   EXPECT_EQ(other.machine.step(facts).state, State::kHold);
   facts.time = 10.5;
   const SafetyOutput output = other.machine.step(facts);
   EXPECT_EQ(output.state, State::kLost);
-  EXPECT_NE(output.reason.find("not enabled"), std::string::npos) << output.reason;
+  EXPECT_NE(output.reason.find("not valid"), std::string::npos) << output.reason;
   EXPECT_EQ(other.machine.step(good(10.6)).state, State::kLost);
 }
 
-// Whoever selects another region while the scope is held has not seen it move there.
-TEST(SafetyMachine, AnotherRegionIsTakenOverWhileServoingButNotByAHold) {
-  Reached servo(State::kServo);
-  EXPECT_EQ(servo.step([](SafetyFacts& f) { f.tracker.region = 2.0; }).state, State::kServo);
-  // The selection itself may be what it is held for.
-  Reached selecting(State::kServo);
-  SafetyFacts facts = good(10.1);
-  facts.tracker.region = 2.0;
-  facts.tracker.valid = false;
-  EXPECT_EQ(selecting.machine.step(facts).state, State::kHold);
-  facts.time = 10.2;
-  facts.tracker.valid = true;
-  EXPECT_EQ(selecting.machine.step(facts).state, State::kServo);
-
-  Reached hold(State::kHold);
-  const SafetyOutput output = hold.step([](SafetyFacts& f) { f.tracker.region = 2.0; });
-  EXPECT_EQ(output.state, State::kLost);
-  EXPECT_NE(output.reason.find("engage again"), std::string::npos) << output.reason;
-  Reached unknown(State::kHold);
-  EXPECT_EQ(unknown.step([](SafetyFacts& f) { f.tracker.region.reset(); }).state, State::kServo);
+// An arm that may have been moved meanwhile does not begin to follow a region that it has never followed.
+TEST(SafetyMachine, AnotherRegionIsTakenOverUnlessTheArmWasWaitedFor) {
+  const Change another = [](SafetyFacts& f) { f.tracker.region = 2.0; };
+  EXPECT_EQ(Reached(State::kServo).step(another).state, State::kServo);
+  Reached learning(State::kServo);
+  EXPECT_EQ(learning.step([](SafetyFacts& f) { f.tracker.valid = false; }).state, State::kHold);
+  EXPECT_EQ(learning.step(another).state, State::kServo);
+  const Change disabled = [](SafetyFacts& f) { f.robot.enabled = false; };
+  for (const bool lost_before : {false, true}) {
+    Reached reached(State::kServo);
+    if (lost_before) reached.step([](SafetyFacts& f) { f.tracker.valid = false; });
+    EXPECT_EQ(reached.step(disabled).state, State::kHold);
+    const SafetyOutput output = reached.step(another);
+    EXPECT_EQ(output.state, State::kLost);
+    EXPECT_NE(output.reason.find("engage again"), std::string::npos) << output.reason;
+  }
+  Reached same(State::kServo);
+  same.step(disabled);
+  EXPECT_EQ(same.step([](SafetyFacts& f) { f.tracker.region.reset(); }).state, State::kServo);
 }
 
 TEST(SafetyMachine, HoldsThatFollowEachOtherDoNotAddUp) {
