@@ -20,6 +20,7 @@ inline const double kInfinity = std::numeric_limits<double>::infinity();
 inline ControllerInput good(double time) {
   ControllerInput input;
   input.time = time;
+  input.robot = {"", true, 0.1};
   input.task_error.problem.clear();
   input.task_error.valid = true;
   input.task_error.error.e_v = {0.2, -0.1, 0.1};

@@ -14,6 +14,7 @@ using test::kNan;
 ControllerInput driven(double time) {
   ControllerInput input;
   input.time = time;
+  input.robot = {"", true, 0.1};
   input.depth.problem.clear();
   input.depth.d2 = 0.1;
   input.depth.lateral_offset = 0.001;

@@ -30,7 +30,9 @@ TEST(SafetyMachine, RefusesToEngageForTheReasonThatWouldStopIt) {
 }
 
 TEST(SafetyMachine, AsksOnlyForWhatIsRequired) {
-  SafetyMachine machine{SafetyConfig()};
+  SafetyConfig config;
+  config.robot_required = false;
+  SafetyMachine machine(config);
   SafetyFacts facts = good(0.0);
   facts.robot = RobotFacts();
   facts.dead_man = {false, kInfinity};
