@@ -7,13 +7,12 @@
 #include <thread>
 
 #include "laparoscope_servo/ros/aesop_conversions.h"
+#include "laparoscope_servo/ros/clocks.h"
 #include "laparoscope_servo/servo/scope_geometry.h"
 
 namespace laparoscope_servo::skin {
 
 namespace {
-
-using aesop::OperatingMode;
 
 constexpr std::chrono::milliseconds kPeriod{5};
 constexpr double kReconnectPause = 0.5;    // s
@@ -22,13 +21,6 @@ constexpr double kDiagnosticsPause = 1.0;  // s
 constexpr double kStatePeriod = 0.1;       // s, between two publications of an operating state that stays
 constexpr double kLastWord = 0.5;          // s, for the controller to confirm the disable when the node ends
 
-double steadyNow() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-double stampNow() {
-  return ros::Time::now().toSec();
-}
-
 }  // namespace
 
 AesopNode::AesopNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
@@ -36,7 +28,7 @@ AesopNode::AesopNode(const ros::NodeHandle& node, const ros::NodeHandle& private
     : parameters_(parameters),
       tip_R_optical_(servo::obliqueOptics(parameters.optics_angle, parameters.optics_roll).transpose()),
       driver_(parameters.driver),
-      line_warning_(aesop::lineWarning(parameters.driver.session, parameters.baud_rate)),
+      reported_(parameters.port, aesop::lineWarning(parameters.driver.session, parameters.baud_rate)),
       node_(node),
       private_node_(private_node) {
   joint_publisher_ = private_node_.advertise<sensor_msgs::JointState>("measured_js", 10);
@@ -52,9 +44,11 @@ AesopNode::AesopNode(const ros::NodeHandle& node, const ros::NodeHandle& private
                private_node_.advertiseService("pause", &AesopNode::pause, this),
                private_node_.advertiseService("resume", &AesopNode::resume, this)};
   diagnostics_.setHardwareID(parameters_.port);
-  diagnostics_.add("AESOP", this, &AesopNode::describe);
+  diagnostics_.add("AESOP", [this](diagnostic_updater::DiagnosticStatusWrapper& status) {
+    reported_.fill(steadyNow(), driver_, status);
+  });
   publishStaticFrames();
-  if (!line_warning_.empty()) ROS_WARN_STREAM(line_warning_);
+  if (!reported_.lineWarning().empty()) ROS_WARN_STREAM(reported_.lineWarning());
 }
 
 void AesopNode::run(const std::atomic<bool>& stop) {
@@ -147,51 +141,6 @@ void AesopNode::onCommand(const ScopeVelocity& message) {
   ROS_WARN_STREAM("a command was refused: " << refusal);
 }
 
-bool AesopNode::enable(Request&, Response& response) {
-  response.message = driver_.enable(stampNow(), steadyNow());
-  if (!response.message.empty()) return true;
-  const auto settled = [this] {
-    return driver_.session().isEnabled() || !driver_.session().link().isUp() || !driver_.state(steadyNow()).is_busy;
-  };
-  stepUntil(settled, parameters_.driver.session.request_timeout + 0.1);
-  response.success = driver_.session().isEnabled();
-  response.message = response.success ? "enabled" : driver_.state(steadyNow()).reason;
-  return true;
-}
-
-bool AesopNode::disable(Request&, Response& response) {
-  response.message = driver_.disable(steadyNow());
-  if (!response.message.empty()) return true;
-  const auto settled = [this] { return !driver_.state(steadyNow()).is_busy; };
-  response.success = stepUntil(settled, parameters_.driver.session.request_timeout) && driver_.session().link().isUp();
-  response.message =
-      response.success ? "disabled, the arm stands" : "the controller has not confirmed that the arm stands";
-  return true;
-}
-
-bool AesopNode::clearFault(Request&, Response& response) {
-  response.message = driver_.clearFault(steadyNow());
-  if (!response.message.empty()) return true;
-  const auto settled = [this] { return !driver_.state(steadyNow()).is_busy; };
-  stepUntil(settled, parameters_.driver.session.request_timeout + 0.1);
-  const aesop::OperatingState state = driver_.state(steadyNow());
-  response.success = state.mode == OperatingMode::kDisabled && driver_.session().link().isUp();
-  response.message = state.reason;
-  return true;
-}
-
-bool AesopNode::pause(Request&, Response& response) {
-  response.message = driver_.pause();
-  response.success = response.message.empty();
-  return true;
-}
-
-bool AesopNode::resume(Request&, Response& response) {
-  response.message = driver_.resume(stampNow());
-  response.success = response.message.empty();
-  return true;
-}
-
 void AesopNode::publishStatus() {
   const aesop::Link& link = driver_.session().link();
   if (!link.status() || link.statistics().received == published_) return;
@@ -219,44 +168,8 @@ void AesopNode::publishState(double now) {
 }
 
 void AesopNode::publishStaticFrames() {
-  static_broadcaster_.sendTransform(
-      fixedTransforms(driver_.kinematics(), driver_.insertionPoint(), tip_R_optical_, parameters_.frame_prefix, ros::Time::now()));
-}
-
-void AesopNode::describe(diagnostic_updater::DiagnosticStatusWrapper& status) {
-  using diagnostic_msgs::DiagnosticStatus;
-  const double now = steadyNow();
-  const aesop::Link& link = driver_.session().link();
-  const aesop::LinkStatistics& statistics = link.statistics();
-  const aesop::OperatingState state = driver_.state(now);
-  const std::uint64_t errors = statistics.decoder.crc_errors + statistics.decoder.malformed + statistics.lost;
-  status.summary(DiagnosticStatus::OK,
-                 std::string(aesop::name(state.mode)) + (state.reason.empty() ? "" : ": ") + state.reason);
-  if (!link.isUp() || state.mode == OperatingMode::kFault) {
-    status.level = DiagnosticStatus::ERROR;
-  } else if (!line_warning_.empty()) {
-    status.mergeSummary(DiagnosticStatus::WARN, line_warning_);
-  } else if (errors > errors_reported_) {
-    status.mergeSummary(DiagnosticStatus::WARN, "the line loses bytes");
-  }
-  errors_reported_ = errors;
-  status.add("port", parameters_.port);
-  status.add("link", aesop::name(link.state()));
-  status.add("controller", link.model());
-  status.add("state", aesop::name(state.mode));
-  status.add("age of the last status [s]", link.statusAge(now));
-  status.add("age of the last command [s]", driver_.guard().age(now));
-  status.add("commands accepted", driver_.guard().accepted());
-  status.add("commands refused", driver_.guard().refused());
-  status.add("round trip [s]", statistics.round_trip);
-  status.add("longest round trip [s]", statistics.longest_round_trip);
-  status.add("requests sent", statistics.sent);
-  status.add("statuses received", statistics.received);
-  status.add("replies lost", statistics.lost);
-  status.add("CRC errors", statistics.decoder.crc_errors);
-  status.add("malformed frames", statistics.decoder.malformed);
-  status.add("bytes skipped", statistics.decoder.skipped_bytes);
-  status.add("sessions", statistics.sessions);
+  static_broadcaster_.sendTransform(fixedTransforms(driver_.kinematics(), driver_.insertionPoint(), tip_R_optical_,
+                                                    parameters_.frame_prefix, ros::Time::now()));
 }
 
 }  // namespace laparoscope_servo::skin

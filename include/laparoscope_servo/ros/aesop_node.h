@@ -15,6 +15,7 @@
 
 #include "laparoscope_servo/ScopeVelocity.h"
 #include "laparoscope_servo/aesop/transport.h"
+#include "laparoscope_servo/ros/aesop_diagnostics.h"
 #include "laparoscope_servo/ros/aesop_parameters.h"
 
 namespace laparoscope_servo::skin {
@@ -48,19 +49,17 @@ class AesopNode {
   void publishStatus();
   void publishState(double now);
   void publishStaticFrames();
-  void describe(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   AesopParameters parameters_;
   Eigen::Matrix3d tip_R_optical_;
   aesop::Driver driver_;
   aesop::SerialTransport transport_;
-  std::string line_warning_;
+  AesopDiagnostics reported_;
   double next_attempt_ = 0.0;      // s, steady: to open the port
   double next_diagnostics_ = 0.0;  // s, steady
   double next_report_ = 0.0;       // s, steady: of a refused command
   std::string last_loss_;
   std::uint64_t published_ = 0;  // statuses received when the last one was published
-  std::uint64_t errors_reported_ = 0;
   aesop::OperatingState last_state_;
   bool state_published_ = false;
   double state_time_ = 0.0;  // s, steady, of the last publication
