@@ -5,8 +5,8 @@ namespace laparoscope_servo::skin {
 using aesop::OperatingMode;
 using diagnostic_msgs::DiagnosticStatus;
 
-void AesopDiagnostics::fill(double now, const aesop::Driver& driver,
-                            diagnostic_updater::DiagnosticStatusWrapper& status) {
+void AesopDiagnostics::fill(double now, const aesop::Driver& driver, const CommandMaster& master,
+                            std::uint32_t publishers, diagnostic_updater::DiagnosticStatusWrapper& status) {
   const aesop::Link& link = driver.session().link();
   const aesop::LinkStatistics& statistics = link.statistics();
   const aesop::OperatingState state = driver.state(now);
@@ -21,6 +21,7 @@ void AesopDiagnostics::fill(double now, const aesop::Driver& driver,
     status.mergeSummary(DiagnosticStatus::WARN, "the line loses bytes");
   }
   errors_reported_ = errors;
+  addMaster(now, master, publishers, status);
   status.add("port", port_);
   status.add("link", aesop::name(link.state()));
   status.add("controller", link.model());
@@ -38,6 +39,21 @@ void AesopDiagnostics::fill(double now, const aesop::Driver& driver,
   status.add("malformed frames", statistics.decoder.malformed);
   status.add("bytes skipped", statistics.decoder.skipped_bytes);
   status.add("sessions", statistics.sessions);
+}
+
+void AesopDiagnostics::addMaster(double now, const CommandMaster& master, std::uint32_t publishers,
+                                 diagnostic_updater::DiagnosticStatusWrapper& status) const {
+  const std::string complaint = master.complaint(now);
+  if (!complaint.empty()) {
+    status.mergeSummary(DiagnosticStatus::WARN, complaint);
+  } else if (publishers > 1) {
+    status.mergeSummary(DiagnosticStatus::WARN, std::to_string(publishers) +
+                                                    " publishers of commands are connected, only " + master.name() +
+                                                    " counts ('rostopic info' of the topic names them)");
+  }
+  status.add("node whose commands count", master.name());
+  status.add("publishers of commands", publishers);
+  status.add("commands refused for their sender", master.refused());
 }
 
 }  // namespace laparoscope_servo::skin

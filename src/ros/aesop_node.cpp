@@ -15,6 +15,7 @@ namespace laparoscope_servo::skin {
 namespace {
 
 constexpr std::chrono::milliseconds kPeriod{5};
+constexpr std::uint32_t kQueue = 100;      // commands
 constexpr double kReconnectPause = 0.5;    // s
 constexpr double kReportPause = 1.0;       // s, between two warnings of one kind
 constexpr double kDiagnosticsPause = 1.0;  // s
@@ -28,6 +29,7 @@ AesopNode::AesopNode(const ros::NodeHandle& node, const ros::NodeHandle& private
     : parameters_(parameters),
       tip_R_optical_(servo::obliqueOptics(parameters.optics_angle, parameters.optics_roll).transpose()),
       driver_(parameters.driver),
+      master_(node.resolveName(parameters.publisher, false)),
       reported_(parameters.port, aesop::lineWarning(parameters.driver.session, parameters.baud_rate)),
       node_(node),
       private_node_(private_node) {
@@ -35,17 +37,20 @@ AesopNode::AesopNode(const ros::NodeHandle& node, const ros::NodeHandle& private
   pose_publisher_ = private_node_.advertise<geometry_msgs::PoseStamped>("measured_cp", 10);
   twist_publisher_ = private_node_.advertise<geometry_msgs::TwistStamped>("measured_cv", 10);
   state_publisher_ = private_node_.advertise<OperatingState>("operating_state", 10, true);
-  // Only the newest command counts.
+  for (const std::string& caller : parameters.service_callers)
+    service_callers_.push_back(node_.resolveName(caller, false));
+  // Only the master's newest command counts, but others must not push it out of the queue.
   command_subscriber_ =
-      node_.subscribe("servo_command", 1, &AesopNode::onCommand, this, ros::TransportHints().tcpNoDelay());
-  services_ = {private_node_.advertiseService("enable", &AesopNode::enable, this),
-               private_node_.advertiseService("disable", &AesopNode::disable, this),
-               private_node_.advertiseService("clear_fault", &AesopNode::clearFault, this),
-               private_node_.advertiseService("pause", &AesopNode::pause, this),
-               private_node_.advertiseService("resume", &AesopNode::resume, this)};
+      node_.subscribe("servo_command", kQueue, &AesopNode::onCommand, this, ros::TransportHints().tcpNoDelay());
+  advertise("enable", &AesopNode::enable, Callers::kNamed);
+  advertise("resume", &AesopNode::resume, Callers::kNamed);
+  advertise("clear_fault", &AesopNode::clearFault, Callers::kNamed);
+  // What makes the arm stand is for everybody.
+  advertise("disable", &AesopNode::disable, Callers::kAll);
+  advertise("pause", &AesopNode::pause, Callers::kAll);
   diagnostics_.setHardwareID(parameters_.port);
   diagnostics_.add("AESOP", [this](diagnostic_updater::DiagnosticStatusWrapper& status) {
-    reported_.fill(steadyNow(), driver_, status);
+    reported_.fill(steadyNow(), driver_, master_, command_subscriber_.getNumPublishers(), status);
   });
   publishStaticFrames();
   if (!reported_.lineWarning().empty()) ROS_WARN_STREAM(reported_.lineWarning());
@@ -73,6 +78,7 @@ void AesopNode::step() {
       lose(error.what(), now);
     }
   }
+  if (!driver_.session().isEnabled()) master_.release();
   publishStatus();
   publishState(now);
   if (now >= next_diagnostics_) {
@@ -131,14 +137,31 @@ void AesopNode::shutDown() {
   transport_.close();
 }
 
-void AesopNode::onCommand(const ScopeVelocity& message) {
+void AesopNode::onCommand(const ros::MessageEvent<ScopeVelocity const>& event) {
   const double now = steadyNow();
-  const std::string refusal = driver_.command(fromMessage(message), message.header.stamp.toSec(), stampNow(), now);
+  const ScopeVelocity& message = *event.getConstMessage();
+  switch (master_.judge(event.getPublisherName(), event.getConnectionHeaderPtr(), now)) {
+    case CommandMaster::Verdict::kStranger:
+      return report(master_.complaint(now), next_stranger_, now);
+    case CommandMaster::Verdict::kNewConnection:
+      // Restarted, replaced by another process of its name, or joined by one: which of them shall move the arm is for
+      // somebody to say who sees it stand.
+      driver_.pause(master_.name() + " has connected anew; resume when it may command the arm");
+      return;
+    case CommandMaster::Verdict::kMaster:
+      break;
+  }
+  const aesop::ScopeVelocity velocity = fromMessage(message);
+  const std::string refusal = driver_.command(velocity, message.header.stamp.toSec(), stampNow(), now);
   // Commands that come before the arm is enabled are nobody's mistake, but one that is not finite is.
-  if (refusal.empty() || now < next_report_) return;
-  if (!driver_.session().isEnabled() && fromMessage(message).isFinite()) return;
-  next_report_ = now + kReportPause;
-  ROS_WARN_STREAM("a command was refused: " << refusal);
+  if (!refusal.empty() && (driver_.session().isEnabled() || !velocity.isFinite()))
+    report("a command was refused: " + refusal, next_report_, now);
+}
+
+void AesopNode::report(const std::string& refusal, double& next, double now) {
+  if (now < next) return;
+  next = now + kReportPause;
+  ROS_WARN_STREAM(refusal);
 }
 
 void AesopNode::publishStatus() {
@@ -154,8 +177,15 @@ void AesopNode::publishStatus() {
   broadcaster_.sendTransform(linkTransforms(driver_.kinematics(), status.position, prefix, stamp));
 }
 
+aesop::OperatingState AesopNode::state(double now) const {
+  aesop::OperatingState state = driver_.state(now);
+  const std::string complaint = master_.complaint(now);
+  if (!complaint.empty()) state.reason += (state.reason.empty() ? "" : "; ") + complaint;
+  return state;
+}
+
 void AesopNode::publishState(double now) {
-  const aesop::OperatingState state = driver_.state(now);
+  const aesop::OperatingState state = this->state(now);
   // Repeated, so that who relies on it notices when it ends.
   if (state_published_ && state == last_state_ && now - state_time_ < kStatePeriod) return;
   state_time_ = now;

@@ -29,7 +29,7 @@ class Driver {
   std::string enable(double stamp_now, double now);
   std::string disable(double now) { return session_.disable(now); }
   std::string clearFault(double now) { return session_.clearFault(now); }
-  std::string pause() { return session_.pause(); }
+  std::string pause(const std::string& reason = "paused on request") { return session_.pause(reason); }
   std::string resume(double stamp_now);
 
   // Takes a command, or says why not. Commands while not ENABLED are judged, but move nothing.

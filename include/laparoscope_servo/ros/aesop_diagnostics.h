@@ -7,6 +7,7 @@
 #include <string>
 
 #include "laparoscope_servo/aesop/driver.h"
+#include "laparoscope_servo/ros/command_master.h"
 
 namespace laparoscope_servo::skin {
 
@@ -18,13 +19,17 @@ class AesopDiagnostics {
       : port_(port), line_warning_(line_warning) {}
 
   const std::string& lineWarning() const { return line_warning_; }
-  // Level: ERROR without a link or in FAULT, WARN when the line cannot carry the rate or has lost bytes since the last
-  // call.
-  void fill(double now, const aesop::Driver& driver, diagnostic_updater::DiagnosticStatusWrapper& status);
+  // `publishers`: connections that carry commands. Level: ERROR without a link or in FAULT, WARN when the line cannot
+  // carry the rate or has lost bytes since the last call, or when others than the master command.
+  void fill(double now, const aesop::Driver& driver, const CommandMaster& master, std::uint32_t publishers,
+            diagnostic_updater::DiagnosticStatusWrapper& status);
 
  private:
   std::string port_;
   std::string line_warning_;
+  void addMaster(double now, const CommandMaster& master, std::uint32_t publishers,
+                 diagnostic_updater::DiagnosticStatusWrapper& status) const;
+
   std::uint64_t errors_reported_ = 0;
 };
 
