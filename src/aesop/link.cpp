@@ -35,7 +35,7 @@ const char* name(LinkState state) {
 }
 
 void Link::opened(double now) {
-  decoder_.reset();
+  codec_->reset();
   begin("the controller has not answered yet; check its power, the cable and the baud rate", now);
 }
 
@@ -56,8 +56,8 @@ void Link::begin(const std::string& reason, double now) {
 std::vector<Status> Link::receive(const std::uint8_t* data, std::size_t size, double now) {
   std::vector<Status> statuses;
   if (state_ == LinkState::kClosed) return statuses;
-  const std::uint64_t versions = decoder_.statistics().other_version;
-  for (const Frame& frame : decoder_.push(data, size)) {
+  const std::uint64_t versions = codec_->statistics().other_version;
+  for (const Frame& frame : codec_->push(data, size)) {
     if (const auto* identity = std::get_if<Identity>(&frame.message)) {
       take(*identity, now);
       last_number_ = frame.sequence;
@@ -69,10 +69,10 @@ std::vector<Status> Link::receive(const std::uint8_t* data, std::size_t size, do
       if (isUp()) statuses.push_back(*status);
     }
   }
-  statistics_.decoder = decoder_.statistics();
+  statistics_.decoder = codec_->statistics();
   if (state_ == LinkState::kIdentifying && statistics_.decoder.other_version > versions) {
-    reason_ = "the controller speaks another version of the protocol, this driver version " +
-              std::to_string(kProtocolVersion);
+    reason_ = "the controller speaks version " + std::to_string(statistics_.decoder.version_heard) +
+              " of the protocol, this driver " + codec_->name() + "; one of them has to be exchanged";
   }
   return statuses;
 }
@@ -88,7 +88,7 @@ void Link::take(const Identity& identity, double now) {
   reason_.clear();
   model_ = identity.model;
   ++statistics_.sessions;
-  statistics_.longest_round_trip = 0.0;
+  round_trips_.clear();
   status_at_ = now;
   next_ = now;
 }
@@ -98,14 +98,12 @@ void Link::take(const Status& status, double now) {
     begin("the controller has restarted", now);
     return;
   }
+  const bool answers = !status_ || status.echo != status_->echo;  // or it echoes again what it has taken before
   ++statistics_.received;
   status_ = status;
   status_at_ = now;
   const auto behind = static_cast<std::uint16_t>(sequence_ - status.echo);
-  if (behind < sent_at_.size()) {
-    statistics_.round_trip = now - sent_at_[status.echo % sent_at_.size()];
-    statistics_.longest_round_trip = std::max(statistics_.longest_round_trip, statistics_.round_trip);
-  }
+  if (answers && behind < sent_at_.size()) round_trips_.add(now - sent_at_[status.echo % sent_at_.size()]);
 }
 
 void Link::countLosses(std::uint16_t number) {
@@ -130,7 +128,7 @@ Bytes Link::identify(double now) {
 }
 
 Bytes Link::send(const Message& message, double now) {
-  Bytes bytes = encode({static_cast<std::uint16_t>(sequence_ + 1), message});
+  Bytes bytes = codec_->encode({static_cast<std::uint16_t>(sequence_ + 1), message});
   ++sequence_;
   sent_at_[sequence_ % sent_at_.size()] = now;
   ++statistics_.sent;

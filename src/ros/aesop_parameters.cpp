@@ -1,5 +1,7 @@
 #include "laparoscope_servo/ros/aesop_parameters.h"
 
+#include <ros/names.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -94,7 +96,15 @@ void readMotion(ParameterReader& reader, aesop::MotionConfig& config) {
   reader.refuseUnknown("motion");
 }
 
-void readCommand(ParameterReader& reader, aesop::CommandConfig& config) {
+void checkNodeName(ParameterReader& reader, const std::string& path, const std::string& name) {
+  std::string why;
+  if (!name.empty() && name[0] != '~' && ros::names::validate(name, why)) return;
+  reader.addError(path + " = '" + name + "', expected the name of a node, e.g. controller or /controller");
+}
+
+void readCommand(ParameterReader& reader, std::string& publisher, aesop::CommandConfig& config) {
+  reader.read("command/publisher", publisher);
+  checkNodeName(reader, "command/publisher", publisher);
   reader.read("command/timeout", config.timeout, -kLarge, kLarge);
   reader.read("command/max_stamp_age", config.max_stamp_age, -kLarge, kLarge);
   reader.read("command/max_pan", config.max_pan, -kLarge, kLarge);
@@ -104,12 +114,28 @@ void readCommand(ParameterReader& reader, aesop::CommandConfig& config) {
   reader.refuseUnknown("command");
 }
 
+void readCodec(ParameterReader& reader, const std::string& path, aesop::CodecFactory& codec) {
+  if (!reader.has(path)) return;
+  std::string name = aesop::codecNames().front();
+  reader.read(path, name, aesop::codecNames());
+  codec = aesop::codecNamed(name);
+}
+
 void readLink(ParameterReader& reader, aesop::SessionConfig& config) {
   reader.read("link/rate", config.rate, 0.0, 1000.0);
   reader.read("link/time_to_live", config.time_to_live, -kLarge, kLarge);
   reader.read("link/status_timeout", config.status_timeout, -kLarge, kLarge);
   reader.read("link/request_timeout", config.request_timeout, -kLarge, kLarge);
+  readCodec(reader, "link/codec", config.codec);
   reader.refuseUnknown("link");
+}
+
+void readReconnect(ParameterReader& reader, aesop::ReconnectConfig& config) {
+  reader.read("reconnect/first_pause", config.first_pause, -kLarge, kLarge);
+  reader.read("reconnect/longest_pause", config.longest_pause, -kLarge, kLarge);
+  reader.read("reconnect/stable_time", config.stable_time, -1e4, 1e4);
+  reader.refuseUnknown("reconnect");
+  for (const std::string& error : aesop::validate(config)) reader.addError("reconnect/" + error);
 }
 
 }  // namespace
@@ -120,12 +146,15 @@ AesopParameters readAesopParameters(ParameterReader& reader) {
   reader.read("port", parameters.port);
   reader.read("baud_rate", parameters.baud_rate, 1200, 1000000);
   reader.read("frame_prefix", parameters.frame_prefix);
+  reader.read("service_callers", parameters.service_callers);
+  for (const std::string& caller : parameters.service_callers) checkNodeName(reader, "service_callers", caller);
   reader.read("optics/angle", parameters.optics_angle, -1.3, 1.3);
   reader.read("optics/roll", parameters.optics_roll, -3.2, 3.2);
   readKinematics(reader, parameters.driver.kinematics);
   readMotion(reader, parameters.driver.motion);
-  readCommand(reader, parameters.driver.command);
+  readCommand(reader, parameters.publisher, parameters.driver.command);
   readLink(reader, parameters.driver.session);
+  readReconnect(reader, parameters.reconnect);
   readPoint(reader, "insertion_point", parameters.driver.insertion_point);
   reader.refuseUnknown("");
   reader.addErrors(aesop::validate(parameters.driver));
@@ -141,6 +170,7 @@ sim::EmulatorConfig readEmulatorConfig(ParameterReader& reader) {
   readJoints(reader, "emulator/dead_zone", config.arm.dead_zone);
   reader.read("emulator/breakaway", config.arm.breakaway, -kLarge, kLarge);
   reader.read("emulator/time_constant", config.arm.time_constant, -kLarge, kLarge);
+  readCodec(reader, "emulator/codec", config.codec);
   reader.refuseUnknown("emulator");
   reader.addErrors(sim::validate(config));
   return config;

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "laparoscope_servo/aesop/command_guard.h"
+#include "laparoscope_servo/aesop/motion_delay.h"
 #include "laparoscope_servo/aesop/session.h"
 
 namespace laparoscope_servo::aesop {
@@ -29,7 +30,7 @@ class Driver {
   std::string enable(double stamp_now, double now);
   std::string disable(double now) { return session_.disable(now); }
   std::string clearFault(double now) { return session_.clearFault(now); }
-  std::string pause() { return session_.pause(); }
+  std::string pause(const std::string& reason = "paused on request") { return session_.pause(reason); }
   std::string resume(double stamp_now);
 
   // Takes a command, or says why not. Commands while not ENABLED are judged, but move nothing.
@@ -37,7 +38,7 @@ class Driver {
 
   void opened(double now) { session_.opened(now); }
   void closed(const std::string& reason) { session_.closed(reason); }
-  void receive(const std::uint8_t* data, std::size_t size, double now) { session_.receive(data, size, now); }
+  void receive(const std::uint8_t* data, std::size_t size, double now);
   Bytes transmit(double now);
 
   // Session's state; while ENABLED its reason says why the arm does not do what was commanded, and is empty when it
@@ -47,6 +48,8 @@ class Driver {
   const CommandGuard& guard() const { return guard_; }
   const Kinematics& kinematics() const { return kinematics_; }
   const Eigen::Vector3d& insertionPoint() const { return insertion_point_; }
+  // The arm's own delay, as measured by what has been sent and received.
+  const MotionDelay& delay() const { return delay_; }
   // What the last call of transmit() made of the command.
   const JointMotion& lastMotion() const { return last_motion_; }
 
@@ -56,6 +59,8 @@ class Driver {
   Eigen::Vector3d insertion_point_;
   CommandGuard guard_;
   Session session_;
+  MotionDelay delay_;
+  std::uint64_t statuses_ = 0;  // received when the last one was looked at
   JointMotion last_motion_;
   std::string refusal_;  // of the last command; empty when it was accepted
 };

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "laparoscope_servo/aesop/codec.h"
+#include "laparoscope_servo/aesop/round_trips.h"
 #include "laparoscope_servo/aesop/session_config.h"
 
 namespace laparoscope_servo::aesop {
@@ -23,18 +24,16 @@ const char* name(LinkState state);
 
 struct LinkStatistics {
   DecoderStatistics decoder;
-  std::uint64_t sent = 0;           // requests
-  std::uint64_t received = 0;       // statuses
-  std::uint64_t lost = 0;           // replies of the controller that never came, by its numbers
-  std::uint64_t sessions = 0;       // times that the link came up
-  double round_trip = 0.0;          // s, of the last status
-  double longest_round_trip = 0.0;  // s, since the link came up
+  std::uint64_t sent = 0;      // requests
+  std::uint64_t received = 0;  // statuses
+  std::uint64_t lost = 0;      // replies of the controller that never came, by its numbers
+  std::uint64_t sessions = 0;  // times that the link came up
 };
 
 class Link {
  public:
   // `driven`: bit k - 1 for each driven joint k, as the configuration has it; the controller has to agree.
-  Link(const SessionConfig& config, std::uint8_t driven) : config_(config), driven_(driven) {}
+  Link(const SessionConfig& config, std::uint8_t driven) : config_(config), driven_(driven), codec_(config.codec()) {}
 
   void opened(double now);
   void closed(const std::string& reason);
@@ -44,7 +43,7 @@ class Link {
   void watch(double now);
   // The request that (re)begins the session, when one is due; to be sent while the link is not up.
   Bytes identify(double now);
-  // One request. Throws std::invalid_argument like encode().
+  // One request. Throws std::invalid_argument like Codec::encode().
   Bytes send(const Message& message, double now);
   // Whether it is time for the next request.
   bool due(double now) const { return now >= next_; }
@@ -60,6 +59,8 @@ class Link {
   // s; infinite when there is none.
   double statusAge(double now) const;
   const LinkStatistics& statistics() const { return statistics_; }
+  // Of the last statuses of this session.
+  RoundTripSummary roundTrips() const { return round_trips_.summary(); }
   const std::string& model() const { return model_; }
 
  private:
@@ -73,11 +74,12 @@ class Link {
   LinkState state_ = LinkState::kClosed;
   std::string reason_ = "the port is not open";
   std::string model_;
-  Decoder decoder_;
+  std::unique_ptr<Codec> codec_;
   LinkStatistics statistics_;
   std::uint16_t sequence_ = 0;
   std::array<double, 64> sent_at_{};  // s, of the last requests, by sequence number modulo 64
   double next_ = 0.0;
+  RoundTrips round_trips_;
   std::optional<Status> status_;
   double status_at_ = 0.0;
   std::optional<std::uint16_t> last_number_;

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "laparoscope_servo/aesop/own_codec.h"
+
 namespace laparoscope_servo::sim {
 namespace {
 
