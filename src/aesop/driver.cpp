@@ -74,9 +74,9 @@ std::string Driver::clearFault(double now) {
   return session_.clearFault(now);
 }
 
-std::string Driver::pause() {
-  record(WireEvent::kPause);
-  return session_.pause();
+std::string Driver::pause(const std::string& reason) {
+  if (tap_ != nullptr) record(WireEvent::kPause, payloadOf(reason));
+  return session_.pause(reason);
 }
 
 std::string Driver::resume(double stamp_now) {

@@ -82,12 +82,12 @@ std::string Session::clearFault(double now) {
   return "";
 }
 
-std::string Session::pause() {
+std::string Session::pause(const std::string& reason) {
   if (state().mode == OperatingMode::kPaused) return "";
   if (!isEnabled()) return "only an enabled arm can be paused";
   paused_ = true;
   urgent_ = true;
-  reason_ = "paused on request";
+  reason_ = reason;
   return "";
 }
 

@@ -69,7 +69,7 @@ std::string eventText(const WireRecord& record) {
     case WireEvent::kClearFault:
       return "asked to clear a fault";
     case WireEvent::kPause:
-      return "asked to pause";
+      return "asked to pause: " + textOf(record);
     case WireEvent::kResume:
       return "asked to resume";
     case WireEvent::kCommand:

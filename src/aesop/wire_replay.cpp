@@ -32,7 +32,7 @@ void WireReplay::feed(const WireRecord& record) {
       driver_.clearFault(now_);
       break;
     case WireEvent::kPause:
-      driver_.pause();
+      driver_.pause(textOf(record));
       break;
     case WireEvent::kResume:
       driver_.resume(numbersOf(record, 1)[0]);

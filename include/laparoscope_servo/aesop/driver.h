@@ -30,7 +30,7 @@ class Driver {
   std::string enable(double stamp_now, double now);
   std::string disable(double now);
   std::string clearFault(double now);
-  std::string pause();
+  std::string pause(const std::string& reason = "paused on request");
   std::string resume(double stamp_now);
 
   // Takes a command, or says why not. Commands while not ENABLED are judged, but move nothing.

@@ -38,7 +38,7 @@ class Session {
   std::string enable(double now);
   std::string disable(double now);
   std::string clearFault(double now);
-  std::string pause();
+  std::string pause(const std::string& reason = "paused on request");
   std::string resume();
 
   void opened(double now) { link_.opened(now); }

@@ -24,7 +24,7 @@ enum class WireEvent : std::uint8_t {
   kEnable = 5,           // asked for; number: stamp_now
   kDisable = 6,          // asked for
   kClearFault = 7,       // asked for
-  kPause = 8,            // asked for
+  kPause = 8,            // asked for; text: why
   kResume = 9,           // asked for; number: stamp_now
   kCommand = 10,         // numbers: pan, tilt, spin, insertion, stamp, stamp_now
   kState = 11,           // a new one, at the end of a turn: mode, flags, text
