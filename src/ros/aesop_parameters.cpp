@@ -130,6 +130,14 @@ void readLink(ParameterReader& reader, aesop::SessionConfig& config) {
   reader.refuseUnknown("link");
 }
 
+void readWireLog(ParameterReader& reader, aesop::WireLogConfig& config) {
+  reader.read("wire_log/file", config.file);
+  reader.read("wire_log/size", config.size, -kLarge, 1e4);
+  reader.read("wire_log/files", config.files, -1000, 1000);
+  reader.refuseUnknown("wire_log");
+  for (const std::string& error : aesop::validate(config)) reader.addError("wire_log/" + error);
+}
+
 }  // namespace
 
 AesopParameters readAesopParameters(ParameterReader& reader) {
@@ -146,6 +154,7 @@ AesopParameters readAesopParameters(ParameterReader& reader) {
   readMotion(reader, parameters.driver.motion);
   readCommand(reader, parameters.publisher, parameters.driver.command);
   readLink(reader, parameters.driver.session);
+  readWireLog(reader, parameters.wire_log);
   readPoint(reader, "insertion_point", parameters.driver.insertion_point);
   reader.refuseUnknown("");
   reader.addErrors(aesop::validate(parameters.driver));

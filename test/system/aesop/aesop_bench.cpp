@@ -77,6 +77,7 @@ void AesopBench::startNode() {
   callers.setSize(0);
   for (const std::string& caller : service_callers_) callers[callers.size()] = caller;
   parameters["service_callers"] = callers;
+  parameters["wire_log"]["file"] = wire_log_;
   ros::param::set("/aesop", parameters);
   state_.reset();
   node_ = std::make_unique<ChildProcess>(AESOP_NODE, std::vector<std::string>{"__name:=aesop"});
