@@ -120,6 +120,11 @@ void Driver::closed(const std::string& reason) {
 void Driver::receive(const std::uint8_t* data, std::size_t size, double now) {
   if (tap_ != nullptr && size > 0) record(WireEvent::kReceived, now, Bytes(data, data + size));
   session_.receive(data, size, now);
+  const Link& link = session_.link();
+  if (!link.isUp()) delay_.lost();
+  if (!link.isUp() || link.statistics().received == statuses_) return;
+  statuses_ = link.statistics().received;
+  delay_.received(*link.status(), now);
 }
 
 Bytes Driver::transmit(double now) {
@@ -139,7 +144,9 @@ Bytes Driver::turn(double now) {
         jointMotion(kinematics_, motion_, session_.link().status()->position, insertion_point_, guard_.velocity(now));
     for (std::size_t k = 0; k < speed.size(); ++k) speed[k] = last_motion_.velocity[kinematics_.driven()[k]];
   }
-  return session_.transmit(speed, now);
+  const Bytes bytes = session_.transmit(speed, now);
+  if (!bytes.empty()) delay_.sent(session_.isMoving() ? last_motion_.velocity : JointVector::Zero(), now);
+  return bytes;
 }
 
 }  // namespace laparoscope_servo::aesop

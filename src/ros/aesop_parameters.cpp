@@ -138,6 +138,14 @@ void readWireLog(ParameterReader& reader, aesop::WireLogConfig& config) {
   for (const std::string& error : aesop::validate(config)) reader.addError("wire_log/" + error);
 }
 
+void readReconnect(ParameterReader& reader, aesop::ReconnectConfig& config) {
+  reader.read("reconnect/first_pause", config.first_pause, -kLarge, kLarge);
+  reader.read("reconnect/longest_pause", config.longest_pause, -kLarge, kLarge);
+  reader.read("reconnect/stable_time", config.stable_time, -1e4, 1e4);
+  reader.refuseUnknown("reconnect");
+  for (const std::string& error : aesop::validate(config)) reader.addError("reconnect/" + error);
+}
+
 }  // namespace
 
 AesopParameters readAesopParameters(ParameterReader& reader) {
@@ -155,6 +163,7 @@ AesopParameters readAesopParameters(ParameterReader& reader) {
   readCommand(reader, parameters.publisher, parameters.driver.command);
   readLink(reader, parameters.driver.session);
   readWireLog(reader, parameters.wire_log);
+  readReconnect(reader, parameters.reconnect);
   readPoint(reader, "insertion_point", parameters.driver.insertion_point);
   reader.refuseUnknown("");
   reader.addErrors(aesop::validate(parameters.driver));

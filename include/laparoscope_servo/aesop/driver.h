@@ -5,6 +5,7 @@
 #pragma once
 
 #include "laparoscope_servo/aesop/command_guard.h"
+#include "laparoscope_servo/aesop/motion_delay.h"
 #include "laparoscope_servo/aesop/session.h"
 #include "laparoscope_servo/aesop/wire_log.h"
 
@@ -54,6 +55,8 @@ class Driver {
   const CommandGuard& guard() const { return guard_; }
   const Kinematics& kinematics() const { return kinematics_; }
   const Eigen::Vector3d& insertionPoint() const { return insertion_point_; }
+  // The arm's own delay, as measured by what has been sent and received.
+  const MotionDelay& delay() const { return delay_; }
   // What the last call of transmit() made of the command.
   const JointMotion& lastMotion() const { return last_motion_; }
 
@@ -67,6 +70,8 @@ class Driver {
   Eigen::Vector3d insertion_point_;
   CommandGuard guard_;
   Session session_;
+  MotionDelay delay_;
+  std::uint64_t statuses_ = 0;  // received when the last one was looked at
   JointMotion last_motion_;
   std::string refusal_;  // of the last command; empty when it was accepted
   WireTap* tap_ = nullptr;

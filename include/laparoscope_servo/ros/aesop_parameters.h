@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "laparoscope_servo/aesop/driver.h"
+#include "laparoscope_servo/aesop/reconnect.h"
 #include "laparoscope_servo/aesop/wire_log_file.h"
 #include "laparoscope_servo/ros/parameters.h"
 #include "laparoscope_servo/sim/emulator.h"
@@ -14,6 +15,7 @@ namespace laparoscope_servo::skin {
 
 struct AesopParameters {
   aesop::DriverConfig driver;
+  aesop::ReconnectConfig reconnect;
   std::string port;          // required
   int baud_rate = 38400;     // 1200 to 1000000
   std::string frame_prefix;  // in front of every frame's name

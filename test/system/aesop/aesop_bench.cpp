@@ -69,10 +69,12 @@ AesopBench::~AesopBench() {
   ::rmdir(directory_.c_str());
 }
 
-void AesopBench::startNode() {
+void AesopBench::startNode(const std::string& program, const std::vector<std::string>& arguments,
+                           const std::string& output) {
   XmlRpc::XmlRpcValue parameters = skin::parametersFromYaml(AESOP_CONFIG);
   parameters["port"] = port();
   parameters["command"]["publisher"] = master_.empty() ? ros::this_node::getName() : master_;
+  parameters["reconnect"]["longest_pause"] = 0.5;  // tests cut the line again and again
   XmlRpc::XmlRpcValue callers;
   callers.setSize(0);
   for (const std::string& caller : service_callers_) callers[callers.size()] = caller;
@@ -80,7 +82,9 @@ void AesopBench::startNode() {
   parameters["wire_log"]["file"] = wire_log_;
   ros::param::set("/aesop", parameters);
   state_.reset();
-  node_ = std::make_unique<ChildProcess>(AESOP_NODE, std::vector<std::string>{"__name:=aesop"});
+  std::vector<std::string> all = arguments;
+  all.push_back("__name:=aesop");
+  node_ = std::make_unique<ChildProcess>(program, all, output);
   if (!waitFor([this] { return isUp() && commands_.getNumSubscribers() > 0; }, 10.0)) {
     throw std::runtime_error("the aesop node has not connected to the emulator");
   }
@@ -165,7 +169,8 @@ int publish() {
   ros::NodeHandle node;
   ros::Publisher publisher = node.advertise<ScopeVelocity>("servo_command", 1);
   const double pan = ros::param::param("~pan", 0.0);
-  // As any node does. One that has never logged registers itself again when it is replaced, and ends its successor, too.
+  // As any node does. One that has never logged registers itself again when it is replaced, and ends its successor,
+  // too.
   ROS_INFO_STREAM("commands a pan of " << pan << " rad/s");
   ros::WallRate rate(ros::param::param("~rate", 25.0));
   while (ros::ok()) {

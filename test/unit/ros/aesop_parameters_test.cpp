@@ -47,6 +47,9 @@ TEST(AesopParameters, shippedFileIsTheDefaults) {
   EXPECT_EQ(read.driver.command.max_tilt, defaults.driver.command.max_tilt);
   EXPECT_EQ(read.driver.command.max_spin, defaults.driver.command.max_spin);
   EXPECT_EQ(read.driver.command.max_insertion, defaults.driver.command.max_insertion);
+  EXPECT_EQ(read.reconnect.first_pause, defaults.reconnect.first_pause);
+  EXPECT_EQ(read.reconnect.longest_pause, defaults.reconnect.longest_pause);
+  EXPECT_EQ(read.reconnect.stable_time, defaults.reconnect.stable_time);
   EXPECT_EQ(read.publisher, defaults.publisher);
   EXPECT_EQ(read.service_callers, defaults.service_callers);
   EXPECT_EQ(read.driver.session.rate, defaults.driver.session.rate);
@@ -62,7 +65,7 @@ TEST(AesopParameters, shippedFileIsTheDefaults) {
 TEST(AesopParameters, everyParameterOfTheShippedFileIsRead) {
   XmlRpc::XmlRpcValue tree = shipped("aesop.yaml");
   tree["port"] = std::string("/dev/ttyUSB0");
-  for (const char* group : {"motion", "command", "link"}) {
+  for (const char* group : {"motion", "command", "link", "reconnect"}) {
     for (auto& member : tree[group]) {
       XmlRpc::XmlRpcValue changed = tree;
       changed[group][member.first] = std::string("no number, no name");
