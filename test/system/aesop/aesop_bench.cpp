@@ -33,8 +33,8 @@ double steadyNow() {
 
 AesopBench::AesopBench(bool with_node) : directory_(temporaryDirectory()) {
   const std::string control = directory_ + "/control";
-  emulator_ =
-      std::make_unique<ChildProcess>(AESOP_EMULATOR, std::vector<std::string>{"--link", port(), "--control", control});
+  emulator_ = std::make_unique<ChildProcess>(
+      AESOP_EMULATOR, std::vector<std::string>{"--link", port(), "--control", control, "--baud", "38400"});
   const double end = steadyNow() + 5.0;
   while (!truth_) {
     try {
