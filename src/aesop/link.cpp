@@ -35,7 +35,7 @@ const char* name(LinkState state) {
 }
 
 void Link::opened(double now) {
-  decoder_.reset();
+  codec_->reset();
   begin("the controller has not answered yet; check its power, the cable and the baud rate", now);
 }
 
@@ -56,8 +56,8 @@ void Link::begin(const std::string& reason, double now) {
 std::vector<Status> Link::receive(const std::uint8_t* data, std::size_t size, double now) {
   std::vector<Status> statuses;
   if (state_ == LinkState::kClosed) return statuses;
-  const std::uint64_t versions = decoder_.statistics().other_version;
-  for (const Frame& frame : decoder_.push(data, size)) {
+  const std::uint64_t versions = codec_->statistics().other_version;
+  for (const Frame& frame : codec_->push(data, size)) {
     if (const auto* identity = std::get_if<Identity>(&frame.message)) {
       take(*identity, now);
       last_number_ = frame.sequence;
@@ -69,10 +69,9 @@ std::vector<Status> Link::receive(const std::uint8_t* data, std::size_t size, do
       if (isUp()) statuses.push_back(*status);
     }
   }
-  statistics_.decoder = decoder_.statistics();
+  statistics_.decoder = codec_->statistics();
   if (state_ == LinkState::kIdentifying && statistics_.decoder.other_version > versions) {
-    reason_ = "the controller speaks another version of the protocol, this driver version " +
-              std::to_string(kProtocolVersion);
+    reason_ = "the controller speaks another version of the protocol, this driver " + codec_->name();
   }
   return statuses;
 }
@@ -130,7 +129,7 @@ Bytes Link::identify(double now) {
 }
 
 Bytes Link::send(const Message& message, double now) {
-  Bytes bytes = encode({static_cast<std::uint16_t>(sequence_ + 1), message});
+  Bytes bytes = codec_->encode({static_cast<std::uint16_t>(sequence_ + 1), message});
   ++sequence_;
   sent_at_[sequence_ % sent_at_.size()] = now;
   ++statistics_.sent;

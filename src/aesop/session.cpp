@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace laparoscope_servo::aesop {
 
@@ -147,19 +148,36 @@ Bytes Session::transmit(const std::array<double, kDrivenJoints>& speed, double n
   watch(now);
   if (!link_.isUp()) return link_.identify(now);
   if (!link_.status()) return link_.due(now) ? link_.send(Poll(), now) : Bytes();
-  // What the wire format cannot carry is refused here rather than thrown from the last link to the arm.
   const bool sane = std::all_of(speed.begin(), speed.end(), [](double v) { return std::abs(v) <= kLargestNumber; });
   const bool zero = std::all_of(speed.begin(), speed.end(), [](double v) { return v == 0.0; });
-  const bool move = isEnabled() && sane && !zero;
+  if (!isEnabled() || !sane || zero) {
+    refusal_.clear();
+    return request(false, speed, now);
+  }
+  try {
+    Bytes bytes = request(true, speed, now);
+    if (!bytes.empty()) refusal_.clear();
+    return bytes;
+  } catch (const std::invalid_argument& error) {
+    refusal_ = std::string("the wire format cannot carry it: ") + error.what();
+    return request(false, speed, now);
+  }
+}
+
+Bytes Session::request(bool move, const std::array<double, kDrivenJoints>& speed, double now) {
   if (moved_ && !move) {
     stopping_ = true;
     stop_sequence_ = static_cast<std::uint16_t>(link_.sequence() + 1);
     urgent_ = true;
   }
+  if (!urgent_ && !link_.due(now)) {
+    moved_ = move;
+    return {};
+  }
+  Bytes bytes = link_.send(next(move, speed), now);
   moved_ = move;
-  if (!urgent_ && !link_.due(now)) return {};
   urgent_ = false;
-  return link_.send(next(move, speed), now);
+  return bytes;
 }
 
 bool Session::isEnabled() const {
@@ -181,6 +199,7 @@ OperatingState Session::state() const {
     state.mode = OperatingMode::kFault;
   } else if (wish_ == Wish::kEnabled && confirmed_) {
     state.mode = paused_ ? OperatingMode::kPaused : OperatingMode::kEnabled;
+    if (!paused_ && state.reason.empty()) state.reason = refusal_;
   }
   return state;
 }

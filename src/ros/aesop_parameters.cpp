@@ -104,11 +104,19 @@ void readCommand(ParameterReader& reader, aesop::CommandConfig& config) {
   reader.refuseUnknown("command");
 }
 
+void readCodec(ParameterReader& reader, const std::string& path, aesop::CodecFactory& codec) {
+  if (!reader.has(path)) return;
+  std::string name = aesop::codecNames().front();
+  reader.read(path, name, aesop::codecNames());
+  codec = aesop::codecNamed(name);
+}
+
 void readLink(ParameterReader& reader, aesop::SessionConfig& config) {
   reader.read("link/rate", config.rate, 0.0, 1000.0);
   reader.read("link/time_to_live", config.time_to_live, -kLarge, kLarge);
   reader.read("link/status_timeout", config.status_timeout, -kLarge, kLarge);
   reader.read("link/request_timeout", config.request_timeout, -kLarge, kLarge);
+  readCodec(reader, "link/codec", config.codec);
   reader.refuseUnknown("link");
 }
 
@@ -141,6 +149,7 @@ sim::EmulatorConfig readEmulatorConfig(ParameterReader& reader) {
   readJoints(reader, "emulator/dead_zone", config.arm.dead_zone);
   reader.read("emulator/breakaway", config.arm.breakaway, -kLarge, kLarge);
   reader.read("emulator/time_constant", config.arm.time_constant, -kLarge, kLarge);
+  readCodec(reader, "emulator/codec", config.codec);
   reader.refuseUnknown("emulator");
   reader.addErrors(sim::validate(config));
   return config;

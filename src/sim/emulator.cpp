@@ -18,20 +18,21 @@ std::vector<std::string> validate(const EmulatorConfig& config) {
   std::vector<std::string> errors;
   append("kinematics", aesop::validate(config.kinematics), errors);
   append("emulator", validate(config.arm), errors);
+  if (!config.codec) errors.emplace_back("emulator/codec: there is none, expected one that makes a codec");
   return errors;
 }
 
 Emulator::Emulator(const EmulatorConfig& config, double now)
-    : kinematics_(config.kinematics), arm_(kinematics_, config.arm), power_on_(now) {
+    : kinematics_(config.kinematics), arm_(kinematics_, config.arm), codec_(config.codec()), power_on_(now) {
   arm_.step(now);
 }
 
 aesop::Bytes Emulator::receive(const std::uint8_t* data, std::size_t size, double now) {
   step(now);
   aesop::Bytes replies;
-  for (const aesop::Frame& request : decoder_.push(data, size)) {
+  for (const aesop::Frame& request : codec_->push(data, size)) {
     heard_ = now;
-    const aesop::Bytes reply = aesop::encode({++reply_sequence_, answer(request, now)});
+    const aesop::Bytes reply = codec_->encode({++reply_sequence_, answer(request, now)});
     replies.insert(replies.end(), reply.begin(), reply.end());
   }
   return replies;
@@ -124,7 +125,7 @@ void Emulator::lie(Lie lie, double now) {
 void Emulator::reboot(double now) {
   step(now);
   arm_.brake();
-  decoder_.reset();
+  codec_->reset();
   power_on_ = now;
   state_ = cause_ == 0 ? RobotState::kDisabled : RobotState::kFault;
   faults_ = cause_;

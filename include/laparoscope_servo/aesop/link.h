@@ -34,7 +34,7 @@ struct LinkStatistics {
 class Link {
  public:
   // `driven`: bit k - 1 for each driven joint k, as the configuration has it; the controller has to agree.
-  Link(const SessionConfig& config, std::uint8_t driven) : config_(config), driven_(driven) {}
+  Link(const SessionConfig& config, std::uint8_t driven) : config_(config), driven_(driven), codec_(config.codec()) {}
 
   void opened(double now);
   void closed(const std::string& reason);
@@ -44,7 +44,7 @@ class Link {
   void watch(double now);
   // The request that (re)begins the session, when one is due; to be sent while the link is not up.
   Bytes identify(double now);
-  // One request. Throws std::invalid_argument like encode().
+  // One request. Throws std::invalid_argument like Codec::encode().
   Bytes send(const Message& message, double now);
   // Whether it is time for the next request.
   bool due(double now) const { return now >= next_; }
@@ -73,7 +73,7 @@ class Link {
   LinkState state_ = LinkState::kClosed;
   std::string reason_ = "the port is not open";
   std::string model_;
-  Decoder decoder_;
+  std::unique_ptr<Codec> codec_;
   LinkStatistics statistics_;
   std::uint16_t sequence_ = 0;
   std::array<double, 64> sent_at_{};  // s, of the last requests, by sequence number modulo 64

@@ -11,6 +11,7 @@
 namespace laparoscope_servo::aesop {
 
 constexpr int kDrivenJoints = 4;
+constexpr double kLargestNumber = 2000.0;  // of positions and velocities, m or rad (a second), either sign
 
 // Requests, from the host.
 struct Identify {};    // begins a session; whatever the controller did before, it is DISABLED after it

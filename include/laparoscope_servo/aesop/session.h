@@ -41,8 +41,8 @@ class Session {
   void closed(const std::string& reason);
   void receive(const std::uint8_t* data, std::size_t size, double now);
   // What to send now, often nothing. `speed`: of the driven joints, as wanted at this moment; it reaches the wire only
-  // while ENABLED. All zero, one that is not finite or beyond kLargestNumber, is a stop, which is sent at once and
-  // until the controller confirms that it stands.
+  // while ENABLED. All zero, one that is not finite or that the wire cannot carry, is a stop, which is sent at once
+  // and until the controller confirms that it stands.
   Bytes transmit(const std::array<double, kDrivenJoints>& speed, double now);
 
   OperatingState state() const;
@@ -55,6 +55,7 @@ class Session {
   void drop(const std::string& reason);
   void watch(double now);
   void take(const Status& status);
+  Bytes request(bool move, const std::array<double, kDrivenJoints>& speed, double now);
   Message next(bool move, const std::array<double, kDrivenJoints>& speed);
 
   SessionConfig config_;
@@ -70,6 +71,7 @@ class Session {
   std::uint16_t request_sequence_ = 0;  // of the last request before the enable
   double deadline_ = 0.0;               // s, for the confirmation under way
   std::string reason_ = "not enabled yet";
+  std::string refusal_;  // why the last speed did not reach the wire
 };
 
 }  // namespace laparoscope_servo::aesop

@@ -16,6 +16,7 @@ namespace laparoscope_servo::sim {
 struct EmulatorConfig {
   aesop::KinematicsConfig kinematics;
   ArmConfig arm;
+  aesop::CodecFactory codec = aesop::makeOwnCodec;  // the wire format
 };
 
 // Every error, the name of its group in front.
@@ -66,7 +67,7 @@ class Emulator {
 
   aesop::Kinematics kinematics_;
   Arm arm_;
-  aesop::Decoder decoder_;
+  std::unique_ptr<aesop::Codec> codec_;
   double power_on_;
   aesop::RobotState state_ = aesop::RobotState::kDisabled;
   std::uint16_t cause_ = 0;

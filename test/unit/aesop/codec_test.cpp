@@ -1,118 +1,28 @@
+// What every codec promises, and what the session does with one that cannot carry what it is given.
 #include "laparoscope_servo/aesop/codec.h"
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <fstream>
-#include <limits>
-#include <map>
-#include <sstream>
 #include <stdexcept>
 
+#include "laparoscope_servo/aesop/session.h"
+#include "laparoscope_servo/sim/emulator.h"
+#include "line_codec.h"
 #include "messages.h"
 
 namespace laparoscope_servo::aesop {
 namespace {
 
-TEST(Codec, everyMessageComesBack) {
-  std::uint16_t sequence = 65530;
-  for (const Message& message : oneOfEach()) {
-    Decoder decoder;
-    const std::vector<Frame> frames = decoder.push(encode({++sequence, message}));
-    ASSERT_EQ(frames.size(), 1u);
-    EXPECT_EQ(frames[0].sequence, sequence);
-    EXPECT_EQ(frames[0].message.index(), message.index());
-    EXPECT_EQ(decoder.statistics().skipped_bytes, 0u);
+TEST(Codec, isFoundByName) {
+  ASSERT_FALSE(codecNames().empty());
+  for (const std::string& name : codecNames()) EXPECT_FALSE(codecNamed(name)()->name().empty());
+  EXPECT_EQ(codecNamed("own")()->name(), makeOwnCodec()->name());
+  try {
+    codecNamed("vendor");
+    FAIL() << "there is no such codec";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("'vendor', expected one of: own"), std::string::npos) << error.what();
   }
-}
-
-TEST(Codec, valuesComeBackToAMillionth) {
-  Decoder decoder;
-  const Status sent = someStatus();
-  const Status got = std::get<Status>(decoder.push(encode({7, sent}))[0].message);
-  EXPECT_EQ(got.state, sent.state);
-  EXPECT_EQ(got.homed, sent.homed);
-  EXPECT_EQ(got.moving, sent.moving);
-  EXPECT_EQ(got.faults, sent.faults);
-  EXPECT_EQ(got.echo, sent.echo);
-  EXPECT_NEAR(got.time, sent.time, 5e-4);
-  EXPECT_LE((got.position - sent.position).lpNorm<Eigen::Infinity>(), 0.5e-6 + 1e-12);
-  EXPECT_LE((got.velocity - sent.velocity).lpNorm<Eigen::Infinity>(), 0.5e-6 + 1e-12);
-  const Velocity velocity{{0.001, -0.3, 0.2, -0.5}, 0.2};
-  const Velocity back = std::get<Velocity>(decoder.push(encode({8, velocity}))[0].message);
-  for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(back.speed[k], velocity.speed[k], 1e-9);
-  EXPECT_DOUBLE_EQ(back.time_to_live, 0.2);
-  const Identity identity{7, 0x47, "sixteen letters!"};
-  EXPECT_EQ(std::get<Identity>(decoder.push(encode({9, identity}))[0].message).model, identity.model);
-}
-
-// The worked examples of doc/aesop_protocol.md, read from there: lines of "example NAME", then indented bytes.
-std::map<std::string, Bytes> documentedExamples() {
-  std::ifstream file(PROTOCOL_DOCUMENT);
-  std::map<std::string, Bytes> examples;
-  std::string name;
-  for (std::string line; std::getline(file, line);) {
-    if (line.rfind("Example `", 0) == 0) {
-      name = line.substr(9, line.find('`', 9) - 9);
-    } else if (!name.empty() && line.rfind("    ", 0) == 0) {
-      std::istringstream bytes(line);
-      for (unsigned byte = 0; bytes >> std::hex >> byte;) examples[name].push_back(static_cast<std::uint8_t>(byte));
-    } else if (line.rfind('#', 0) == 0) {
-      name.clear();
-    }
-  }
-  return examples;
-}
-
-template <typename T>
-T decodeExample(const std::string& name, std::uint16_t sequence) {
-  const Bytes bytes = documentedExamples()[name];
-  const std::vector<Frame> frames = Decoder().push(bytes);
-  if (frames.size() != 1 || !std::holds_alternative<T>(frames[0].message))
-    throw std::runtime_error("no such example: " + name);
-  EXPECT_EQ(frames[0].sequence, sequence) << name;
-  EXPECT_EQ(encode(frames[0]), bytes) << name << " is not what the encoder writes";
-  return std::get<T>(frames[0].message);
-}
-
-TEST(Codec, documentedExamples) {
-  EXPECT_EQ(documentedExamples().size(), 5u);
-  decodeExample<Identify>("identify", 0);
-  decodeExample<Enable>("enable", 1);
-  const Velocity velocity = decodeExample<Velocity>("velocity", 258);
-  EXPECT_DOUBLE_EQ(velocity.time_to_live, 0.2);
-  EXPECT_DOUBLE_EQ(velocity.speed[0], -0.0004);
-  EXPECT_DOUBLE_EQ(velocity.speed[2], -0.0033);
-  const Identity identity = decodeExample<Identity>("identity", 0);
-  EXPECT_EQ(identity.joints, 7);
-  EXPECT_EQ(identity.driven, 0x47);
-  EXPECT_EQ(identity.model, "EMULATED AESOP");
-  const Status status = decodeExample<Status>("status", 258);
-  EXPECT_EQ(status.state, RobotState::kEnabled);
-  EXPECT_TRUE(status.homed && status.moving);
-  EXPECT_EQ(status.faults, 0);
-  EXPECT_EQ(status.echo, 258);
-  EXPECT_DOUBLE_EQ(status.time, 12.345);
-  EXPECT_DOUBLE_EQ(status.position[1], -0.9);
-  EXPECT_DOUBLE_EQ(status.velocity[6], 0.005);
-}
-
-TEST(Codec, encoderRefusesWhatHasNoNumber) {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  const double inf = std::numeric_limits<double>::infinity();
-  for (const double bad : {nan, inf, -inf, 2001.0, 1e300}) {
-    EXPECT_THROW(encode({1, Velocity{{0.0, bad, 0.0, 0.0}, 0.1}}), std::invalid_argument);
-    EXPECT_THROW(encode({1, Velocity{{0.0, 0.0, 0.0, 0.0}, bad}}), std::invalid_argument);
-    Status status = someStatus();
-    status.position[3] = bad;
-    EXPECT_THROW(encode({1, status}), std::invalid_argument);
-    status = someStatus();
-    status.velocity[6] = bad;
-    EXPECT_THROW(encode({1, status}), std::invalid_argument);
-  }
-  EXPECT_THROW(encode({1, Velocity{{}, 0.0}}), std::invalid_argument);
-  EXPECT_THROW(encode({1, Identity{7, 0, "seventeen letters"}}), std::invalid_argument);
-  EXPECT_THROW(encode({1, Identity{7, 0, "tab\t"}}), std::invalid_argument);
 }
 
 TEST(Codec, sequenceNumbersWrap) {
@@ -123,10 +33,114 @@ TEST(Codec, sequenceNumbersWrap) {
   EXPECT_EQ(compareSequence(65530, 2), -1);
 }
 
-TEST(Messages, unknownFaultBitsAreFaults) {
-  EXPECT_EQ(describeFaults(0), "");
-  EXPECT_EQ(describeFaults(kFaultMotor), "motor");
-  EXPECT_EQ(describeFaults(kFaultMotor | 0x8000), "motor, unknown fault bits 0x8000");
+// What doc/aesop_protocol.md asks of any codec; to be instantiated for another one.
+template <typename T>
+class AnyCodec : public ::testing::Test {};
+using Codecs = ::testing::Types<OwnCodec, LineCodec>;
+TYPED_TEST_SUITE(AnyCodec, Codecs);
+
+TYPED_TEST(AnyCodec, everyMessageComesBackInPiecesOfAnyLength) {
+  for (std::size_t piece = 1; piece < 40; ++piece) {
+    TypeParam host;
+    TypeParam controller;
+    std::uint16_t sequence = 65530;
+    Bytes stream;
+    for (const Message& message : oneOfEach()) {
+      const Bytes bytes = host.encode({++sequence, message});
+      EXPECT_LE(bytes.size(), host.longestFrame());
+      stream.insert(stream.end(), bytes.begin(), bytes.end());
+    }
+    std::vector<Frame> frames;
+    for (std::size_t at = 0; at < stream.size(); at += piece) {
+      for (const Frame& frame : controller.push(stream.data() + at, std::min(piece, stream.size() - at))) {
+        frames.push_back(frame);
+      }
+    }
+    ASSERT_EQ(frames.size(), oneOfEach().size());
+    for (std::size_t k = 0; k < frames.size(); ++k) {
+      EXPECT_EQ(frames[k].message.index(), oneOfEach()[k].index());
+      EXPECT_EQ(frames[k].sequence, static_cast<std::uint16_t>(65531 + k));
+      EXPECT_EQ(host.encode(frames[k]), host.encode({frames[k].sequence, oneOfEach()[k]}));
+    }
+    EXPECT_EQ(controller.statistics().frames, frames.size());
+    EXPECT_EQ(controller.statistics().skipped_bytes, 0u);
+  }
+}
+
+TYPED_TEST(AnyCodec, damageIsFoundAndOutlived) {
+  TypeParam codec;
+  const Bytes good = codec.encode({5, Velocity{{0.01, 0.02, 0.03, 0.04}, 0.1}});
+  for (std::size_t bit = 0; bit < 8 * good.size(); ++bit) {
+    Bytes bad = good;
+    bad[bit / 8] = static_cast<std::uint8_t>(bad[bit / 8] ^ (1u << (bit % 8)));
+    TypeParam receiver;
+    EXPECT_TRUE(receiver.push(bad.data(), bad.size()).empty()) << "bit " << bit;
+    std::size_t frames = receiver.push(good.data(), good.size()).size();
+    frames += receiver.push(good.data(), good.size()).size();
+    EXPECT_GE(frames, 1u) << "bit " << bit;
+  }
+}
+
+TYPED_TEST(AnyCodec, resetForgetsHalfAFrame) {
+  TypeParam codec;
+  const Bytes bytes = codec.encode({5, someStatus()});
+  EXPECT_TRUE(codec.push(bytes.data(), bytes.size() / 2).empty());
+  codec.reset();
+  EXPECT_EQ(codec.push(bytes.data(), bytes.size()).size(), 1u);
+}
+
+// A format that is narrower than the messages allow.
+class NarrowCodec : public OwnCodec {
+ public:
+  Bytes encode(const Frame& frame) override {
+    const auto* velocity = std::get_if<Velocity>(&frame.message);
+    if (velocity != nullptr && velocity->speed[0] > 0.01) throw std::invalid_argument("speed is more than 0.01");
+    return OwnCodec::encode(frame);
+  }
+};
+
+TEST(Codec, whatItCannotCarryIsAStop) {
+  SessionConfig config;
+  config.codec = [] { return std::make_unique<NarrowCodec>(); };
+  Session session(config, 0x47);
+  sim::Emulator emulator(sim::EmulatorConfig(), 0.0);
+  double now = 0.0;
+  session.opened(now);
+  const auto run = [&](double speed, int steps) {
+    for (int k = 0; k < steps; ++k) {
+      now += 0.005;
+      const Bytes requests = session.transmit({speed, 0.0, 0.0, 0.0}, now);
+      const Bytes replies = emulator.receive(requests.data(), requests.size(), now);
+      session.receive(replies.data(), replies.size(), now);
+    }
+  };
+  run(0.0, 20);
+  ASSERT_EQ(session.enable(now), "");
+  run(0.01, 100);
+  EXPECT_TRUE(emulator.arm().isMoving());
+  EXPECT_EQ(session.state().reason, "");
+  run(0.02, 100);
+  EXPECT_FALSE(emulator.arm().isMoving());
+  EXPECT_EQ(session.state().mode, OperatingMode::kEnabled);
+  EXPECT_NE(session.state().reason.find("more than 0.01"), std::string::npos) << session.state().reason;
+  run(0.01, 100);
+  EXPECT_TRUE(emulator.arm().isMoving());
+  EXPECT_EQ(session.state().reason, "");
+}
+
+TEST(Codec, twoFormatsOnOneLineNeverComeUp) {
+  sim::EmulatorConfig lines;
+  lines.codec = [] { return std::make_unique<LineCodec>(); };
+  sim::Emulator emulator(lines, 0.0);
+  Session session(SessionConfig(), 0x47);
+  session.opened(0.0);
+  for (double now = 0.0; now < 5.0; now += 0.005) {
+    const Bytes requests = session.transmit({}, now);
+    const Bytes replies = emulator.receive(requests.data(), requests.size(), now);
+    session.receive(replies.data(), replies.size(), now);
+    ASSERT_FALSE(session.link().isUp());
+  }
+  EXPECT_NE(session.enable(5.0), "");
 }
 
 }  // namespace

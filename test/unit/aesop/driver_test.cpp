@@ -1,4 +1,5 @@
-// The driver in a closed loop with the emulated controller, in simulated time, over lines good and bad.
+// The driver in a closed loop with the emulated controller, in simulated time, over lines good and bad, through each of
+// two wire formats: nothing but the codec knows which.
 #include "laparoscope_servo/aesop/driver.h"
 
 #include <gtest/gtest.h>
@@ -7,6 +8,7 @@
 #include <stdexcept>
 
 #include "laparoscope_servo/sim/faults.h"
+#include "line_codec.h"
 
 namespace laparoscope_servo::aesop {
 namespace {
@@ -14,9 +16,25 @@ namespace {
 constexpr double kTick = 0.005;
 constexpr double kStampOffset = 1000.0;  // s, of the stamping clock ahead of the steady one
 
-class DriverTest : public ::testing::Test {
+struct NamedFormat {
+  const char* name;
+  CodecFactory codec;
+};
+
+class DriverTest : public ::testing::TestWithParam<NamedFormat> {
  protected:
   explicit DriverTest() { driver_.opened(0.0); }
+
+  static DriverConfig driverConfig() {
+    DriverConfig config;
+    config.session.codec = GetParam().codec;
+    return config;
+  }
+  static sim::EmulatorConfig emulatorConfig() {
+    sim::EmulatorConfig config;
+    config.codec = GetParam().codec;
+    return config;
+  }
 
   // Lets `seconds` pass; commands at 25 Hz when `pan` is not zero.
   void run(double seconds, double pan = 0.0) {
@@ -71,13 +89,13 @@ class DriverTest : public ::testing::Test {
   int commands_ = 0;
   bool host_alive_ = true;
   bool cut_ = false;
-  Driver driver_{DriverConfig()};
-  sim::Emulator emulator_{sim::EmulatorConfig(), 0.0};
+  Driver driver_{driverConfig()};
+  sim::Emulator emulator_{emulatorConfig(), 0.0};
   sim::Wire wire_{1};
   sim::Faults faults_{emulator_, wire_};
 };
 
-TEST_F(DriverTest, theScopeTurnsAsCommanded) {
+TEST_P(DriverTest, theScopeTurnsAsCommanded) {
   const Kinematics kinematics{KinematicsConfig()};
   const Eigen::Isometry3d before = kinematics.optical(emulator_.arm().position());
   enable();
@@ -89,25 +107,25 @@ TEST_F(DriverTest, theScopeTurnsAsCommanded) {
   EXPECT_NEAR(kinematics.leverArm(emulator_.arm().position(), DriverConfig().insertion_point), 0.2, 1e-3);
 }
 
-TEST_F(DriverTest, nothingMovesBeforeEnable) {
+TEST_P(DriverTest, nothingMovesBeforeEnable) {
   const JointVector before = emulator_.arm().position();
   run(2.0, 0.05);
   EXPECT_EQ(emulator_.arm().position(), before);
 }
 
-TEST_F(DriverTest, commandsThatEndStopTheArm) {
+TEST_P(DriverTest, commandsThatEndStopTheArm) {
   startMoving();
   EXPECT_LT(timeToStand(), kLongestStop);
   EXPECT_EQ(mode(), OperatingMode::kEnabled);
 }
 
-TEST_F(DriverTest, aHostThatDiesStopsTheArm) {  // by the controller's time to live alone
+TEST_P(DriverTest, aHostThatDiesStopsTheArm) {  // by the controller's time to live alone
   startMoving();
   host_alive_ = false;
   EXPECT_LT(timeToStand(), kLongestStop);
 }
 
-TEST_F(DriverTest, aCutLineStopsTheArmAndOnlyEnableMovesItAgain) {
+TEST_P(DriverTest, aCutLineStopsTheArmAndOnlyEnableMovesItAgain) {
   startMoving();
   cut_ = true;
   EXPECT_LT(timeToStand(0.05), kLongestStop);
@@ -123,7 +141,7 @@ TEST_F(DriverTest, aCutLineStopsTheArmAndOnlyEnableMovesItAgain) {
   EXPECT_TRUE(emulator_.arm().isMoving());
 }
 
-TEST_F(DriverTest, notFiniteStopsTheArmAndSaysSo) {
+TEST_P(DriverTest, notFiniteStopsTheArmAndSaysSo) {
   startMoving();
   EXPECT_NE(command({std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0, 0.0}), "");
   run(kTick);
@@ -131,7 +149,7 @@ TEST_F(DriverTest, notFiniteStopsTheArmAndSaysSo) {
   EXPECT_LT(timeToStand(), kLongestStop - 0.2 + 0.02);
 }
 
-TEST_F(DriverTest, aFaultBrakes) {
+TEST_P(DriverTest, aFaultBrakes) {
   startMoving();
   emulator_.setFaultCause(kFaultEmergencyStop, now_);
   EXPECT_TRUE(emulator_.arm().velocity().isZero(0.0));
@@ -144,7 +162,7 @@ TEST_F(DriverTest, aFaultBrakes) {
   EXPECT_FALSE(emulator_.arm().isMoving());
 }
 
-TEST_F(DriverTest, anEmulatorThatRestartsIsNotMovedAgain) {
+TEST_P(DriverTest, anEmulatorThatRestartsIsNotMovedAgain) {
   startMoving();
   emulator_.reboot(now_);
   const JointVector before = emulator_.arm().position();
@@ -154,7 +172,7 @@ TEST_F(DriverTest, anEmulatorThatRestartsIsNotMovedAgain) {
 }
 
 // A bad line: the arm may stop, but moves only as commanded, and comes back.
-TEST_F(DriverTest, badLines) {
+TEST_P(DriverTest, badLines) {
   for (const auto& [fault, value] : {std::pair<const char*, const char*>{"drop", "0.002"},
                                      {"corrupt", "0.002"},
                                      {"double", "0.002"},
@@ -183,7 +201,7 @@ TEST_F(DriverTest, badLines) {
   EXPECT_GT(driver_.session().link().statistics().decoder.crc_errors, 0u);
 }
 
-TEST_F(DriverTest, slowedAtTheDepthWithItsReason) {
+TEST_P(DriverTest, slowedAtTheDepthWithItsReason) {
   enable();
   for (int k = 0; k < 800; ++k) {
     command({0.0, 0.0, 0.0, 0.02});
@@ -193,6 +211,12 @@ TEST_F(DriverTest, slowedAtTheDepthWithItsReason) {
   const double d1 = driver_.kinematics().leverArm(emulator_.arm().position(), DriverConfig().insertion_point);
   EXPECT_LE(0.30 - d1, KinematicsConfig().depth_maximum + 1e-3);
 }
+
+INSTANTIATE_TEST_SUITE_P(
+    Formats, DriverTest,
+    ::testing::Values(NamedFormat{"own", makeOwnCodec},
+                      NamedFormat{"lines", [] { return std::unique_ptr<Codec>(std::make_unique<LineCodec>()); }}),
+    [](const ::testing::TestParamInfo<NamedFormat>& format) { return std::string(format.param.name); });
 
 TEST(Driver, refusesAWrongConfiguration) {
   EXPECT_TRUE(validate(DriverConfig()).empty());

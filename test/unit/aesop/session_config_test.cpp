@@ -19,6 +19,13 @@ TEST(SessionConfig, errorsAreNamed) {
   EXPECT_NE(validate(config)[0].find("stutters"), std::string::npos);
 }
 
+TEST(SessionConfig, needsACodec) {
+  SessionConfig config;
+  config.codec = nullptr;
+  ASSERT_EQ(validate(config).size(), 1u);
+  EXPECT_NE(validate(config)[0].find("codec"), std::string::npos);
+}
+
 TEST(SessionConfig, warnsWhenTheLineIsTooSlow) {
   SessionConfig config;
   EXPECT_EQ(lineWarning(config, 38400), "");

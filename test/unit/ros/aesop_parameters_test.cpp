@@ -51,6 +51,7 @@ TEST(AesopParameters, shippedFileIsTheDefaults) {
   EXPECT_EQ(read.driver.session.time_to_live, defaults.driver.session.time_to_live);
   EXPECT_EQ(read.driver.session.status_timeout, defaults.driver.session.status_timeout);
   EXPECT_EQ(read.driver.session.request_timeout, defaults.driver.session.request_timeout);
+  EXPECT_EQ(read.driver.session.codec()->name(), defaults.driver.session.codec()->name());
 }
 
 TEST(AesopParameters, everyParameterOfTheShippedFileIsRead) {
@@ -77,6 +78,7 @@ TEST(EmulatorParameters, shippedFilesAreTheDefaults) {
   EXPECT_EQ(read.arm.insertion_point, defaults.arm.insertion_point);
   EXPECT_EQ(read.arm.delay, defaults.arm.delay);
   EXPECT_EQ(read.arm.dead_zone, defaults.arm.dead_zone);
+  EXPECT_EQ(read.codec()->name(), defaults.codec()->name());
   EXPECT_EQ(read.arm.breakaway, defaults.arm.breakaway);
   EXPECT_EQ(read.arm.time_constant, defaults.arm.time_constant);
 }

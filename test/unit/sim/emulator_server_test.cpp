@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "laparoscope_servo/aesop/own_codec.h"
 #include "laparoscope_servo/aesop/transport.h"
 #include "laparoscope_servo/sim/emulator_control_client.h"
 

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "laparoscope_servo/aesop/own_codec.h"
+
 namespace laparoscope_servo::sim {
 namespace {
 

@@ -4,7 +4,7 @@
 #include <random>
 #include <vector>
 
-#include "laparoscope_servo/aesop/codec.h"
+#include "laparoscope_servo/aesop/own_codec.h"
 #include "messages.h"
 
 namespace laparoscope_servo::aesop {
@@ -35,36 +35,31 @@ TEST(CodecDamage, sumIsCcittFalse) {
   EXPECT_EQ(frameOf(1, 0x06, {}), encode({7, Poll()}));
 }
 
+Bytes changed(Bytes bytes, std::size_t at, std::uint8_t value) {
+  bytes[at] = value;
+  return bytes;
+}
+
 TEST(CodecDamage, malformedFramesAreCountedAndNotDelivered) {
-  Bytes velocity(18, 0);
-  velocity[0] = 200;
+  const Bytes velocity = changed(Bytes(18, 0), 0, 200);
+  const Bytes status(66, 0);
+  const Bytes identity(18, 0);
   ASSERT_EQ(Decoder().push(frameOf(1, 0x07, velocity)).size(), 1u);
-  Bytes no_time = velocity;
-  no_time[0] = 0;
-  Bytes long_time = velocity;
-  long_time[1] = 0x10;
-  Bytes status(66, 0);
   ASSERT_EQ(Decoder().push(frameOf(1, 0x82, status)).size(), 1u);
-  Bytes unknown_state = status;
-  unknown_state[0] = 3;
-  Bytes unknown_flag = status;
-  unknown_flag[1] = 4;
-  Bytes identity(18, 0);
   ASSERT_EQ(Decoder().push(frameOf(1, 0x81, identity)).size(), 1u);
-  Bytes unprintable = identity;
-  unprintable[2] = 0x07;
-  Bytes after_end = identity;
-  after_end[10] = 'x';
   const std::vector<Bytes> malformed = {
-      frameOf(1, 0x07, no_time),
-      frameOf(1, 0x07, long_time),
+      frameOf(1, 0x07, changed(velocity, 0, 0)),     // no time to live
+      frameOf(1, 0x07, changed(velocity, 1, 0x10)),  // one that is too long
+      frameOf(1, 0x07, changed(velocity, 5, 0x7F)),  // a speed of 2130 m/s
+      frameOf(1, 0x07, changed(velocity, 5, 0x80)),  // and of -2147
       frameOf(1, 0x07, Bytes(17, 1)),
       frameOf(1, 0x07, Bytes(19, 1)),
-      frameOf(1, 0x82, unknown_state),
-      frameOf(1, 0x82, unknown_flag),
+      frameOf(1, 0x82, changed(status, 0, 3)),  // a state that is none
+      frameOf(1, 0x82, changed(status, 1, 4)),  // a flag that is none
+      frameOf(1, 0x82, changed(status, 65, 0x80)),
       frameOf(1, 0x82, Bytes(65, 0)),
-      frameOf(1, 0x81, unprintable),
-      frameOf(1, 0x81, after_end),
+      frameOf(1, 0x81, changed(identity, 2, 0x07)),  // not printable
+      frameOf(1, 0x81, changed(identity, 10, 'x')),  // after the end
       frameOf(1, 0x02, Bytes(1, 0)),
       frameOf(1, 0x00, {}),
       frameOf(1, 0x83, {}),
@@ -73,6 +68,7 @@ TEST(CodecDamage, malformedFramesAreCountedAndNotDelivered) {
     Decoder decoder;
     EXPECT_TRUE(decoder.push(bytes).empty());
     EXPECT_EQ(decoder.statistics().malformed, 1u);
+    EXPECT_EQ(decoder.statistics().skipped_bytes, bytes.size());
     EXPECT_EQ(decoder.push(encode({1, Poll()})).size(), 1u);
   }
 }
