@@ -32,6 +32,7 @@ std::vector<std::string> validate(const DriverConfig& config) {
   append("motion", validate(config.motion), errors);
   append("command", validate(config.command), errors);
   append("link", validate(config.session), errors);
+  append("monitor", validate(config.monitor), errors);
   if (!(config.insertion_point.norm() < 10.0)) {
     std::ostringstream text;
     text << "insertion_point = (" << config.insertion_point.transpose() << "), expected finite numbers within 10 m";
@@ -45,7 +46,8 @@ Driver::Driver(const DriverConfig& config)
       motion_(config.motion),
       insertion_point_(config.insertion_point),
       guard_(config.command),
-      session_(config.session, drivenMask(kinematics_)) {}
+      session_(config.session, drivenMask(kinematics_)),
+      monitor_(config.monitor, kinematics_) {}
 
 std::string Driver::enable(double stamp_now, double now) {
   guard_.reset(stamp_now);
@@ -61,6 +63,22 @@ std::string Driver::resume(double stamp_now) {
 std::string Driver::command(const ScopeVelocity& velocity, double stamp, double stamp_now, double now) {
   refusal_ = guard_.accept(velocity, stamp, stamp_now, now);
   return refusal_;
+}
+
+void Driver::receive(const std::uint8_t* data, std::size_t size, double now) {
+  session_.receive(data, size, now);
+  const std::uint64_t received = session_.link().statistics().received;
+  if (received == monitored_) return;
+  monitored_ = received;
+  watchMotion(now);
+}
+
+void Driver::watchMotion(double now) {
+  const OperatingMode mode = session_.state().mode;
+  // In DISABLED a hand may move the arm as it likes.
+  if (mode != OperatingMode::kEnabled && mode != OperatingMode::kPaused) return monitor_.reset();
+  const std::string reason = monitor_.take(*session_.link().status(), speed_, now);
+  if (!reason.empty()) session_.giveUp(reason);
 }
 
 OperatingState Driver::state(double now) const {
@@ -84,6 +102,7 @@ Bytes Driver::transmit(double now) {
         jointMotion(kinematics_, motion_, session_.link().status()->position, insertion_point_, guard_.velocity(now));
     for (std::size_t k = 0; k < speed.size(); ++k) speed[k] = last_motion_.velocity[kinematics_.driven()[k]];
   }
+  speed_ = speed;
   return session_.transmit(speed, now);
 }
 

@@ -97,14 +97,21 @@ void Link::take(const Status& status, double now) {
     begin("the controller has restarted", now);
     return;
   }
+  if (compareSequence(status.echo, sequence_) > 0) {
+    begin("the controller answers requests that were never sent", now);
+    return;
+  }
   ++statistics_.received;
   status_ = status;
-  status_at_ = now;
+  // Its age counts from the request: a line that holds bytes back delivers old news in time.
   const auto behind = static_cast<std::uint16_t>(sequence_ - status.echo);
-  if (behind < sent_at_.size()) {
-    statistics_.round_trip = now - sent_at_[status.echo % sent_at_.size()];
-    statistics_.longest_round_trip = std::max(statistics_.longest_round_trip, statistics_.round_trip);
+  if (behind >= sent_at_.size()) {
+    status_at_ = -std::numeric_limits<double>::infinity();
+    return;
   }
+  status_at_ = sent_at_[status.echo % sent_at_.size()];
+  statistics_.round_trip = now - status_at_;
+  statistics_.longest_round_trip = std::max(statistics_.longest_round_trip, statistics_.round_trip);
 }
 
 void Link::countLosses(std::uint16_t number) {
@@ -117,7 +124,7 @@ void Link::countLosses(std::uint16_t number) {
 void Link::watch(double now) {
   if (!isUp() || !(statusAge(now) > config_.status_timeout)) return;
   std::ostringstream text;
-  text << "the controller has sent no status for " << config_.status_timeout << " s";
+  text << "the controller has sent no status for " << config_.status_timeout << " s, or answers later than that";
   begin(text.str(), now);
 }
 

@@ -120,6 +120,15 @@ void readLink(ParameterReader& reader, aesop::SessionConfig& config) {
   reader.refuseUnknown("link");
 }
 
+void readMonitor(ParameterReader& reader, aesop::MonitorConfig& config) {
+  reader.read("monitor/response_time", config.response_time, -kLarge, kLarge);
+  reader.read("monitor/slowest_angle", config.slowest_angle, -kLarge, kLarge);
+  reader.read("monitor/slowest_distance", config.slowest_distance, -kLarge, kLarge);
+  reader.read("monitor/tolerance_angle", config.tolerance_angle, -kLarge, kLarge);
+  reader.read("monitor/tolerance_distance", config.tolerance_distance, -kLarge, kLarge);
+  reader.refuseUnknown("monitor");
+}
+
 }  // namespace
 
 AesopParameters readAesopParameters(ParameterReader& reader) {
@@ -134,6 +143,7 @@ AesopParameters readAesopParameters(ParameterReader& reader) {
   readMotion(reader, parameters.driver.motion);
   readCommand(reader, parameters.driver.command);
   readLink(reader, parameters.driver.session);
+  readMonitor(reader, parameters.driver.monitor);
   readPoint(reader, "insertion_point", parameters.driver.insertion_point);
   reader.refuseUnknown("");
   reader.addErrors(aesop::validate(parameters.driver));

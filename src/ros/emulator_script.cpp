@@ -127,7 +127,7 @@ std::vector<std::string> unknownEmulatorParameters(const XmlRpcValue& tree) {
   static const char* const kKnown[] = {"kinematics", "emulator"};
   // One file describes the arm for both ends.
   static const char* const kOfTheNode[] = {"port",   "baud_rate", "frame_prefix", "optics", "insertion_point",
-                                           "motion", "command",   "link"};
+                                           "motion", "command",   "link",         "monitor"};
   std::vector<std::string> errors;
   if (tree.getType() != XmlRpcValue::TypeStruct) return errors;
   const auto in = [](const auto& names, const std::string& name) {

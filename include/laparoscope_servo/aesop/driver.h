@@ -5,6 +5,7 @@
 #pragma once
 
 #include "laparoscope_servo/aesop/command_guard.h"
+#include "laparoscope_servo/aesop/motion_monitor.h"
 #include "laparoscope_servo/aesop/session.h"
 
 namespace laparoscope_servo::aesop {
@@ -14,6 +15,7 @@ struct DriverConfig {
   MotionConfig motion;
   CommandConfig command;
   SessionConfig session;
+  MonitorConfig monitor;
   Eigen::Vector3d insertion_point{0.574, -0.079, -0.05};  // m, in aesop_base
 };
 
@@ -37,7 +39,7 @@ class Driver {
 
   void opened(double now) { session_.opened(now); }
   void closed(const std::string& reason) { session_.closed(reason); }
-  void receive(const std::uint8_t* data, std::size_t size, double now) { session_.receive(data, size, now); }
+  void receive(const std::uint8_t* data, std::size_t size, double now);
   Bytes transmit(double now);
 
   // Session's state; while ENABLED its reason says why the arm does not do what was commanded, and is empty when it
@@ -51,11 +53,16 @@ class Driver {
   const JointMotion& lastMotion() const { return last_motion_; }
 
  private:
+  void watchMotion(double now);
+
   Kinematics kinematics_;
   MotionConfig motion_;
   Eigen::Vector3d insertion_point_;
   CommandGuard guard_;
   Session session_;
+  MotionMonitor monitor_;
+  std::uint64_t monitored_ = 0;                // statuses received when the monitor took the last one
+  std::array<double, kDrivenJoints> speed_{};  // of the driven joints, as commanded last
   JointMotion last_motion_;
   std::string refusal_;  // of the last command; empty when it was accepted
 };

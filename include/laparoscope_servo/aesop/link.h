@@ -57,7 +57,7 @@ class Link {
   std::uint16_t sequence() const { return sequence_; }
   // Last status of this session.
   const std::optional<Status>& status() const { return status_; }
-  // s; infinite when there is none.
+  // s since the request that it answers was sent: no less than what it tells is old. Infinite when there is none.
   double statusAge(double now) const;
   const LinkStatistics& statistics() const { return statistics_; }
   const std::string& model() const { return model_; }
@@ -76,7 +76,7 @@ class Link {
   std::unique_ptr<Codec> codec_;
   LinkStatistics statistics_;
   std::uint16_t sequence_ = 0;
-  std::array<double, 64> sent_at_{};  // s, of the last requests, by sequence number modulo 64
+  std::array<double, 1024> sent_at_{};  // s, of the last requests, by sequence number modulo their count
   double next_ = 0.0;
   std::optional<Status> status_;
   double status_at_ = 0.0;

@@ -111,6 +111,11 @@ void AesopBench::send(double pan, double insertion, const ros::Time& stamp) {
   commands_.publish(message);
 }
 
+void AesopBench::send(ScopeVelocity command) {
+  command.header.stamp = ros::Time::now();
+  commands_.publish(command);
+}
+
 std_srvs::Trigger::Response AesopBench::call(const std::string& service) {
   std_srvs::Trigger trigger;
   if (!ros::service::call("aesop/" + service, trigger))

@@ -52,12 +52,17 @@ TEST(AesopParameters, shippedFileIsTheDefaults) {
   EXPECT_EQ(read.driver.session.status_timeout, defaults.driver.session.status_timeout);
   EXPECT_EQ(read.driver.session.request_timeout, defaults.driver.session.request_timeout);
   EXPECT_EQ(read.driver.session.codec()->name(), defaults.driver.session.codec()->name());
+  EXPECT_EQ(read.driver.monitor.response_time, defaults.driver.monitor.response_time);
+  EXPECT_EQ(read.driver.monitor.slowest_angle, defaults.driver.monitor.slowest_angle);
+  EXPECT_EQ(read.driver.monitor.slowest_distance, defaults.driver.monitor.slowest_distance);
+  EXPECT_EQ(read.driver.monitor.tolerance_angle, defaults.driver.monitor.tolerance_angle);
+  EXPECT_EQ(read.driver.monitor.tolerance_distance, defaults.driver.monitor.tolerance_distance);
 }
 
 TEST(AesopParameters, everyParameterOfTheShippedFileIsRead) {
   XmlRpc::XmlRpcValue tree = shipped("aesop.yaml");
   tree["port"] = std::string("/dev/ttyUSB0");
-  for (const char* group : {"motion", "command", "link"}) {
+  for (const char* group : {"motion", "command", "link", "monitor"}) {
     for (auto& member : tree[group]) {
       XmlRpc::XmlRpcValue changed = tree;
       changed[group][member.first] = std::string("wrong");
