@@ -7,27 +7,20 @@
 #include <thread>
 
 #include "laparoscope_servo/ros/aesop_conversions.h"
+#include "laparoscope_servo/ros/clocks.h"
 #include "laparoscope_servo/servo/scope_geometry.h"
 
 namespace laparoscope_servo::skin {
 
 namespace {
 
-using aesop::OperatingMode;
-
 constexpr std::chrono::milliseconds kPeriod{5};
+constexpr std::uint32_t kQueue = 100;      // commands
 constexpr double kReconnectPause = 0.5;    // s
 constexpr double kReportPause = 1.0;       // s, between two warnings of one kind
 constexpr double kDiagnosticsPause = 1.0;  // s
 constexpr double kStatePeriod = 0.1;       // s, between two publications of an operating state that stays
 constexpr double kLastWord = 0.5;          // s, for the controller to confirm the disable when the node ends
-
-double steadyNow() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-double stampNow() {
-  return ros::Time::now().toSec();
-}
 
 }  // namespace
 
@@ -36,25 +29,31 @@ AesopNode::AesopNode(const ros::NodeHandle& node, const ros::NodeHandle& private
     : parameters_(parameters),
       tip_R_optical_(servo::obliqueOptics(parameters.optics_angle, parameters.optics_roll).transpose()),
       driver_(parameters.driver),
-      line_warning_(aesop::lineWarning(parameters.driver.session, parameters.baud_rate)),
+      master_(node.resolveName(parameters.publisher, false)),
+      reported_(parameters.port, aesop::lineWarning(parameters.driver.session, parameters.baud_rate)),
       node_(node),
       private_node_(private_node) {
   joint_publisher_ = private_node_.advertise<sensor_msgs::JointState>("measured_js", 10);
   pose_publisher_ = private_node_.advertise<geometry_msgs::PoseStamped>("measured_cp", 10);
   twist_publisher_ = private_node_.advertise<geometry_msgs::TwistStamped>("measured_cv", 10);
   state_publisher_ = private_node_.advertise<OperatingState>("operating_state", 10, true);
-  // Only the newest command counts.
+  for (const std::string& caller : parameters.service_callers)
+    service_callers_.push_back(node_.resolveName(caller, false));
+  // Only the master's newest command counts, but others must not push it out of the queue.
   command_subscriber_ =
-      node_.subscribe("servo_command", 1, &AesopNode::onCommand, this, ros::TransportHints().tcpNoDelay());
-  services_ = {private_node_.advertiseService("enable", &AesopNode::enable, this),
-               private_node_.advertiseService("disable", &AesopNode::disable, this),
-               private_node_.advertiseService("clear_fault", &AesopNode::clearFault, this),
-               private_node_.advertiseService("pause", &AesopNode::pause, this),
-               private_node_.advertiseService("resume", &AesopNode::resume, this)};
+      node_.subscribe("servo_command", kQueue, &AesopNode::onCommand, this, ros::TransportHints().tcpNoDelay());
+  advertise("enable", &AesopNode::enable, Callers::kNamed);
+  advertise("resume", &AesopNode::resume, Callers::kNamed);
+  advertise("clear_fault", &AesopNode::clearFault, Callers::kNamed);
+  // What makes the arm stand is for everybody.
+  advertise("disable", &AesopNode::disable, Callers::kAll);
+  advertise("pause", &AesopNode::pause, Callers::kAll);
   diagnostics_.setHardwareID(parameters_.port);
-  diagnostics_.add("AESOP", this, &AesopNode::describe);
+  diagnostics_.add("AESOP", [this](diagnostic_updater::DiagnosticStatusWrapper& status) {
+    reported_.fill(steadyNow(), driver_, master_, command_subscriber_.getNumPublishers(), status);
+  });
   publishStaticFrames();
-  if (!line_warning_.empty()) ROS_WARN_STREAM(line_warning_);
+  if (!reported_.lineWarning().empty()) ROS_WARN_STREAM(reported_.lineWarning());
 }
 
 void AesopNode::run(const std::atomic<bool>& stop) {
@@ -79,6 +78,7 @@ void AesopNode::step() {
       lose(error.what(), now);
     }
   }
+  if (!driver_.session().isEnabled()) master_.release();
   publishStatus();
   publishState(now);
   if (now >= next_diagnostics_) {
@@ -137,59 +137,31 @@ void AesopNode::shutDown() {
   transport_.close();
 }
 
-void AesopNode::onCommand(const ScopeVelocity& message) {
+void AesopNode::onCommand(const ros::MessageEvent<ScopeVelocity const>& event) {
   const double now = steadyNow();
-  const std::string refusal = driver_.command(fromMessage(message), message.header.stamp.toSec(), stampNow(), now);
+  const ScopeVelocity& message = *event.getConstMessage();
+  switch (master_.judge(event.getPublisherName(), event.getConnectionHeaderPtr(), now)) {
+    case CommandMaster::Verdict::kStranger:
+      return report(master_.complaint(now), next_stranger_, now);
+    case CommandMaster::Verdict::kNewConnection:
+      // Restarted, replaced by another process of its name, or joined by one: which of them shall move the arm is for
+      // somebody to say who sees it stand.
+      driver_.pause(master_.name() + " has connected anew; resume when it may command the arm");
+      return;
+    case CommandMaster::Verdict::kMaster:
+      break;
+  }
+  const aesop::ScopeVelocity velocity = fromMessage(message);
+  const std::string refusal = driver_.command(velocity, message.header.stamp.toSec(), stampNow(), now);
   // Commands that come before the arm is enabled are nobody's mistake, but one that is not finite is.
-  if (refusal.empty() || now < next_report_) return;
-  if (!driver_.session().isEnabled() && fromMessage(message).isFinite()) return;
-  next_report_ = now + kReportPause;
-  ROS_WARN_STREAM("a command was refused: " << refusal);
+  if (!refusal.empty() && (driver_.session().isEnabled() || !velocity.isFinite()))
+    report("a command was refused: " + refusal, next_report_, now);
 }
 
-bool AesopNode::enable(Request&, Response& response) {
-  response.message = driver_.enable(stampNow(), steadyNow());
-  if (!response.message.empty()) return true;
-  const auto settled = [this] {
-    return driver_.session().isEnabled() || !driver_.session().link().isUp() || !driver_.state(steadyNow()).is_busy;
-  };
-  stepUntil(settled, parameters_.driver.session.request_timeout + 0.1);
-  response.success = driver_.session().isEnabled();
-  response.message = response.success ? "enabled" : driver_.state(steadyNow()).reason;
-  return true;
-}
-
-bool AesopNode::disable(Request&, Response& response) {
-  response.message = driver_.disable(steadyNow());
-  if (!response.message.empty()) return true;
-  const auto settled = [this] { return !driver_.state(steadyNow()).is_busy; };
-  response.success = stepUntil(settled, parameters_.driver.session.request_timeout) && driver_.session().link().isUp();
-  response.message =
-      response.success ? "disabled, the arm stands" : "the controller has not confirmed that the arm stands";
-  return true;
-}
-
-bool AesopNode::clearFault(Request&, Response& response) {
-  response.message = driver_.clearFault(steadyNow());
-  if (!response.message.empty()) return true;
-  const auto settled = [this] { return !driver_.state(steadyNow()).is_busy; };
-  stepUntil(settled, parameters_.driver.session.request_timeout + 0.1);
-  const aesop::OperatingState state = driver_.state(steadyNow());
-  response.success = state.mode == OperatingMode::kDisabled && driver_.session().link().isUp();
-  response.message = state.reason;
-  return true;
-}
-
-bool AesopNode::pause(Request&, Response& response) {
-  response.message = driver_.pause();
-  response.success = response.message.empty();
-  return true;
-}
-
-bool AesopNode::resume(Request&, Response& response) {
-  response.message = driver_.resume(stampNow());
-  response.success = response.message.empty();
-  return true;
+void AesopNode::report(const std::string& refusal, double& next, double now) {
+  if (now < next) return;
+  next = now + kReportPause;
+  ROS_WARN_STREAM(refusal);
 }
 
 void AesopNode::publishStatus() {
@@ -205,8 +177,15 @@ void AesopNode::publishStatus() {
   broadcaster_.sendTransform(linkTransforms(driver_.kinematics(), status.position, prefix, stamp));
 }
 
+aesop::OperatingState AesopNode::state(double now) const {
+  aesop::OperatingState state = driver_.state(now);
+  const std::string complaint = master_.complaint(now);
+  if (!complaint.empty()) state.reason += (state.reason.empty() ? "" : "; ") + complaint;
+  return state;
+}
+
 void AesopNode::publishState(double now) {
-  const aesop::OperatingState state = driver_.state(now);
+  const aesop::OperatingState state = this->state(now);
   // Repeated, so that who relies on it notices when it ends.
   if (state_published_ && state == last_state_ && now - state_time_ < kStatePeriod) return;
   state_time_ = now;
@@ -219,44 +198,8 @@ void AesopNode::publishState(double now) {
 }
 
 void AesopNode::publishStaticFrames() {
-  static_broadcaster_.sendTransform(
-      fixedTransforms(driver_.kinematics(), driver_.insertionPoint(), tip_R_optical_, parameters_.frame_prefix, ros::Time::now()));
-}
-
-void AesopNode::describe(diagnostic_updater::DiagnosticStatusWrapper& status) {
-  using diagnostic_msgs::DiagnosticStatus;
-  const double now = steadyNow();
-  const aesop::Link& link = driver_.session().link();
-  const aesop::LinkStatistics& statistics = link.statistics();
-  const aesop::OperatingState state = driver_.state(now);
-  const std::uint64_t errors = statistics.decoder.crc_errors + statistics.decoder.malformed + statistics.lost;
-  status.summary(DiagnosticStatus::OK,
-                 std::string(aesop::name(state.mode)) + (state.reason.empty() ? "" : ": ") + state.reason);
-  if (!link.isUp() || state.mode == OperatingMode::kFault) {
-    status.level = DiagnosticStatus::ERROR;
-  } else if (!line_warning_.empty()) {
-    status.mergeSummary(DiagnosticStatus::WARN, line_warning_);
-  } else if (errors > errors_reported_) {
-    status.mergeSummary(DiagnosticStatus::WARN, "the line loses bytes");
-  }
-  errors_reported_ = errors;
-  status.add("port", parameters_.port);
-  status.add("link", aesop::name(link.state()));
-  status.add("controller", link.model());
-  status.add("state", aesop::name(state.mode));
-  status.add("age of the last status [s]", link.statusAge(now));
-  status.add("age of the last command [s]", driver_.guard().age(now));
-  status.add("commands accepted", driver_.guard().accepted());
-  status.add("commands refused", driver_.guard().refused());
-  status.add("round trip [s]", statistics.round_trip);
-  status.add("longest round trip [s]", statistics.longest_round_trip);
-  status.add("requests sent", statistics.sent);
-  status.add("statuses received", statistics.received);
-  status.add("replies lost", statistics.lost);
-  status.add("CRC errors", statistics.decoder.crc_errors);
-  status.add("malformed frames", statistics.decoder.malformed);
-  status.add("bytes skipped", statistics.decoder.skipped_bytes);
-  status.add("sessions", statistics.sessions);
+  static_broadcaster_.sendTransform(fixedTransforms(driver_.kinematics(), driver_.insertionPoint(), tip_R_optical_,
+                                                    parameters_.frame_prefix, ros::Time::now()));
 }
 
 }  // namespace laparoscope_servo::skin

@@ -1,5 +1,7 @@
 #include "laparoscope_servo/ros/aesop_parameters.h"
 
+#include <ros/names.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -94,7 +96,15 @@ void readMotion(ParameterReader& reader, aesop::MotionConfig& config) {
   reader.refuseUnknown("motion");
 }
 
-void readCommand(ParameterReader& reader, aesop::CommandConfig& config) {
+void checkNodeName(ParameterReader& reader, const std::string& path, const std::string& name) {
+  std::string why;
+  if (!name.empty() && name[0] != '~' && ros::names::validate(name, why)) return;
+  reader.addError(path + " = '" + name + "', expected the name of a node, e.g. controller or /controller");
+}
+
+void readCommand(ParameterReader& reader, std::string& publisher, aesop::CommandConfig& config) {
+  reader.read("command/publisher", publisher);
+  checkNodeName(reader, "command/publisher", publisher);
   reader.read("command/timeout", config.timeout, -kLarge, kLarge);
   reader.read("command/max_stamp_age", config.max_stamp_age, -kLarge, kLarge);
   reader.read("command/max_pan", config.max_pan, -kLarge, kLarge);
@@ -137,11 +147,13 @@ AesopParameters readAesopParameters(ParameterReader& reader) {
   reader.read("port", parameters.port);
   reader.read("baud_rate", parameters.baud_rate, 1200, 1000000);
   reader.read("frame_prefix", parameters.frame_prefix);
+  reader.read("service_callers", parameters.service_callers);
+  for (const std::string& caller : parameters.service_callers) checkNodeName(reader, "service_callers", caller);
   reader.read("optics/angle", parameters.optics_angle, -1.3, 1.3);
   reader.read("optics/roll", parameters.optics_roll, -3.2, 3.2);
   readKinematics(reader, parameters.driver.kinematics);
   readMotion(reader, parameters.driver.motion);
-  readCommand(reader, parameters.driver.command);
+  readCommand(reader, parameters.publisher, parameters.driver.command);
   readLink(reader, parameters.driver.session);
   readMonitor(reader, parameters.driver.monitor);
   readPoint(reader, "insertion_point", parameters.driver.insertion_point);

@@ -193,6 +193,20 @@ void ParameterReader::read(const std::string& path, std::vector<double>& value, 
   value = result;
 }
 
+void ParameterReader::read(const std::string& path, std::vector<std::string>& value) {
+  const XmlRpcValue* found = take(path);
+  if (found == nullptr) return;
+  if (found->getType() != XmlRpcValue::TypeArray) return wrongType(path, *found, "a list of strings");
+  std::vector<std::string> result;
+  for (int k = 0; k < found->size(); ++k) {
+    const XmlRpcValue& item = (*found)[k];
+    if (item.getType() != XmlRpcValue::TypeString)
+      return wrongType(path + "[" + std::to_string(k) + "]", item, "a string");
+    result.push_back(static_cast<const std::string&>(item));
+  }
+  value = result;
+}
+
 bool ParameterReader::has(const std::string& path) const {
   const XmlRpcValue* value = find(path);
   return value != nullptr && value->valid();

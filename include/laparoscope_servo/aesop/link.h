@@ -55,6 +55,8 @@ class Link {
   const std::string& reason() const { return reason_; }
   // Sequence number of the request sent last.
   std::uint16_t sequence() const { return sequence_; }
+  // Counts on from here: for a recording that begins in the middle.
+  void setSequence(std::uint16_t sequence) { sequence_ = sequence; }
   // Last status of this session.
   const std::optional<Status>& status() const { return status_; }
   // s since the request that it answers was sent: no less than what it tells is old. Infinite when there is none.

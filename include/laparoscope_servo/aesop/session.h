@@ -26,6 +26,10 @@ struct OperatingState {
   }
 };
 
+// As in a recording: a byte for the mode, one for the flags, the reason. The way back throws std::invalid_argument.
+Bytes payloadOf(const OperatingState& state);
+OperatingState stateOf(const Bytes& payload);
+
 class Session {
  public:
   Session(const SessionConfig& config, std::uint8_t driven) : config_(config), link_(config, driven) {}
@@ -34,7 +38,7 @@ class Session {
   std::string enable(double now);
   std::string disable(double now);
   std::string clearFault(double now);
-  std::string pause();
+  std::string pause(const std::string& reason = "paused on request");
   std::string resume();
   // Disables because something is wrong; until the next enable, the state tells what.
   void giveUp(const std::string& reason) { drop(reason); }
@@ -50,6 +54,7 @@ class Session {
   OperatingState state() const;
   bool isEnabled() const;  // ENABLED and confirmed, and not paused
   const Link& link() const { return link_; }
+  void setSequence(std::uint16_t sequence) { link_.setSequence(sequence); }
 
  private:
   enum class Wish { kDisabled, kEnabled };

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <diagnostic_updater/diagnostic_updater.h>
+#include <ros/message_event.h>
 #include <ros/node_handle.h>
 #include <std_srvs/Trigger.h>
 #include <tf2_ros/static_transform_broadcaster.h>
@@ -15,7 +16,9 @@
 
 #include "laparoscope_servo/ScopeVelocity.h"
 #include "laparoscope_servo/aesop/transport.h"
+#include "laparoscope_servo/ros/aesop_diagnostics.h"
 #include "laparoscope_servo/ros/aesop_parameters.h"
+#include "laparoscope_servo/ros/command_master.h"
 
 namespace laparoscope_servo::skin {
 
@@ -28,7 +31,6 @@ class AesopNode {
   void run(const std::atomic<bool>& stop);
 
  private:
-  using Request = std_srvs::Trigger::Request;
   using Response = std_srvs::Trigger::Response;
 
   void step();
@@ -38,29 +40,39 @@ class AesopNode {
   // Steps until `done` or for `seconds`; says whether it is done.
   bool stepUntil(const std::function<bool()>& done, double seconds);
 
-  void onCommand(const ScopeVelocity& message);
-  bool enable(Request& request, Response& response);
-  bool disable(Request& request, Response& response);
-  bool clearFault(Request& request, Response& response);
-  bool pause(Request& request, Response& response);
-  bool resume(Request& request, Response& response);
+  void onCommand(const ros::MessageEvent<ScopeVelocity const>& event);
+  void report(const std::string& refusal, double& next, double now);
+
+  // Each returns what the service answers.
+  Response enable();
+  Response disable();
+  Response clearFault();
+  Response pause();
+  Response resume();
+  using Action = Response (AesopNode::*)();
+  // Whether everybody may call it, or only the nodes that the configuration names.
+  enum class Callers { kAll, kNamed };
+  void advertise(const std::string& name, Action action, Callers callers);
 
   void publishStatus();
+  // The driver's, with what it does not know: whose commands were refused.
+  aesop::OperatingState state(double now) const;
   void publishState(double now);
   void publishStaticFrames();
-  void describe(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   AesopParameters parameters_;
   Eigen::Matrix3d tip_R_optical_;
   aesop::Driver driver_;
+  CommandMaster master_;
+  std::vector<std::string> service_callers_;  // resolved
   aesop::SerialTransport transport_;
-  std::string line_warning_;
+  AesopDiagnostics reported_;
   double next_attempt_ = 0.0;      // s, steady: to open the port
   double next_diagnostics_ = 0.0;  // s, steady
   double next_report_ = 0.0;       // s, steady: of a refused command
+  double next_stranger_ = 0.0;     // s, steady: of a publisher that is not the master
   std::string last_loss_;
   std::uint64_t published_ = 0;  // statuses received when the last one was published
-  std::uint64_t errors_reported_ = 0;
   aesop::OperatingState last_state_;
   bool state_published_ = false;
   double state_time_ = 0.0;  // s, steady, of the last publication

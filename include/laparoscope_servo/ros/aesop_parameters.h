@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "laparoscope_servo/aesop/driver.h"
 #include "laparoscope_servo/ros/parameters.h"
@@ -15,6 +16,10 @@ struct AesopParameters {
   std::string port;          // required
   int baud_rate = 38400;     // 1200 to 1000000
   std::string frame_prefix;  // in front of every frame's name
+  // Node whose velocity commands count; a name without a leading slash is one of the node's namespace.
+  std::string publisher = "controller";
+  // Nodes that may call enable, resume and clear_fault; none: every node.
+  std::vector<std::string> service_callers;
   double optics_angle = 0.0;  // rad, between the shaft and the optical axis, -1.3 to 1.3
   double optics_roll = 0.0;   // rad, of the camera about the shaft, -3.2 to 3.2
 };

@@ -32,6 +32,9 @@ class ParameterReader {
   // A list of numbers: exactly `size` of them, or any number when `size` is 0. Bounds hold for each.
   void read(const std::string& path, std::vector<double>& value, std::size_t size, double minimum, double maximum);
 
+  // A list of strings, of any length.
+  void read(const std::string& path, std::vector<std::string>& value);
+
   bool has(const std::string& path) const;
   // Adds an error when the parameter is absent.
   void require(const std::string& path, const std::string& what);

@@ -146,8 +146,5 @@ TEST(AesopNode, disablesTheArmWhenRosShutsItDown) {
 }  // namespace laparoscope_servo::test
 
 int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  ros::init(argc, argv, "aesop_node_test");
-  const ros::NodeHandle keep_alive;
-  return RUN_ALL_TESTS();
+  return laparoscope_servo::test::runBenchTests(argc, argv, "aesop_node_test");
 }

@@ -1,5 +1,6 @@
 #include "system/aesop/aesop_bench.h"
 
+#include <gtest/gtest.h>
 #include <stdlib.h>
 
 #include <chrono>
@@ -71,6 +72,11 @@ AesopBench::~AesopBench() {
 void AesopBench::startNode() {
   XmlRpc::XmlRpcValue parameters = skin::parametersFromYaml(AESOP_CONFIG);
   parameters["port"] = port();
+  parameters["command"]["publisher"] = master_.empty() ? ros::this_node::getName() : master_;
+  XmlRpc::XmlRpcValue callers;
+  callers.setSize(0);
+  for (const std::string& caller : service_callers_) callers[callers.size()] = caller;
+  parameters["service_callers"] = callers;
   ros::param::set("/aesop", parameters);
   state_.reset();
   node_ = std::make_unique<ChildProcess>(AESOP_NODE, std::vector<std::string>{"__name:=aesop"});
@@ -132,6 +138,12 @@ bool AesopBench::startMoving() {
   return enable() && commandUntil([this] { return jointsMove(); }, 0.05);
 }
 
+std::unique_ptr<ChildProcess> AesopBench::publisher(const std::string& name, double pan, double rate) {
+  return std::make_unique<ChildProcess>(
+      "/proc/self/exe", std::vector<std::string>{"publish", "__name:=" + name, "_pan:=" + std::to_string(pan),
+                                                 "_rate:=" + std::to_string(rate)});
+}
+
 double AesopBench::timeToStandStill(double limit) {
   const double start = steadyNow();
   while (jointsMove() && steadyNow() - start < limit) std::this_thread::sleep_for(std::chrono::microseconds(500));
@@ -149,6 +161,35 @@ double AesopBench::motionWithin(double seconds, const std::function<void()>& mea
       },
       seconds);
   return largest;
+}
+
+namespace {
+
+int publish() {
+  ros::NodeHandle node;
+  ros::Publisher publisher = node.advertise<ScopeVelocity>("servo_command", 1);
+  const double pan = ros::param::param("~pan", 0.0);
+  // As any node does. One that has never logged registers itself again when it is replaced, and ends its successor, too.
+  ROS_INFO_STREAM("commands a pan of " << pan << " rad/s");
+  ros::WallRate rate(ros::param::param("~rate", 25.0));
+  while (ros::ok()) {
+    ScopeVelocity command;
+    command.header.stamp = ros::Time::now();
+    command.pan = pan;
+    publisher.publish(command);
+    rate.sleep();
+  }
+  return 0;
+}
+
+}  // namespace
+
+int runBenchTests(int argc, char** argv, const std::string& name) {
+  testing::InitGoogleTest(&argc, argv);
+  ros::init(argc, argv, name);
+  if (argc > 1 && std::string(argv[1]) == "publish") return publish();
+  const ros::NodeHandle keep_alive;
+  return RUN_ALL_TESTS();
 }
 
 }  // namespace laparoscope_servo::test

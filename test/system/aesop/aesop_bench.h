@@ -13,6 +13,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "laparoscope_servo/OperatingState.h"
 #include "laparoscope_servo/ScopeVelocity.h"
@@ -57,8 +58,17 @@ class AesopBench {
   double motionWithin(
       double seconds, const std::function<void()>& meanwhile = [] {});
 
+  // Another process that commands a pan, rad/s, at `rate`, Hz, until it ends. Only in a test whose main is
+  // runBenchTests().
+  std::unique_ptr<ChildProcess> publisher(const std::string& name, double pan, double rate = 25.0);
+
   bool stateIs(const std::string& state) const { return state_ && state_->state == state; }
   bool isUp() const { return state_ && state_->is_homed; }
+
+  // For the next start of the node. Whose commands count; this test's when empty.
+  std::string master_;
+  // Who may enable; everybody when empty.
+  std::vector<std::string> service_callers_;
 
   std::optional<OperatingState> state_;
   std::optional<sensor_msgs::JointState> joints_;
@@ -75,5 +85,8 @@ class AesopBench {
   std::vector<ros::Subscriber> subscribers_;
   ros::Publisher commands_;
 };
+
+// main() of a test with a bench; the same program is the other processes that the tests start.
+int runBenchTests(int argc, char** argv, const std::string& name);
 
 }  // namespace laparoscope_servo::test

@@ -141,8 +141,5 @@ TEST(AesopStart, simulatedTimeThatStandsDoesNotStopTheWatchdog) {
 }  // namespace laparoscope_servo::test
 
 int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  ros::init(argc, argv, "aesop_start_test");
-  const ros::NodeHandle keep_alive;
-  return RUN_ALL_TESTS();
+  return laparoscope_servo::test::runBenchTests(argc, argv, "aesop_start_test");
 }

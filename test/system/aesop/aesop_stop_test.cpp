@@ -51,15 +51,16 @@ void measure(AesopBench& bench, const std::string& name, const Step& cause, cons
 }
 
 TEST(AesopStop, controllerKilled) {
-  AesopBench bench;
+  AesopBench bench(false);
+  bench.master_ = "/command_publisher";
+  bench.startNode();
   std::vector<double> times;
   for (int run = 0; run < runs(); ++run) {
     ASSERT_TRUE(bench.enable());
-    ChildProcess controller("/proc/self/exe",
-                            {"publish", "__name:=command_publisher", run % 2 == 0 ? "_pan:=0.05" : "_pan:=-0.05"});
+    const auto controller = bench.publisher("command_publisher", direction(run));
     ASSERT_TRUE(bench.waitFor([&] { return bench.jointsMove(); }, 10.0));
     bench.waitFor([] { return false; }, 0.5);
-    controller.kill(SIGKILL);
+    controller->kill(SIGKILL);
     times.push_back(bench.timeToStandStill());
     EXPECT_EQ(bench.motionWithin(0.5), 0.0);
     EXPECT_TRUE(bench.waitFor([&] { return bench.state_->reason.find("run out") != std::string::npos; }))
@@ -149,29 +150,9 @@ TEST(AesopStop, faultOfTheRobot) {
       });
 }
 
-// Stands in for a controller: commands a pan of ~pan rad/s at 25 Hz until it is killed.
-int publish() {
-  ros::NodeHandle node;
-  ros::Publisher publisher = node.advertise<ScopeVelocity>("servo_command", 1);
-  const double pan = ros::param::param("~pan", kPan);
-  ros::WallRate rate(25.0);
-  while (ros::ok()) {
-    ScopeVelocity command;
-    command.header.stamp = ros::Time::now();
-    command.pan = pan;
-    publisher.publish(command);
-    rate.sleep();
-  }
-  return 0;
-}
-
 }  // namespace
 }  // namespace laparoscope_servo::test
 
 int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  ros::init(argc, argv, "aesop_stop_test");
-  if (argc > 1 && std::string(argv[1]) == "publish") return laparoscope_servo::test::publish();
-  const ros::NodeHandle keep_alive;
-  return RUN_ALL_TESTS();
+  return laparoscope_servo::test::runBenchTests(argc, argv, "aesop_stop_test");
 }

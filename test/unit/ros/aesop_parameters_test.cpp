@@ -47,6 +47,8 @@ TEST(AesopParameters, shippedFileIsTheDefaults) {
   EXPECT_EQ(read.driver.command.max_tilt, defaults.driver.command.max_tilt);
   EXPECT_EQ(read.driver.command.max_spin, defaults.driver.command.max_spin);
   EXPECT_EQ(read.driver.command.max_insertion, defaults.driver.command.max_insertion);
+  EXPECT_EQ(read.publisher, defaults.publisher);
+  EXPECT_EQ(read.service_callers, defaults.service_callers);
   EXPECT_EQ(read.driver.session.rate, defaults.driver.session.rate);
   EXPECT_EQ(read.driver.session.time_to_live, defaults.driver.session.time_to_live);
   EXPECT_EQ(read.driver.session.status_timeout, defaults.driver.session.status_timeout);
@@ -65,12 +67,33 @@ TEST(AesopParameters, everyParameterOfTheShippedFileIsRead) {
   for (const char* group : {"motion", "command", "link", "monitor"}) {
     for (auto& member : tree[group]) {
       XmlRpc::XmlRpcValue changed = tree;
-      changed[group][member.first] = std::string("wrong");
+      changed[group][member.first] = std::string("no number, no name");
       ParameterReader reader(changed, "/aesop");
       readAesopParameters(reader);
       EXPECT_EQ(reader.errors().size(), 1u) << group << "/" << member.first;
     }
   }
+}
+
+TEST(AesopParameters, namesOfNodesHaveToBeNames) {
+  const auto errors = [](const XmlRpc::XmlRpcValue& publisher, const XmlRpc::XmlRpcValue& caller) {
+    XmlRpc::XmlRpcValue tree = shipped("aesop.yaml");
+    tree["port"] = std::string("/dev/ttyUSB0");
+    tree["command"]["publisher"] = publisher;
+    tree["service_callers"][0] = caller;
+    ParameterReader reader(tree, "/aesop");
+    readAesopParameters(reader);
+    return reader.errors();
+  };
+  EXPECT_TRUE(errors("controller", "/left/rqt_gui").empty());
+  for (const char* wrong : {"", "~controller", "a controller", "1controller", "/con-troller"}) {
+    ASSERT_EQ(errors(wrong, "/rqt_gui").size(), 1u) << wrong;
+    EXPECT_NE(errors(wrong, "/rqt_gui")[0].find(std::string("command/publisher = '") + wrong), std::string::npos);
+    ASSERT_EQ(errors("/controller", wrong).size(), 1u) << wrong;
+    EXPECT_NE(errors("/controller", wrong)[0].find("service_callers"), std::string::npos);
+  }
+  EXPECT_EQ(errors(5, "/rqt_gui").size(), 1u);
+  EXPECT_EQ(errors("/controller", 5).size(), 1u);
 }
 
 TEST(EmulatorParameters, shippedFilesAreTheDefaults) {

@@ -159,6 +159,27 @@ TEST(ParameterReader, ListsAreCheckedElementByElement) {
   EXPECT_EQ(list, (std::vector<double>{1.0, 2.0, 3.0}));
 }
 
+TEST(ParameterReader, ListsOfStrings) {
+  std::vector<std::string> value{"kept"};
+  ParameterReader good(tree("names: [a, '1']\nnone: []"), "/node");
+  good.read("absent", value);
+  EXPECT_EQ(value, (std::vector<std::string>{"kept"}));
+  good.read("names", value);
+  EXPECT_EQ(value, (std::vector<std::string>{"a", "1"}));
+  good.read("none", value);
+  EXPECT_TRUE(value.empty());
+  EXPECT_TRUE(good.errors().empty()) << good.report();
+
+  value = {"kept"};
+  ParameterReader bad(tree("name: a\nmixed: [a, 1]"), "/node");
+  bad.read("name", value);
+  bad.read("mixed", value);
+  ASSERT_EQ(bad.errors().size(), 2u);
+  EXPECT_TRUE(contains(bad.errors()[0], "/node/name = 'a'")) << bad.errors()[0];
+  EXPECT_TRUE(contains(bad.errors()[1], "/node/mixed[1] = 1")) << bad.errors()[1];
+  EXPECT_EQ(value, (std::vector<std::string>{"kept"}));
+}
+
 TEST(ParameterReader, RefusesWhatNobodyReads) {
   const XmlRpcValue parameters = tree("{known: 1, unknown: 2, group: {known: 1, other: 2, deep: {deeper: 3}}}");
   ParameterReader reader(parameters, "/node");
