@@ -33,6 +33,7 @@ std::vector<std::string> validate(const DriverConfig& config) {
   append("motion", validate(config.motion), errors);
   append("command", validate(config.command), errors);
   append("link", validate(config.session), errors);
+  append("monitor", validate(config.monitor), errors);
   if (!(config.insertion_point.norm() < 10.0)) {
     std::ostringstream text;
     text << "insertion_point = (" << config.insertion_point.transpose() << "), expected finite numbers within 10 m";
@@ -46,7 +47,8 @@ Driver::Driver(const DriverConfig& config)
       motion_(config.motion),
       insertion_point_(config.insertion_point),
       guard_(config.command),
-      session_(config.session, drivenMask(kinematics_)) {}
+      session_(config.session, drivenMask(kinematics_)),
+      monitor_(config.monitor, kinematics_) {}
 
 void Driver::record(WireEvent event, Bytes payload) {
   if (tap_ != nullptr) tap_->take({event, tap_time_, std::move(payload)});
@@ -94,6 +96,25 @@ std::string Driver::command(const ScopeVelocity& velocity, double stamp, double 
   return refusal_;
 }
 
+void Driver::receive(const std::uint8_t* data, std::size_t size, double now) {
+  if (tap_ != nullptr && size > 0) record(WireEvent::kReceived, now, Bytes(data, data + size));
+  session_.receive(data, size, now);
+  const Link& link = session_.link();
+  if (!link.isUp()) delay_.lost();
+  if (link.statistics().received == statuses_) return;
+  statuses_ = link.statistics().received;
+  if (link.isUp()) delay_.received(*link.status(), now);
+  watchMotion(now);
+}
+
+void Driver::watchMotion(double now) {
+  const OperatingMode mode = session_.state().mode;
+  // In DISABLED a hand may move the arm as it likes.
+  if (mode != OperatingMode::kEnabled && mode != OperatingMode::kPaused) return monitor_.reset();
+  const std::string reason = monitor_.take(*session_.link().status(), speed_, now);
+  if (!reason.empty()) session_.giveUp(reason);
+}
+
 OperatingState Driver::state(double now) const {
   OperatingState state = session_.state();
   if (state.mode != OperatingMode::kEnabled || !state.reason.empty()) return state;
@@ -117,16 +138,6 @@ void Driver::closed(const std::string& reason) {
   session_.closed(reason);
 }
 
-void Driver::receive(const std::uint8_t* data, std::size_t size, double now) {
-  if (tap_ != nullptr && size > 0) record(WireEvent::kReceived, now, Bytes(data, data + size));
-  session_.receive(data, size, now);
-  const Link& link = session_.link();
-  if (!link.isUp()) delay_.lost();
-  if (!link.isUp() || link.statistics().received == statuses_) return;
-  statuses_ = link.statistics().received;
-  delay_.received(*link.status(), now);
-}
-
 Bytes Driver::transmit(double now) {
   Bytes bytes = turn(now);
   if (tap_ == nullptr) return bytes;
@@ -144,6 +155,7 @@ Bytes Driver::turn(double now) {
         jointMotion(kinematics_, motion_, session_.link().status()->position, insertion_point_, guard_.velocity(now));
     for (std::size_t k = 0; k < speed.size(); ++k) speed[k] = last_motion_.velocity[kinematics_.driven()[k]];
   }
+  speed_ = speed;
   const Bytes bytes = session_.transmit(speed, now);
   if (!bytes.empty()) delay_.sent(session_.isMoving() ? last_motion_.velocity : JointVector::Zero(), now);
   return bytes;

@@ -98,12 +98,21 @@ void Link::take(const Status& status, double now) {
     begin("the controller has restarted", now);
     return;
   }
+  if (compareSequence(status.echo, sequence_) > 0) {
+    begin("the controller answers requests that were never sent", now);
+    return;
+  }
   const bool answers = !status_ || status.echo != status_->echo;  // or it echoes again what it has taken before
   ++statistics_.received;
   status_ = status;
-  status_at_ = now;
+  // Its age counts from the request: a line that holds bytes back delivers old news in time.
   const auto behind = static_cast<std::uint16_t>(sequence_ - status.echo);
-  if (answers && behind < sent_at_.size()) round_trips_.add(now - sent_at_[status.echo % sent_at_.size()]);
+  if (behind >= sent_at_.size()) {
+    status_at_ = -std::numeric_limits<double>::infinity();
+    return;
+  }
+  status_at_ = sent_at_[status.echo % sent_at_.size()];
+  if (answers) round_trips_.add(now - status_at_);
 }
 
 void Link::countLosses(std::uint16_t number) {
@@ -116,7 +125,7 @@ void Link::countLosses(std::uint16_t number) {
 void Link::watch(double now) {
   if (!isUp() || !(statusAge(now) > config_.status_timeout)) return;
   std::ostringstream text;
-  text << "the controller has sent no status for " << config_.status_timeout << " s";
+  text << "the controller has sent no status for " << config_.status_timeout << " s, or answers later than that";
   begin(text.str(), now);
 }
 

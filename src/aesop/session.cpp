@@ -69,6 +69,7 @@ std::string Session::enable(double now) {
 
 std::string Session::disable(double now) {
   drop("disabled on request");
+  askForDisable();
   deadline_ = now + config_.request_timeout;
   return link_.isUp() ? "" : "not connected: " + link_.reason();
 }
@@ -104,7 +105,7 @@ void Session::closed(const std::string& reason) {
 }
 
 void Session::drop(const std::string& reason) {
-  if (wish_ == Wish::kEnabled) urgent_ = true;
+  if (wish_ == Wish::kEnabled) askForDisable();
   wish_ = Wish::kDisabled;
   confirmed_ = false;
   paused_ = false;
@@ -114,6 +115,13 @@ void Session::drop(const std::string& reason) {
   reason_ = reason;
 }
 
+// Repeated until the controller says that it has taken it and stands, whatever it said before: that may be wrong.
+void Session::askForDisable() {
+  disabling_ = true;
+  disable_sequence_ = static_cast<std::uint16_t>(link_.sequence() + 1);
+  urgent_ = true;
+}
+
 void Session::receive(const std::uint8_t* data, std::size_t size, double now) {
   const bool was_up = link_.isUp();
   for (const Status& status : link_.receive(data, size, now)) take(status);
@@ -121,6 +129,11 @@ void Session::receive(const std::uint8_t* data, std::size_t size, double now) {
 }
 
 void Session::take(const Status& status) {
+  if (disabling_ && compareSequence(status.echo, disable_sequence_) >= 0 && status.state != RobotState::kEnabled &&
+      !status.moving) {
+    disabling_ = false;
+    request_sequence_ = link_.sequence();
+  }
   if (isFault(status)) {
     const std::string text = faultText(status);
     const bool known = reason_.rfind(text, 0) == 0;
@@ -154,6 +167,7 @@ void Session::watch(double now) {
 Message Session::next(bool move, const std::array<double, kDrivenJoints>& speed) {
   const Status& status = *link_.status();
   if (clearing_) return ClearFault();
+  if (disabling_) return Disable();
   if (wish_ == Wish::kDisabled) return status.state == RobotState::kEnabled ? Message(Disable()) : Message(Poll());
   if (!confirmed_) return Enable();
   if (move) return Velocity{speed, config_.time_to_live};
@@ -209,7 +223,7 @@ OperatingState Session::state() const {
   }
   const Status& status = *link_.status();
   state.is_homed = status.homed;
-  state.is_busy = status.moving || clearing_ || (wish_ == Wish::kEnabled && !confirmed_) ||
+  state.is_busy = status.moving || clearing_ || disabling_ || (wish_ == Wish::kEnabled && !confirmed_) ||
                   (wish_ == Wish::kDisabled && status.state == RobotState::kEnabled);
   if (isFault(status)) {
     state.mode = OperatingMode::kFault;

@@ -146,6 +146,15 @@ void readReconnect(ParameterReader& reader, aesop::ReconnectConfig& config) {
   for (const std::string& error : aesop::validate(config)) reader.addError("reconnect/" + error);
 }
 
+void readMonitor(ParameterReader& reader, aesop::MonitorConfig& config) {
+  reader.read("monitor/response_time", config.response_time, -kLarge, kLarge);
+  reader.read("monitor/slowest_angle", config.slowest_angle, -kLarge, kLarge);
+  reader.read("monitor/slowest_distance", config.slowest_distance, -kLarge, kLarge);
+  reader.read("monitor/tolerance_angle", config.tolerance_angle, -kLarge, kLarge);
+  reader.read("monitor/tolerance_distance", config.tolerance_distance, -kLarge, kLarge);
+  reader.refuseUnknown("monitor");
+}
+
 }  // namespace
 
 AesopParameters readAesopParameters(ParameterReader& reader) {
@@ -164,6 +173,7 @@ AesopParameters readAesopParameters(ParameterReader& reader) {
   readLink(reader, parameters.driver.session);
   readWireLog(reader, parameters.wire_log);
   readReconnect(reader, parameters.reconnect);
+  readMonitor(reader, parameters.driver.monitor);
   readPoint(reader, "insertion_point", parameters.driver.insertion_point);
   reader.refuseUnknown("");
   reader.addErrors(aesop::validate(parameters.driver));

@@ -99,6 +99,7 @@ void Arm::step(double now) {
       next = pending_.empty() ? now : std::min(now, std::max(pending_.front().at, now_ + kEpsilon));
     } else {
       advance(next - now_);
+      if (!isInHand() && !qdot_.isZero(0.0)) moved_until_ = next;
     }
     now_ = next;
   }
@@ -108,6 +109,7 @@ JointVector Arm::drivenVelocity(double dt) const {
   JointVector velocity = JointVector::Zero();
   for (std::size_t k = 0; k < kDrivenJoints; ++k) {
     const int joint = kinematics_.driven()[k];
+    if (joint == jammed_) continue;
     const double dead = config_.dead_zone[joint];
     const double threshold = qdot_[joint] == 0.0 ? config_.breakaway * dead : dead;
     const double wanted = std::abs(target_[k]) > threshold ? target_[k] : 0.0;

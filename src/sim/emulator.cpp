@@ -1,5 +1,7 @@
 #include "laparoscope_servo/sim/emulator.h"
 
+#include <algorithm>
+
 namespace laparoscope_servo::sim {
 
 namespace {
@@ -29,6 +31,7 @@ aesop::Bytes Emulator::receive(const std::uint8_t* data, std::size_t size, doubl
   step(now);
   aesop::Bytes replies;
   for (const aesop::Frame& request : codec_->push(data, size)) {
+    heard_ = now;
     const aesop::Bytes reply = codec_->encode({++reply_sequence_, answer(request, now)});
     replies.insert(replies.end(), reply.begin(), reply.end());
   }
@@ -53,7 +56,7 @@ aesop::Message Emulator::answer(const aesop::Frame& request, double now) {
     last_sequence_ = request.sequence;
     execute(request.message, now);
   }
-  return status(now);
+  return liar_.tell(status(now));
 }
 
 void Emulator::execute(const aesop::Message& request, double now) {
@@ -74,6 +77,7 @@ void Emulator::execute(const aesop::Message& request, double now) {
     arm_.command(velocity->speed, now);
     velocity_until_ = now + velocity->time_to_live;
     driven_ = true;
+    if (velocity->speed != std::array<double, aesop::kDrivenJoints>{}) velocity_at_ = now;
   }
 }
 
@@ -89,9 +93,16 @@ void Emulator::fault(std::uint16_t bits) {
   arm_.brake();
 }
 
+void Emulator::watchHost(double now) {
+  const double silent = heard_ + kHostTimeout;
+  if (driven_ && now >= std::min(velocity_until_, silent)) stop(std::min(velocity_until_, silent));
+  if (state_ == RobotState::kEnabled && now >= silent) state_ = RobotState::kDisabled;
+}
+
 void Emulator::step(double now) {
-  if (driven_ && now >= velocity_until_) stop(velocity_until_);
+  watchHost(now);
   arm_.step(now);
+  longest_motion_ = std::max(longest_motion_, arm_.movedUntil() - velocity_at_);
   if (!arm_.stuck().empty()) fault(aesop::kFaultTrocar);
 }
 
@@ -99,6 +110,16 @@ void Emulator::setFaultCause(std::uint16_t bits, double now) {
   step(now);
   cause_ = bits;
   if (bits != 0) fault(bits);
+}
+
+void Emulator::jam(int joint, double now) {
+  step(now);
+  arm_.jam(joint);
+}
+
+void Emulator::lie(Lie lie, double now) {
+  step(now);
+  liar_.begin(lie, status(now));
 }
 
 void Emulator::reboot(double now) {

@@ -1,6 +1,7 @@
 #include "laparoscope_servo/sim/emulator_control.h"
 
 #include <array>
+#include <cmath>
 #include <iomanip>
 #include <sstream>
 #include <vector>
@@ -9,9 +10,11 @@ namespace laparoscope_servo::sim {
 
 namespace {
 
-std::vector<std::string> split(const std::string& line) {
+using Words = std::vector<std::string>;
+
+Words split(const std::string& line) {
   std::istringstream stream(line);
-  std::vector<std::string> words;
+  Words words;
   for (std::string word; stream >> word;) words.push_back(word);
   return words;
 }
@@ -40,11 +43,19 @@ std::string answerMotion(const Emulator& emulator) {
   return text.str();
 }
 
+std::string answerRecord(const Emulator& emulator, double now) {
+  const auto age = [](double value) { return std::isfinite(value) ? value : -1.0; };
+  std::ostringstream text;
+  text << std::setprecision(12) << "ok " << age(emulator.velocityAge(now)) << ' '
+       << age(now - emulator.arm().movedUntil()) << ' ' << emulator.longestMotion();
+  return text.str();
+}
+
 std::string verdict(const std::string& error) {
   return error.empty() ? "ok" : "error " + error;
 }
 
-std::string answerHand(const std::vector<std::string>& words, Emulator& emulator, double now) {
+std::string answerHand(const Words& words, Emulator& emulator, double now) {
   std::array<double, 5> values{};
   if (words.size() != 6) return "error hand takes five numbers: pan, tilt, spin [rad], insertion [m], seconds";
   for (std::size_t k = 0; k < values.size(); ++k) {
@@ -53,49 +64,67 @@ std::string answerHand(const std::vector<std::string>& words, Emulator& emulator
   return verdict(emulator.hand({values[0], values[1], values[2], values[3]}, values[4], now));
 }
 
-std::string answerFault(const std::vector<std::string>& words, Emulator& emulator, Wire& wire, double now) {
-  if (words.size() < 2 || words.size() > 3) return "error fault takes a name and, for most, a value";
-  const std::string& name = words[1];
-  double value = 0.0;
-  if (words.size() == 3 && !number(words[2], value)) return "error '" + words[2] + "' is not a number";
-  const bool needs_value = name != "none" && name != "return" && name != "reboot" && name != "hangup";
-  if (needs_value && words.size() != 3) return "error fault " + name + " takes a value";
-  if (name == "reboot") {
-    emulator.reboot(now);
-    return "ok";
+// fault <name> [value] [to_controller|to_host] [for <s>], from the word `fault` on. Says why not.
+std::string parseFault(const Words& words, Fault& fault) {
+  std::size_t k = 0;
+  if (words.empty() || words[k++] != "fault" || words.size() < 2) return "expected fault and its name";
+  fault.name = words[k++];
+  const auto isValue = [](const std::string& word) { return word != "for" && word.rfind("to_", 0) != 0; };
+  if (k < words.size() && isValue(words[k])) fault.value = words[k++];
+  if (k < words.size() && words[k] != "for") fault.way = words[k++];
+  if (k < words.size()) {
+    if (words[k] != "for") return "'" + words[k] + "' is not expected behind a fault and its value";
+    if (k + 2 != words.size() || !number(words[k + 1], fault.duration))
+      return "for takes a number of seconds, and ends the line";
   }
-  if (name == "bits") {
-    if (!(value >= 0.0 && value <= 65535.0)) return "error bits takes 0 to 65535";
-    emulator.setFaultCause(static_cast<std::uint16_t>(value), now);
-    return "ok";
-  }
-  if (name == "none") emulator.setFaultCause(0, now);
-  return verdict(wire.set(name, value, now));
+  return error(fault);
+}
+
+std::string answerFault(const Words& words, Faults& faults, double now) {
+  Fault fault;
+  const std::string problem = parseFault(words, fault);
+  return verdict(problem.empty() ? faults.begin(fault, now) : problem);
+}
+
+std::string answerAfter(const Words& words, Faults& faults, double now) {
+  ScheduledFault fault;
+  if (words.size() < 4 || !number(words[1], fault.at)) return "error after takes a number of seconds and a fault";
+  const std::string problem = parseFault(Words(words.begin() + 2, words.end()), fault.fault);
+  return verdict(problem.empty() ? faults.schedule(fault, now) : problem);
 }
 
 }  // namespace
 
-const char* emulatorControlHelp() {
+std::string emulatorControlHelp() {
   return "state                                     true joint positions: ok <time s> <q1> ... <q7>, m and rad\n"
          "motion                                    ok <state> <moving> <faults> <qdot1> ... <qdot7>, m/s and rad/s\n"
+         "record                                    ok <s since a velocity was taken> <s since a motor moved a joint>\n"
+         "                                          <longest motion after a velocity taken, s>; -1: never\n"
          "hand <pan> <tilt> <spin> <insertion> <s>  move the scope about the trocar (rad, m) while DISABLED\n"
-         "fault drop|corrupt|double <probability>   of every byte, both ways\n"
-         "fault delay <s>                           of every byte, both ways\n"
-         "fault hangup [s], fault return            take the port away (for s seconds), bring it back\n"
-         "fault bits <mask>                         cause of a robot fault; 0 takes it away\n"
-         "fault reboot                              restart the controller\n"
-         "fault none                                a good line and no cause of a fault\n";
+         "fault <name> [value] [to_controller|to_host] [for <s>]\n"
+         "                                          a fault of those below, of the line both ways unless one is named\n"
+         "after <s> fault ...                       the same, later\n"
+         "forget                                    forget what was to begin or end later\n"
+         "Faults:\n" +
+         faultHelp();
 }
 
-std::string answerControl(const std::string& request, Emulator& emulator, Wire& wire, double now) {
+std::string answerControl(const std::string& request, Emulator& emulator, Faults& faults, double now) {
+  faults.step(now);
   emulator.step(now);
-  const std::vector<std::string> words = split(request);
+  const Words words = split(request);
   if (words.empty()) return "error an empty request";
   if (words[0] == "hand") return answerHand(words, emulator, now);
-  if (words[0] == "fault") return answerFault(words, emulator, wire, now);
+  if (words[0] == "fault") return answerFault(words, faults, now);
+  if (words[0] == "after") return answerAfter(words, faults, now);
   if (words.size() > 1) return "error " + words[0] + " takes no values";
   if (words[0] == "state") return answerState(emulator, now);
   if (words[0] == "motion") return answerMotion(emulator);
+  if (words[0] == "record") return answerRecord(emulator, now);
+  if (words[0] == "forget") {
+    faults.forget();
+    return "ok";
+  }
   return "error there is no request '" + words[0] + "'";
 }
 

@@ -110,6 +110,15 @@ EmulatorMotion EmulatorControlClient::motion() {
   return motion;
 }
 
+EmulatorRecord EmulatorControlClient::record() {
+  const std::string answer = request("record");
+  std::istringstream stream(answer);
+  EmulatorRecord record;
+  stream >> record.velocity_age >> record.motion_age >> record.longest_motion;
+  if (!stream) throw std::runtime_error("emulator, asked 'record': cannot read '" + answer + "'");
+  return record;
+}
+
 void EmulatorControlClient::hand(const aesop::ScopeVelocity& displacement, double seconds) {
   std::ostringstream line;
   line << std::setprecision(12) << "hand " << displacement.pan << ' ' << displacement.tilt << ' ' << displacement.spin

@@ -3,10 +3,13 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/local/stream_protocol.hpp>
+#include <boost/asio/posix/stream_descriptor.hpp>
 #include <boost/asio/read_until.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/asio/write.hpp>
 #include <chrono>
 #include <functional>
@@ -19,15 +22,23 @@ namespace laparoscope_servo::sim {
 
 namespace {
 
+namespace posix = boost::asio::posix;
 using boost::asio::local::stream_protocol;
 using boost::system::error_code;
 
 constexpr std::size_t kLongestRequest = 256;  // bytes
 constexpr double kSilence = 1.0;              // s without a byte from the host: its process may have gone
-constexpr std::chrono::milliseconds kTick{2};
+constexpr double kLongestPause = 0.005;       // s, between two looks at everything
+constexpr double kShortestPause = 0.001;      // s: bytes that come through closer together are handed over together
+constexpr std::chrono::milliseconds kStopPeriod{20};
 
 double steadyNow() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+std::chrono::steady_clock::time_point steadyTime(double seconds) {
+  return std::chrono::steady_clock::time_point(
+      std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(seconds)));
 }
 
 using Answer = std::function<std::string(const std::string&)>;
@@ -65,11 +76,23 @@ class Client : public std::enable_shared_from_this<Client> {
 
 class EmulatorServer::Loop {
  public:
-  Loop(const EmulatorConfig& config, const std::string& link, const std::string& control, std::uint32_t seed)
-      : emulator_(config, steadyNow()), wire_(seed), link_(link), control_(control), acceptor_(context_) {
-    pty_ = std::make_unique<Pty>(link_);
+  Loop(const EmulatorConfig& config, const ServerConfig& server)
+      : emulator_(config, steadyNow()),
+        wire_(server.seed, server.baud_rate),
+        faults_(emulator_, wire_),
+        link_(server.link),
+        control_(server.control),
+        acceptor_(context_),
+        port_events_(context_),
+        timer_(context_) {
+    openPort();
     device_ = pty_->device();
     if (!control_.empty()) openControl();
+    const double now = steadyNow();
+    for (const ScheduledFault& fault : server.script) {
+      const std::string error = faults_.schedule(fault, now);
+      if (!error.empty()) throw std::invalid_argument("script: " + error);
+    }
   }
 
   ~Loop() {
@@ -77,12 +100,8 @@ class EmulatorServer::Loop {
   }
 
   void run(const std::atomic<bool>& stop) {
-    while (!stop) {
-      context_.restart();
-      context_.run_for(kTick);
-      if (control_.empty()) ::usleep(static_cast<useconds_t>(std::chrono::microseconds(kTick).count()));
-      turn(steadyNow());
-    }
+    turn();
+    while (!stop) context_.run_for(kStopPeriod);
   }
 
   const std::string& device() const { return device_; }
@@ -111,7 +130,9 @@ class EmulatorServer::Loop {
     acceptor_.async_accept([this](const error_code& error, stream_protocol::socket socket) {
       if (!error) {
         const auto answer = [this](const std::string& line) {
-          return answerControl(line, emulator_, wire_, steadyNow());
+          const std::string text = answerControl(line, emulator_, faults_, steadyNow());
+          turn();
+          return text;
         };
         std::make_shared<Client>(std::move(socket), answer)->listen();
       }
@@ -119,38 +140,68 @@ class EmulatorServer::Loop {
     });
   }
 
-  void turn(double now) {
-    if (wire_.isCut(now)) {
-      pty_.reset();
-    } else if (!pty_) {
-      pty_ = std::make_unique<Pty>(link_);
-    }
+  void openPort() {
+    pty_ = std::make_unique<Pty>(link_);
+    port_events_.assign(pty_->duplicate());
+    listen();
+  }
+
+  // The duplicate has to go, too, or the far end would not see the port go away.
+  void closePort() {
+    port_events_.close();
+    pty_.reset();
+  }
+
+  void listen() {
+    port_events_.async_wait(posix::stream_descriptor::wait_read, [this](const error_code& error) {
+      if (error) return;
+      turn();
+      if (pty_) listen();
+    });
+  }
+
+  void turn() {
+    const double now = steadyNow();
+    faults_.step(now);
+    if (wire_.isCut(now) && pty_) closePort();
+    if (!wire_.isCut(now) && !pty_) openPort();
     if (pty_) {
       const aesop::Bytes requests = pty_->read();
       if (!requests.empty()) heard_ = now;
       if (now - heard_ > kSilence) pty_->release();
-      wire_.to_controller.push(requests, wire_.faults, now);
+      wire_.to_controller.push(requests, now);
     }
     const aesop::Bytes arrived = wire_.to_controller.pop(now);
-    wire_.to_host.push(emulator_.receive(arrived.data(), arrived.size(), now), wire_.faults, now);
+    wire_.to_host.push(emulator_.receive(arrived.data(), arrived.size(), now), now);
     const aesop::Bytes replies = wire_.to_host.pop(now);
     if (pty_ && !replies.empty()) pty_->write(replies);
+    wait(now);
+  }
+
+  void wait(double now) {
+    const double next = std::min({now + kLongestPause, std::max(now + kShortestPause, wire_.next()), faults_.next()});
+    timer_.expires_at(steadyTime(next));
+    timer_.async_wait([this](const error_code& error) {
+      if (!error) turn();
+    });
   }
 
   Emulator emulator_;
   Wire wire_;
+  Faults faults_;
   std::string link_;
   std::string control_;
   std::string device_;
   boost::asio::io_context context_;
   stream_protocol::acceptor acceptor_;
+  posix::stream_descriptor port_events_;
+  boost::asio::steady_timer timer_;
   std::unique_ptr<Pty> pty_;
   double heard_ = 0.0;
 };
 
-EmulatorServer::EmulatorServer(const EmulatorConfig& config, const std::string& link, const std::string& control,
-                               std::uint32_t seed)
-    : loop_(std::make_unique<Loop>(config, link, control, seed)) {}
+EmulatorServer::EmulatorServer(const EmulatorConfig& config, const ServerConfig& server)
+    : loop_(std::make_unique<Loop>(config, server)) {}
 
 EmulatorServer::~EmulatorServer() = default;
 

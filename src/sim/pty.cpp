@@ -83,6 +83,12 @@ void Pty::write(const aesop::Bytes& bytes) {
   if (written < static_cast<ssize_t>(bytes.size())) ::tcflush(slave_, TCIFLUSH);
 }
 
+int Pty::duplicate() const {
+  const int copy = ::fcntl(master_, F_DUPFD_CLOEXEC, 0);
+  if (copy < 0) fail("cannot watch a pseudo-terminal");
+  return copy;
+}
+
 void Pty::release() {
   ::ioctl(slave_, TIOCNXCL);
 }

@@ -7,6 +7,7 @@
 #include <iostream>
 
 #include "laparoscope_servo/ros/aesop_parameters.h"
+#include "laparoscope_servo/ros/emulator_script.h"
 #include "laparoscope_servo/sim/emulator_control.h"
 #include "laparoscope_servo/sim/emulator_server.h"
 
@@ -30,6 +31,8 @@ options::options_description description() {
     ("control", options::value<std::string>()->default_value(""), "Unix socket for requests that are not on the wire; none when empty")
     ("params", options::value<std::vector<std::string>>()->composing(),
      "YAML file with the groups `kinematics` and `emulator`; may be given several times, later ones win")
+    ("script", options::value<std::string>(), "YAML file of faults and when they come")
+    ("baud", options::value<int>()->default_value(0), "bit/s, 1200 to 1000000: bytes take as long as on a line, ten bits each; 0: no time")
     ("seed", options::value<unsigned>()->default_value(1), "of the dice for faults of the line");
   // clang-format on
   return text;
@@ -44,8 +47,23 @@ sim::EmulatorConfig readConfig(const options::variables_map& values) {
   }
   skin::ParameterReader reader(tree, "params");
   const sim::EmulatorConfig config = skin::readEmulatorConfig(reader);
+  reader.addErrors(skin::unknownEmulatorParameters(tree));
   if (!reader.errors().empty()) throw std::runtime_error(reader.report());
   return config;
+}
+
+sim::ServerConfig readServer(const options::variables_map& values) {
+  if (values.count("link") == 0) throw std::runtime_error("--link is missing: a path for the port is needed");
+  sim::ServerConfig server;
+  server.link = values["link"].as<std::string>();
+  server.control = values["control"].as<std::string>();
+  server.seed = values["seed"].as<unsigned>();
+  server.baud_rate = values["baud"].as<int>();
+  if (server.baud_rate != 0 && !(server.baud_rate >= 1200 && server.baud_rate <= 1000000)) {
+    throw std::runtime_error("--baud " + std::to_string(server.baud_rate) + ": expected 0, or 1200 to 1000000 bit/s");
+  }
+  if (values.count("script") > 0) server.script = skin::scriptFromYaml(values["script"].as<std::string>());
+  return server;
 }
 
 int run(int argc, char** argv) {
@@ -60,10 +78,9 @@ int run(int argc, char** argv) {
               << sim::emulatorControlHelp();
     return 0;
   }
-  if (values.count("link") == 0) throw std::runtime_error("--link is missing: a path for the port is needed");
-  sim::EmulatorServer server(readConfig(values), values["link"].as<std::string>(), values["control"].as<std::string>(),
-                             values["seed"].as<unsigned>());
-  std::cout << "port " << values["link"].as<std::string>() << " -> " << server.device() << std::endl;
+  const sim::ServerConfig config = readServer(values);
+  sim::EmulatorServer server(readConfig(values), config);
+  std::cout << "port " << config.link << " -> " << server.device() << std::endl;
   server.run(stop);
   return 0;
 }

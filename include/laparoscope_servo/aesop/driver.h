@@ -6,6 +6,7 @@
 
 #include "laparoscope_servo/aesop/command_guard.h"
 #include "laparoscope_servo/aesop/motion_delay.h"
+#include "laparoscope_servo/aesop/motion_monitor.h"
 #include "laparoscope_servo/aesop/session.h"
 #include "laparoscope_servo/aesop/wire_log.h"
 
@@ -16,6 +17,7 @@ struct DriverConfig {
   MotionConfig motion;
   CommandConfig command;
   SessionConfig session;
+  MonitorConfig monitor;
   Eigen::Vector3d insertion_point{0.574, -0.079, -0.05};  // m, in aesop_base
 };
 
@@ -61,6 +63,7 @@ class Driver {
   const JointMotion& lastMotion() const { return last_motion_; }
 
  private:
+  void watchMotion(double now);
   Bytes turn(double now);
   void record(WireEvent event, Bytes payload = {});
   void record(WireEvent event, double now, Bytes payload = {});
@@ -72,6 +75,8 @@ class Driver {
   Session session_;
   MotionDelay delay_;
   std::uint64_t statuses_ = 0;  // received when the last one was looked at
+  MotionMonitor monitor_;
+  std::array<double, kDrivenJoints> speed_{};  // of the driven joints, as commanded last
   JointMotion last_motion_;
   std::string refusal_;  // of the last command; empty when it was accepted
   WireTap* tap_ = nullptr;

@@ -58,7 +58,7 @@ class Link {
   void setSequence(std::uint16_t sequence) { sequence_ = sequence; }
   // Last status of this session.
   const std::optional<Status>& status() const { return status_; }
-  // s; infinite when there is none.
+  // s since the request that it answers was sent: no less than what it tells is old. Infinite when there is none.
   double statusAge(double now) const;
   const LinkStatistics& statistics() const { return statistics_; }
   // Of the last statuses of this session.
@@ -79,7 +79,7 @@ class Link {
   std::unique_ptr<Codec> codec_;
   LinkStatistics statistics_;
   std::uint16_t sequence_ = 0;
-  std::array<double, 64> sent_at_{};  // s, of the last requests, by sequence number modulo 64
+  std::array<double, 1024> sent_at_{};  // s, of the last requests, by sequence number modulo their count
   double next_ = 0.0;
   RoundTrips round_trips_;
   std::optional<Status> status_;

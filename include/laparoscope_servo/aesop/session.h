@@ -40,6 +40,8 @@ class Session {
   std::string clearFault(double now);
   std::string pause(const std::string& reason = "paused on request");
   std::string resume();
+  // Disables because something is wrong; until the next enable, the state tells what.
+  void giveUp(const std::string& reason) { drop(reason); }
 
   void opened(double now) { link_.opened(now); }
   void closed(const std::string& reason);
@@ -60,6 +62,7 @@ class Session {
   enum class Wish { kDisabled, kEnabled };
 
   void drop(const std::string& reason);
+  void askForDisable();
   void watch(double now);
   void take(const Status& status);
   Bytes request(bool move, const std::array<double, kDrivenJoints>& speed, double now);
@@ -74,7 +77,9 @@ class Session {
   bool urgent_ = false;                 // send at once, not at the next slot
   bool moved_ = false;                  // the last request was a velocity
   bool stopping_ = false;               // stop not yet confirmed
+  bool disabling_ = false;              // disable not yet confirmed
   std::uint16_t stop_sequence_ = 0;     // of the first stop after a velocity
+  std::uint16_t disable_sequence_ = 0;  // of the first disable
   std::uint16_t request_sequence_ = 0;  // of the last request before the enable
   double deadline_ = 0.0;               // s, for the confirmation under way
   std::string reason_ = "not enabled yet";

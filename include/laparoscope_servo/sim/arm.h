@@ -5,6 +5,7 @@
 
 #include <array>
 #include <deque>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,8 @@ class Arm {
   void command(const std::array<double, aesop::kDrivenJoints>& speed, double now);
   // Stands at once and forgets what was on its way: the brakes of a fault.
   void brake();
+  // A motor that does nothing any more, whatever is commanded: index 0 to 6; -1 for none.
+  void jam(int joint) { jammed_ = joint; }
   // A hand moves the scope about the trocar by pan, tilt, spin [rad] and insertion [m] in `seconds`, evenly. Says why
   // not.
   std::string hand(const aesop::ScopeVelocity& displacement, double seconds, double now);
@@ -47,6 +50,8 @@ class Arm {
   const aesop::JointVector& velocity() const { return qdot_; }
   bool isMoving() const;
   bool isInHand() const { return hand_left_ > 0.0; }
+  // s: until when a driven joint has moved by its motor; -infinity before.
+  double movedUntil() const { return moved_until_; }
   // Why the arm cannot follow, e.g. the wrist has reached its limit; empty when it can. brake() forgets it.
   const std::string& stuck() const { return stuck_; }
 
@@ -68,6 +73,8 @@ class Arm {
   std::array<double, aesop::kDrivenJoints> target_{};
   aesop::ScopeVelocity hand_;
   double hand_left_ = 0.0;
+  int jammed_ = -1;
+  double moved_until_ = -std::numeric_limits<double>::infinity();
   double now_ = 0.0;
   bool started_ = false;
   std::string stuck_;

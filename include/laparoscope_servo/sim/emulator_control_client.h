@@ -22,6 +22,12 @@ struct EmulatorMotion {
   aesop::JointVector qdot = aesop::JointVector::Zero();
 };
 
+struct EmulatorRecord {
+  double velocity_age = -1.0;   // s since the controller took a velocity other than zero; -1: never
+  double motion_age = -1.0;     // s since a motor moved a joint; -1: never
+  double longest_motion = 0.0;  // s, of the motors after the last velocity taken, so far
+};
+
 class EmulatorControlClient {
  public:
   // Throws std::runtime_error when nothing listens at `path`. `timeout`: s, for each request.
@@ -36,6 +42,7 @@ class EmulatorControlClient {
 
   EmulatorState state();
   EmulatorMotion motion();
+  EmulatorRecord record();
   // Displacements in rad and m, evenly within `seconds`.
   void hand(const aesop::ScopeVelocity& displacement, double seconds);
   void fault(const std::string& name) { request("fault " + name); }

@@ -4,16 +4,24 @@
 #include <atomic>
 #include <memory>
 #include <string>
+#include <vector>
 
-#include "laparoscope_servo/sim/emulator.h"
+#include "laparoscope_servo/sim/faults.h"
 
 namespace laparoscope_servo::sim {
 
+struct ServerConfig {
+  std::string link;                    // the port's name
+  std::string control;                 // path of the control socket; none when empty
+  std::uint32_t seed = 1;              // of the line's dice
+  int baud_rate = 0;                   // bit/s; 0: bytes take no time
+  std::vector<ScheduledFault> script;  // s since the start
+};
+
 class EmulatorServer {
  public:
-  // `link`: the port's name; `control`: path of the control socket, none when empty. Throws std::runtime_error and
-  // std::invalid_argument, each naming what is wrong.
-  EmulatorServer(const EmulatorConfig& config, const std::string& link, const std::string& control, std::uint32_t seed);
+  // Throws std::runtime_error and std::invalid_argument, each naming what is wrong.
+  EmulatorServer(const EmulatorConfig& config, const ServerConfig& server);
   ~EmulatorServer();
 
   // Runs until `stop` becomes true. Throws std::runtime_error when the port cannot be made again after a hangup.

@@ -19,6 +19,8 @@ class Pty {
   // Never block; what the far end does not take is lost, as on a serial line.
   aesop::Bytes read();
   void write(const aesop::Bytes& bytes);
+  // A descriptor of this end for somebody who watches it, and closes it. Throws std::runtime_error.
+  int duplicate() const;
   // Lets somebody else open the port after a process that opened it exclusively was killed: with a real port the kernel
   // does so.
   void release();

@@ -34,8 +34,8 @@ double steadyNow() {
 
 AesopBench::AesopBench(bool with_node) : directory_(temporaryDirectory()) {
   const std::string control = directory_ + "/control";
-  emulator_ =
-      std::make_unique<ChildProcess>(AESOP_EMULATOR, std::vector<std::string>{"--link", port(), "--control", control});
+  emulator_ = std::make_unique<ChildProcess>(
+      AESOP_EMULATOR, std::vector<std::string>{"--link", port(), "--control", control, "--baud", "38400"});
   const double end = steadyNow() + 5.0;
   while (!truth_) {
     try {
@@ -120,6 +120,11 @@ void AesopBench::send(double pan, double insertion, const ros::Time& stamp) {
   message.pan = pan;
   message.insertion = insertion;
   commands_.publish(message);
+}
+
+void AesopBench::send(ScopeVelocity command) {
+  command.header.stamp = ros::Time::now();
+  commands_.publish(command);
 }
 
 std_srvs::Trigger::Response AesopBench::call(const std::string& service) {

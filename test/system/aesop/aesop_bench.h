@@ -46,6 +46,8 @@ class AesopBench {
   // The same while a velocity is commanded at 50 Hz, stamped as it should be.
   bool commandUntil(const std::function<bool()>& condition, double pan, double seconds = 5.0);
   void send(double pan, double insertion, const ros::Time& stamp);
+  // Stamped now.
+  void send(ScopeVelocity command);
 
   // Enables, and drives the arm until its joints move.
   bool enable();

@@ -7,8 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "laparoscope_servo/sim/emulator.h"
-#include "laparoscope_servo/sim/wire.h"
+#include "laparoscope_servo/sim/faults.h"
 #include "line_codec.h"
 
 namespace laparoscope_servo::aesop {
@@ -50,9 +49,9 @@ class DriverTest : public ::testing::TestWithParam<NamedFormat> {
       const Bytes to_host = wire_.to_host.pop(now_);
       if (!cut_) driver_.receive(to_host.data(), to_host.size(), now_);
       const Bytes requests = driver_.transmit(now_);
-      if (!cut_) wire_.to_controller.push(requests, wire_.faults, now_);
+      if (!cut_) wire_.to_controller.push(requests, now_);
       const Bytes arrived = wire_.to_controller.pop(now_);
-      wire_.to_host.push(emulator_.receive(arrived.data(), arrived.size(), now_), wire_.faults, now_);
+      wire_.to_host.push(emulator_.receive(arrived.data(), arrived.size(), now_), now_);
     }
   }
   std::string command(const ScopeVelocity& velocity) {
@@ -75,6 +74,12 @@ class DriverTest : public ::testing::TestWithParam<NamedFormat> {
     while (!emulator_.arm().velocity().isZero(0.0) && now_ - start < 5.0) run(kTick, pan);
     return now_ - start;
   }
+  std::string begin(const std::string& fault, const std::string& value = "") {
+    sim::Fault one;
+    one.name = fault;
+    one.value = value;
+    return faults_.begin(one, now_);
+  }
   OperatingMode mode() const { return driver_.state(now_).mode; }
 
   // Age of a command at which it ends, its way, the controller's delay, the joints' braking.
@@ -87,6 +92,7 @@ class DriverTest : public ::testing::TestWithParam<NamedFormat> {
   Driver driver_{driverConfig()};
   sim::Emulator emulator_{emulatorConfig(), 0.0};
   sim::Wire wire_{1};
+  sim::Faults faults_{emulator_, wire_};
 };
 
 TEST_P(DriverTest, theScopeTurnsAsCommanded) {
@@ -167,10 +173,12 @@ TEST_P(DriverTest, anEmulatorThatRestartsIsNotMovedAgain) {
 
 // A bad line: the arm may stop, but moves only as commanded, and comes back.
 TEST_P(DriverTest, badLines) {
-  for (const auto& [fault, value] :
-       {std::pair<const char*, double>{"drop", 0.002}, {"corrupt", 0.002}, {"double", 0.002}, {"delay", 0.05}}) {
+  for (const auto& [fault, value] : {std::pair<const char*, const char*>{"drop", "0.002"},
+                                     {"corrupt", "0.002"},
+                                     {"double", "0.002"},
+                                     {"delay", "0.05"}}) {
     SCOPED_TRACE(fault);
-    ASSERT_EQ(wire_.set(fault, value, now_), "");
+    ASSERT_EQ(begin(fault, value), "");
     run(1.0);
     if (mode() != OperatingMode::kEnabled) {
       ASSERT_EQ(driver_.enable(kStampOffset + now_, now_), "");
@@ -187,7 +195,7 @@ TEST_P(DriverTest, badLines) {
     EXPECT_LT(fastest, 0.06) << "a damaged frame was taken for a command";
     EXPECT_GT(fastest, 0.03);
     EXPECT_LT(timeToStand(), kLongestStop + 0.3);
-    ASSERT_EQ(wire_.set("none", 0.0, now_), "");
+    ASSERT_EQ(begin("none"), "");
     run(0.5);
   }
   EXPECT_GT(driver_.session().link().statistics().decoder.crc_errors, 0u);

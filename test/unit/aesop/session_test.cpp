@@ -227,7 +227,36 @@ TEST_F(SessionTest, aControllerThatDisablesItselfIsNotEnabledAgain) {
   exchange(kMove);
   EXPECT_EQ(mode(), OperatingMode::kDisabled);
   EXPECT_NE(session_.state().reason.find("disabled itself"), std::string::npos);
+  EXPECT_TRUE(sends<Disable>(kMove)) << "it may say so and not do so";
   for (int k = 0; k < 10; ++k) EXPECT_TRUE(sends<Poll>(kMove));
+}
+
+TEST_F(SessionTest, disableIsRepeatedUntilTheArmStands) {
+  connect();
+  enable();
+  ASSERT_TRUE(sends<Velocity>(kMove));
+  session_.giveUp("joint 3 does not follow");
+  controller_.status.state = RobotState::kDisabled;
+  controller_.status.moving = true;
+  for (int k = 0; k < 100; ++k) EXPECT_TRUE(sends<Disable>(kMove));
+  EXPECT_EQ(mode(), OperatingMode::kDisabled);
+  EXPECT_TRUE(session_.state().is_busy);
+  EXPECT_EQ(session_.enable(now_), "") << "it is under way, but waits for that";
+  EXPECT_TRUE(sends<Disable>(kMove));
+  controller_.status.moving = false;
+  EXPECT_TRUE(sends<Disable>(kMove));
+  EXPECT_TRUE(sends<Enable>(kMove));
+}
+
+TEST_F(SessionTest, aDisableIsNotConfirmedByWhatWasSaidBefore) {
+  connect();
+  enable();
+  ASSERT_TRUE(sends<Velocity>(kMove));
+  controller_.status.state = RobotState::kDisabled;
+  const Bytes before = controller_.say();
+  session_.giveUp("a test");
+  session_.receive(before.data(), before.size(), now_);
+  EXPECT_TRUE(sends<Disable>(kMove));
 }
 
 TEST_F(SessionTest, silenceLeadsToDisabledAndBackOnlyByEnable) {

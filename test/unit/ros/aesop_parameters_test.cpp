@@ -60,12 +60,17 @@ TEST(AesopParameters, shippedFileIsTheDefaults) {
   EXPECT_EQ(read.wire_log.file, defaults.wire_log.file);
   EXPECT_EQ(read.wire_log.size, defaults.wire_log.size);
   EXPECT_EQ(read.wire_log.files, defaults.wire_log.files);
+  EXPECT_EQ(read.driver.monitor.response_time, defaults.driver.monitor.response_time);
+  EXPECT_EQ(read.driver.monitor.slowest_angle, defaults.driver.monitor.slowest_angle);
+  EXPECT_EQ(read.driver.monitor.slowest_distance, defaults.driver.monitor.slowest_distance);
+  EXPECT_EQ(read.driver.monitor.tolerance_angle, defaults.driver.monitor.tolerance_angle);
+  EXPECT_EQ(read.driver.monitor.tolerance_distance, defaults.driver.monitor.tolerance_distance);
 }
 
 TEST(AesopParameters, everyParameterOfTheShippedFileIsRead) {
   XmlRpc::XmlRpcValue tree = shipped("aesop.yaml");
   tree["port"] = std::string("/dev/ttyUSB0");
-  for (const char* group : {"motion", "command", "link", "reconnect"}) {
+  for (const char* group : {"motion", "command", "link", "reconnect", "monitor"}) {
     for (auto& member : tree[group]) {
       XmlRpc::XmlRpcValue changed = tree;
       changed[group][member.first] = std::string("no number, no name");

@@ -18,6 +18,13 @@
 namespace laparoscope_servo::sim {
 namespace {
 
+ServerConfig server(const std::string& link, const std::string& control) {
+  ServerConfig config;
+  config.link = link;
+  config.control = control;
+  return config;
+}
+
 class EmulatorServerTest : public ::testing::Test {
  protected:
   EmulatorServerTest() {
@@ -30,7 +37,7 @@ class EmulatorServerTest : public ::testing::Test {
     ::rmdir(directory_.c_str());
   }
   void start() {
-    server_ = std::make_unique<EmulatorServer>(EmulatorConfig(), path("port"), path("control"), 1);
+    server_ = std::make_unique<EmulatorServer>(EmulatorConfig(), server(path("port"), path("control")));
     thread_ = std::thread([this] { server_->run(stop_); });
   }
   void end() {
@@ -111,9 +118,10 @@ TEST_F(EmulatorServerTest, endsCleanlyAndTheClientSaysSo) {
 
 TEST_F(EmulatorServerTest, namesThatAreTaken) {
   std::ofstream(path("file")) << "precious";
-  EXPECT_THROW(EmulatorServer(EmulatorConfig(), path("file"), "", 1), std::runtime_error);
-  EXPECT_THROW(EmulatorServer(EmulatorConfig(), path("port"), path("file"), 1), std::runtime_error);
-  EXPECT_THROW(EmulatorServer(EmulatorConfig(), path("port"), directory_ + "/no/such/folder", 1), std::runtime_error);
+  EXPECT_THROW(EmulatorServer(EmulatorConfig(), server(path("file"), "")), std::runtime_error);
+  EXPECT_THROW(EmulatorServer(EmulatorConfig(), server(path("port"), path("file"))), std::runtime_error);
+  EXPECT_THROW(EmulatorServer(EmulatorConfig(), server(path("port"), directory_ + "/no/such/folder")),
+               std::runtime_error);
   EXPECT_NE(::access(path("port").c_str(), F_OK), 0) << "no port stays behind";
 }
 

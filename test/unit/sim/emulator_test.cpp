@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "laparoscope_servo/aesop/own_codec.h"
 
 namespace laparoscope_servo::sim {
@@ -29,7 +31,16 @@ class EmulatorTest : public ::testing::Test {
     identify();
     ASSERT_EQ(ask(Enable()).state, RobotState::kEnabled);
   }
-  void wait(double seconds) { emulator_.step(now_ += seconds); }
+  // A host that is there, and asks for nothing but the status.
+  void wait(double seconds) {
+    const double end = now_ + seconds;
+    while (now_ + 0.1 < end) {
+      emulator_.step(now_ += 0.1);
+      ask(Poll());
+    }
+    emulator_.step(now_ = end);
+  }
+  void silence(double seconds) { emulator_.step(now_ += seconds); }
 
   static Velocity up(double time_to_live = 0.2) { return {{0.01, 0.0, 0.0, 0.0}, time_to_live}; }
 
@@ -74,10 +85,74 @@ TEST_F(EmulatorTest, velocityNeedsEnable) {
 TEST_F(EmulatorTest, velocityRunsOutByItself) {
   enable();
   ask(up(0.3));
-  wait(5.0);  // one long step: the time to live ends within it
+  wait(2.0);
   EXPECT_FALSE(emulator_.arm().isMoving());
   EXPECT_NEAR(emulator_.arm().position()[0], 0.25 + 0.01 * 0.3, 2e-4);
   EXPECT_EQ(emulator_.state(), RobotState::kEnabled);
+}
+
+TEST_F(EmulatorTest, aSilentHostDisables) {
+  enable();
+  ask(up(2.0));
+  silence(5.0);  // one long step: the silence grows too long within it
+  EXPECT_EQ(emulator_.state(), RobotState::kDisabled);
+  EXPECT_FALSE(emulator_.arm().isMoving());
+  EXPECT_NEAR(emulator_.arm().position()[0], 0.25 + 0.01 * kHostTimeout, 2e-4);
+  const double stood = emulator_.arm().position()[0];
+  ask(up(2.0));  // what a line held back
+  wait(1.0);
+  EXPECT_EQ(emulator_.arm().position()[0], stood);
+}
+
+TEST_F(EmulatorTest, aJammedJointStandsAndTheOthersMove) {
+  enable();
+  emulator_.jam(0, now_);
+  ask(Velocity{{0.01, 0.02, 0.0, 0.0}, 0.5});
+  wait(1.0);
+  EXPECT_EQ(emulator_.arm().position()[0], 0.25);
+  EXPECT_GT(emulator_.arm().position()[1], -0.9 + 0.005);
+  EXPECT_EQ(emulator_.faults(), 0);
+  emulator_.jam(-1, now_);
+  ask(up());
+  wait(1.0);
+  EXPECT_GT(emulator_.arm().position()[0], 0.251);
+}
+
+TEST_F(EmulatorTest, recordsHowLongTheMotorsMove) {
+  enable();
+  EXPECT_EQ(emulator_.longestMotion(), 0.0);
+  ask(up(0.3));
+  wait(2.0);
+  EXPECT_GT(emulator_.longestMotion(), 0.3 + 0.16);
+  EXPECT_LT(emulator_.longestMotion(), 0.3 + 0.16 + 0.15);
+}
+
+TEST_F(EmulatorTest, lies) {
+  enable();
+  ask(up(2.0));
+  wait(0.5);
+  const auto told = [&](const char* lie) {
+    emulator_.lie(*lieNamed(lie), now_);
+    now_ += 0.05;
+    return ask(Poll());
+  };
+  EXPECT_EQ(told("disabled").state, RobotState::kDisabled);
+  EXPECT_EQ(told("enabled").state, RobotState::kEnabled);
+  EXPECT_TRUE(told("standing").velocity.isZero(0.0));
+  EXPECT_FALSE(told("standing").moving);
+  const double frozen = told("none").position[0];
+  EXPECT_NEAR(told("frozen").position[0], frozen, 1e-5);
+  EXPECT_GT(std::abs(told("none").position[0] - frozen), 1e-4);
+  const double jumped = told("jumped").position[0];
+  EXPECT_NEAR(jumped, emulator_.arm().position()[0] + 0.2, 1e-5);
+  EXPECT_NE(told("echo_frozen").echo, sequence_);
+  EXPECT_GT(compareSequence(told("echo_ahead").echo, sequence_), 0);
+  emulator_.setFaultCause(kFaultMotor, now_);
+  EXPECT_EQ(told("healthy").faults, 0);
+  EXPECT_EQ(told("healthy").state, RobotState::kEnabled);
+  EXPECT_TRUE(told("moving").moving);
+  EXPECT_EQ(told("none").faults, kFaultMotor);
+  EXPECT_FALSE(lieNamed("white"));
 }
 
 TEST_F(EmulatorTest, stopDisableAndIdentifyStop) {

@@ -16,9 +16,15 @@ Bytes numbers() {
 }
 
 Bytes through(const WireFaults& faults) {
-  WireDirection line(1);
-  line.push(numbers(), faults, 0.0);
-  return line.pop(0.0);
+  WireDirection line(1, 0);
+  line.faults = faults;
+  Bytes bytes;
+  for (const std::uint8_t byte : numbers()) {
+    line.push({byte}, 0.0);
+    const Bytes come = line.pop(0.0);
+    bytes.insert(bytes.end(), come.begin(), come.end());
+  }
+  return bytes;
 }
 
 WireFaults faults(double drop, double corrupt, double duplicate) {
@@ -54,43 +60,70 @@ TEST(Wire, sameSeedSameFaults) {
 }
 
 TEST(Wire, delayKeepsTheOrderAlsoWhenItShrinks) {
-  WireDirection line(1);
-  WireFaults slow;
-  slow.delay = 1.0;
-  line.push({1}, slow, 0.0);
-  line.push({2}, WireFaults(), 0.5);
+  WireDirection line(1, 0);
+  line.faults.delay = 1.0;
+  line.push({1}, 0.0);
+  line.faults.delay = 0.0;
+  line.push({2}, 0.5);
   EXPECT_TRUE(line.pop(0.9).empty());
+  EXPECT_EQ(line.next(), 1.0);
   EXPECT_EQ(line.pop(1.0), (Bytes{1, 2}));
 }
 
-TEST(Wire, faultsByName) {
-  Wire wire(1);
-  EXPECT_EQ(wire.set("drop", 0.1, 0.0), "");
-  EXPECT_EQ(wire.set("corrupt", 0.2, 0.0), "");
-  EXPECT_EQ(wire.set("double", 0.3, 0.0), "");
-  EXPECT_EQ(wire.set("delay", 0.4, 0.0), "");
-  EXPECT_EQ(wire.faults.drop, 0.1);
-  EXPECT_EQ(wire.faults.corrupt, 0.2);
-  EXPECT_EQ(wire.faults.duplicate, 0.3);
-  EXPECT_EQ(wire.faults.delay, 0.4);
-  for (const double bad : {-0.1, 1.1, std::numeric_limits<double>::quiet_NaN()})
-    EXPECT_NE(wire.set("drop", bad, 0.0), "");
-  EXPECT_NE(wire.set("delay", -1.0, 0.0), "");
-  EXPECT_NE(wire.set("hangup", -1.0, 0.0), "");
-  EXPECT_NE(wire.set("rust", 1.0, 0.0), "");
-  EXPECT_EQ(wire.set("none", 0.0, 0.0), "");
-  EXPECT_EQ(wire.faults.drop, 0.0);
+TEST(Wire, aByteTakesTenBits) {
+  WireDirection line(1, 1000);
+  line.push({1, 2}, 5.0);
+  EXPECT_NEAR(line.next(), 5.01, 1e-12);
+  EXPECT_TRUE(line.pop(5.009).empty());
+  EXPECT_EQ(line.pop(5.011), Bytes{1});
+  line.push({3}, 5.012);
+  EXPECT_EQ(line.pop(5.021), Bytes{2}) << "the third waits until the second has left";
+  EXPECT_EQ(line.pop(5.031), Bytes{3});
+  line.push({4}, 7.0);
+  EXPECT_NEAR(line.next(), 7.01, 1e-12) << "a pause is not made up for";
 }
 
-TEST(Wire, hangupForATimeOrUntilReturn) {
+TEST(Wire, bytesThatGetLostOrComeTwiceTakeTheirTime) {
+  WireDirection line(1, 1000);
+  line.faults.drop = 1.0;
+  line.push({1, 2}, 0.0);
+  line.faults = WireFaults();
+  line.faults.duplicate = 1.0;
+  line.push({3}, 0.0);
+  EXPECT_NEAR(line.next(), 0.03, 1e-12);
+  EXPECT_EQ(line.pop(0.0301), Bytes{3});
+  EXPECT_EQ(line.pop(0.0401), Bytes{3});
+}
+
+TEST(Wire, stalledBytesComeTogether) {
+  WireDirection line(1, 0);
+  line.push({1}, 0.0);
+  line.faults.stalled_until = 2.0;
+  line.push({2}, 1.0);
+  EXPECT_TRUE(line.pop(1.9).empty());
+  EXPECT_EQ(line.next(), 2.0);
+  EXPECT_EQ(line.pop(2.0), (Bytes{1, 2}));
+}
+
+TEST(Wire, whatTheLineCannotHoldIsLost) {
+  WireDirection line(1, 1200);
+  for (int k = 0; k < 10; ++k) line.push(numbers(), 0.0);
+  EXPECT_LT(line.pop(1e6).size(), 5000u);
+  line.push({1}, 1e6);
+  EXPECT_EQ(line.pop(2e6), Bytes{1});
+}
+
+TEST(Wire, cutForATimeOrUntilItComesBack) {
   Wire wire(1);
   EXPECT_FALSE(wire.isCut(0.0));
-  wire.set("hangup", 2.0, 10.0);
+  wire.to_host.push({1}, 10.0);
+  wire.cut(12.0);
   EXPECT_TRUE(wire.isCut(11.9));
   EXPECT_FALSE(wire.isCut(12.1));
-  wire.set("hangup", 0.0, 20.0);
+  EXPECT_TRUE(wire.to_host.pop(13.0).empty()) << "what was under way is gone";
+  wire.cut(std::numeric_limits<double>::infinity());
   EXPECT_TRUE(wire.isCut(1e6));
-  wire.set("return", 0.0, 30.0);
+  wire.cut(30.0);
   EXPECT_FALSE(wire.isCut(30.0));
 }
 

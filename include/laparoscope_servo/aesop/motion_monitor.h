@@ -1,0 +1,61 @@
+// Whether the joints do what they are told, by their own account: a motor that stands, a joint that runs away, a sensor
+// that no longer tells the truth. The controller need not notice any of that.
+//
+// Pure: `now` is seconds of a steady clock.
+#pragma once
+
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "laparoscope_servo/aesop/kinematics.h"
+#include "laparoscope_servo/aesop/messages.h"
+
+namespace laparoscope_servo::aesop {
+
+// Defaults are those of config/aesop.yaml, group `monitor`.
+struct MonitorConfig {
+  double response_time = 1.0;  // s, 0.2 to 10: what joints do is judged over so long; well above the arm's delay
+  // Slower commands than these may move nothing: friction. rad/s and m/s, 1e-4 to 1
+  double slowest_angle = 0.01;
+  double slowest_distance = 0.002;
+  // Motion that no command explains, and what positions and velocities may differ by, within response_time. rad and m,
+  // 1e-4 to 1
+  double tolerance_angle = 0.01;
+  double tolerance_distance = 0.003;
+};
+
+std::vector<std::string> validate(const MonitorConfig& config);
+
+class MotionMonitor {
+ public:
+  MotionMonitor(const MonitorConfig& config, const Kinematics& kinematics);
+
+  // To be called when the arm is enabled, or is no longer.
+  void reset() { samples_.clear(); }
+  // `speed`: of the driven joints, as commanded since the status before. Says what is wrong; empty when nothing is.
+  std::string take(const Status& status, const std::array<double, kDrivenJoints>& speed, double now);
+
+ private:
+  struct Joint {
+    int number;  // 1 to 7
+    int index;   // in a JointVector
+    bool prismatic;
+  };
+  struct Sample {
+    double at;
+    double controller_time;
+    JointVector position;
+    JointVector velocity;
+    JointVector travelled;  // by the velocities, since the first sample
+    std::array<double, kDrivenJoints> speed;
+  };
+  std::string judge(std::size_t driven) const;
+  std::size_t windowStart() const;
+
+  MonitorConfig config_;
+  std::vector<Joint> joints_;
+  std::deque<Sample> samples_;  // of the last two response times
+};
+
+}  // namespace laparoscope_servo::aesop
