@@ -8,6 +8,7 @@
 
 #include "laparoscope_servo/ros/aesop_conversions.h"
 #include "laparoscope_servo/ros/clocks.h"
+#include "laparoscope_servo/ros/realtime.h"
 #include "laparoscope_servo/servo/scope_geometry.h"
 
 namespace laparoscope_servo::skin {
@@ -58,6 +59,10 @@ AesopNode::AesopNode(const ros::NodeHandle& node, const ros::NodeHandle& private
 }
 
 void AesopNode::run(const std::atomic<bool>& stop) {
+  if (parameters_.realtime_priority > 0) {
+    const std::string refusal = goRealtime(parameters_.realtime_priority);
+    if (!refusal.empty()) ROS_WARN_STREAM(refusal);
+  }
   try {
     while (!stop && ros::ok()) {
       const auto next = std::chrono::steady_clock::now() + kPeriod;
@@ -104,7 +109,9 @@ void AesopNode::connect(double now) {
     transport_.open(parameters_.port, parameters_.baud_rate);
     driver_.opened(now);
     last_loss_.clear();
-    ROS_INFO_STREAM("port '" << parameters_.port << "' is open");
+    ROS_INFO_STREAM(
+        "port '" << parameters_.port << "' is open, "
+                 << (transport_.lowLatency() ? "set to low latency" : "its driver has no low-latency setting"));
   } catch (const aesop::TransportError& error) {
     lose(error.what(), now);
   }
