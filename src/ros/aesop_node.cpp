@@ -17,7 +17,8 @@ namespace {
 
 constexpr std::chrono::milliseconds kPeriod{5};
 constexpr std::uint32_t kQueue = 100;      // commands
-constexpr double kReportPause = 1.0;       // s, between two warnings of one kind
+constexpr double kReportPause = 1.0;       // s, between two warnings of a command that was refused
+constexpr double kStrangerPause = 10.0;    // s, between two of a publisher that is not the master
 constexpr double kDiagnosticsPause = 1.0;  // s
 constexpr double kStatePeriod = 0.1;       // s, between two publications of an operating state that stays
 constexpr double kLastWord = 0.5;          // s, for the controller to confirm the disable when the node ends
@@ -163,7 +164,7 @@ void AesopNode::onCommand(const ros::MessageEvent<ScopeVelocity const>& event) {
   const ScopeVelocity& message = *event.getConstMessage();
   switch (master_.judge(event.getPublisherName(), event.getConnectionHeaderPtr(), now)) {
     case CommandMaster::Verdict::kStranger:
-      return report(master_.complaint(now), next_stranger_, now);
+      return report(master_.complaint(now), next_stranger_, kStrangerPause, now);
     case CommandMaster::Verdict::kNewConnection:
       // Restarted, replaced by another process of its name, or joined by one: which of them shall move the arm is for
       // somebody to say who sees it stand.
@@ -176,12 +177,12 @@ void AesopNode::onCommand(const ros::MessageEvent<ScopeVelocity const>& event) {
   const std::string refusal = driver_.command(velocity, message.header.stamp.toSec(), stampNow(), now);
   // Commands that come before the arm is enabled are nobody's mistake, but one that is not finite is.
   if (!refusal.empty() && (driver_.session().isEnabled() || !velocity.isFinite()))
-    report("a command was refused: " + refusal, next_report_, now);
+    report("a command was refused: " + refusal, next_report_, kReportPause, now);
 }
 
-void AesopNode::report(const std::string& refusal, double& next, double now) {
+void AesopNode::report(const std::string& refusal, double& next, double pause, double now) {
   if (now < next) return;
-  next = now + kReportPause;
+  next = now + pause;
   ROS_WARN_STREAM(refusal);
 }
 
