@@ -1,5 +1,6 @@
 #include "laparoscope_servo/aesop/driver.h"
 
+#include <cmath>
 #include <sstream>
 #include <stdexcept>
 
@@ -47,18 +48,48 @@ Driver::Driver(const DriverConfig& config)
       guard_(config.command),
       session_(config.session, drivenMask(kinematics_)) {}
 
+void Driver::record(WireEvent event, Bytes payload) {
+  if (tap_ != nullptr) tap_->take({event, tap_time_, std::move(payload)});
+}
+
+void Driver::record(WireEvent event, double now, Bytes payload) {
+  tap_time_ = std::llround(now * 1e9);
+  record(event, std::move(payload));
+}
+
 std::string Driver::enable(double stamp_now, double now) {
+  if (tap_ != nullptr) record(WireEvent::kEnable, now, payloadOf({stamp_now}));
   guard_.reset(stamp_now);
   refusal_.clear();
   return session_.enable(now);
 }
 
+std::string Driver::disable(double now) {
+  record(WireEvent::kDisable, now);
+  return session_.disable(now);
+}
+
+std::string Driver::clearFault(double now) {
+  record(WireEvent::kClearFault, now);
+  return session_.clearFault(now);
+}
+
+std::string Driver::pause(const std::string& reason) {
+  if (tap_ != nullptr) record(WireEvent::kPause, payloadOf(reason));
+  return session_.pause(reason);
+}
+
 std::string Driver::resume(double stamp_now) {
+  if (tap_ != nullptr) record(WireEvent::kResume, payloadOf({stamp_now}));
   guard_.reset(stamp_now);
   return session_.resume();
 }
 
 std::string Driver::command(const ScopeVelocity& velocity, double stamp, double stamp_now, double now) {
+  if (tap_ != nullptr) {
+    record(WireEvent::kCommand, now,
+           payloadOf({velocity.pan, velocity.tilt, velocity.spin, velocity.insertion, stamp, stamp_now}));
+  }
   refusal_ = guard_.accept(velocity, stamp, stamp_now, now);
   return refusal_;
 }
@@ -76,7 +107,18 @@ OperatingState Driver::state(double now) const {
   return state;
 }
 
+void Driver::opened(double now) {
+  record(WireEvent::kOpened, now);
+  session_.opened(now);
+}
+
+void Driver::closed(const std::string& reason) {
+  if (tap_ != nullptr) record(WireEvent::kClosed, payloadOf(reason));
+  session_.closed(reason);
+}
+
 void Driver::receive(const std::uint8_t* data, std::size_t size, double now) {
+  if (tap_ != nullptr && size > 0) record(WireEvent::kReceived, now, Bytes(data, data + size));
   session_.receive(data, size, now);
   const Link& link = session_.link();
   if (!link.isUp()) delay_.lost();
@@ -86,6 +128,15 @@ void Driver::receive(const std::uint8_t* data, std::size_t size, double now) {
 }
 
 Bytes Driver::transmit(double now) {
+  Bytes bytes = turn(now);
+  if (tap_ == nullptr) return bytes;
+  record(WireEvent::kSent, now, bytes);
+  Bytes state = payloadOf(this->state(now));
+  if (state != tap_state_) record(WireEvent::kState, tap_state_ = std::move(state));
+  return bytes;
+}
+
+Bytes Driver::turn(double now) {
   std::array<double, kDrivenJoints> speed{};
   last_motion_ = JointMotion();
   if (session_.isEnabled()) {

@@ -54,7 +54,14 @@ AesopNode::AesopNode(const ros::NodeHandle& node, const ros::NodeHandle& private
   diagnostics_.add("AESOP", [this](diagnostic_updater::DiagnosticStatusWrapper& status) {
     const double now = steadyNow();
     reported_.fill(now, driver_, {master_, command_subscriber_.getNumPublishers(), reconnect_.remaining(now)}, status);
+    if (recording_ && !recording_->problem().empty())
+      status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, recording_->problem());
   });
+  if (!parameters.wire_log.file.empty()) {
+    recording_ =
+        std::make_unique<aesop::WireLogFile>(parameters.wire_log, parameters.driver.session.codec()->name());
+    driver_.setTap(recording_.get());
+  }
   publishStaticFrames();
   if (!reported_.lineWarning().empty()) ROS_WARN_STREAM(reported_.lineWarning());
 }
@@ -96,12 +103,19 @@ void AesopNode::step() {
   exchange(now);
   if (driver_.session().link().isUp()) reconnect_.up(now);
   if (!driver_.session().isEnabled()) master_.release();
+  watchRecording();
   publishStatus();
   publishState(now);
   if (now >= next_diagnostics_) {
     next_diagnostics_ = now + kDiagnosticsPause;
     diagnostics_.force_update();
   }
+}
+
+void AesopNode::watchRecording() {
+  if (!recording_ || recording_ended_ || recording_->problem().empty()) return;
+  recording_ended_ = true;
+  ROS_WARN_STREAM(recording_->problem() << "; the arm is driven on without it");
 }
 
 void AesopNode::connect(double now) {

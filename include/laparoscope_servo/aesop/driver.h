@@ -7,6 +7,7 @@
 #include "laparoscope_servo/aesop/command_guard.h"
 #include "laparoscope_servo/aesop/motion_delay.h"
 #include "laparoscope_servo/aesop/session.h"
+#include "laparoscope_servo/aesop/wire_log.h"
 
 namespace laparoscope_servo::aesop {
 
@@ -28,18 +29,24 @@ class Driver {
 
   // As in Session. The enable forgets all commands that were stamped before it.
   std::string enable(double stamp_now, double now);
-  std::string disable(double now) { return session_.disable(now); }
-  std::string clearFault(double now) { return session_.clearFault(now); }
-  std::string pause(const std::string& reason = "paused on request") { return session_.pause(reason); }
+  std::string disable(double now);
+  std::string clearFault(double now);
+  std::string pause(const std::string& reason = "paused on request");
   std::string resume(double stamp_now);
 
   // Takes a command, or says why not. Commands while not ENABLED are judged, but move nothing.
   std::string command(const ScopeVelocity& velocity, double stamp, double stamp_now, double now);
 
-  void opened(double now) { session_.opened(now); }
-  void closed(const std::string& reason) { session_.closed(reason); }
+  void opened(double now);
+  void closed(const std::string& reason);
   void receive(const std::uint8_t* data, std::size_t size, double now);
   Bytes transmit(double now);
+
+  // All that goes into the driver and comes out of it from now on is also given to `tap`, which has to live longer;
+  // null: to nobody.
+  void setTap(WireTap* tap) { tap_ = tap; }
+  // As in Link.
+  void setSequence(std::uint16_t sequence) { session_.setSequence(sequence); }
 
   // Session's state; while ENABLED its reason says why the arm does not do what was commanded, and is empty when it
   // does.
@@ -54,6 +61,10 @@ class Driver {
   const JointMotion& lastMotion() const { return last_motion_; }
 
  private:
+  Bytes turn(double now);
+  void record(WireEvent event, Bytes payload = {});
+  void record(WireEvent event, double now, Bytes payload = {});
+
   Kinematics kinematics_;
   MotionConfig motion_;
   Eigen::Vector3d insertion_point_;
@@ -63,6 +74,9 @@ class Driver {
   std::uint64_t statuses_ = 0;  // received when the last one was looked at
   JointMotion last_motion_;
   std::string refusal_;  // of the last command; empty when it was accepted
+  WireTap* tap_ = nullptr;
+  std::int64_t tap_time_ = 0;  // ns, of the last record
+  Bytes tap_state_;            // the last one recorded
 };
 
 }  // namespace laparoscope_servo::aesop

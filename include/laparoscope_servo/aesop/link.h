@@ -54,6 +54,8 @@ class Link {
   const std::string& reason() const { return reason_; }
   // Sequence number of the request sent last.
   std::uint16_t sequence() const { return sequence_; }
+  // Counts on from here: for a recording that begins in the middle.
+  void setSequence(std::uint16_t sequence) { sequence_ = sequence; }
   // Last status of this session.
   const std::optional<Status>& status() const { return status_; }
   // s; infinite when there is none.

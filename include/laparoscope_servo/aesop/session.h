@@ -26,6 +26,10 @@ struct OperatingState {
   }
 };
 
+// As in a recording: a byte for the mode, one for the flags, the reason. The way back throws std::invalid_argument.
+Bytes payloadOf(const OperatingState& state);
+OperatingState stateOf(const Bytes& payload);
+
 class Session {
  public:
   Session(const SessionConfig& config, std::uint8_t driven) : config_(config), link_(config, driven) {}
@@ -50,6 +54,7 @@ class Session {
   // The last request was a velocity.
   bool isMoving() const { return moved_; }
   const Link& link() const { return link_; }
+  void setSequence(std::uint16_t sequence) { link_.setSequence(sequence); }
 
  private:
   enum class Wish { kDisabled, kEnabled };

@@ -12,6 +12,7 @@
 
 #include <atomic>
 #include <functional>
+#include <memory>
 #include <string>
 
 #include "laparoscope_servo/ScopeVelocity.h"
@@ -58,6 +59,7 @@ class AesopNode {
   enum class Callers { kAll, kNamed };
   void advertise(const std::string& name, Action action, Callers callers);
 
+  void watchRecording();
   void publishStatus();
   // The driver's, with what it does not know: whose commands were refused.
   aesop::OperatingState state(double now) const;
@@ -66,6 +68,8 @@ class AesopNode {
 
   AesopParameters parameters_;
   Eigen::Matrix3d tip_R_optical_;
+  std::unique_ptr<aesop::WireLogFile> recording_;  // outlives the driver that it listens to; null: none
+  bool recording_ended_ = false;                   // and was reported
   aesop::Driver driver_;
   aesop::Reconnect reconnect_;
   CommandMaster master_;

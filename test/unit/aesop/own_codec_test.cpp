@@ -3,28 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
 #include <limits>
-#include <map>
-#include <sstream>
 #include <stdexcept>
 
 #include "messages.h"
 
 namespace laparoscope_servo::aesop {
 namespace {
-
-TEST(OwnCodec, everyMessageComesBack) {
-  std::uint16_t sequence = 65530;
-  for (const Message& message : oneOfEach()) {
-    Decoder decoder;
-    const std::vector<Frame> frames = decoder.push(encode({++sequence, message}));
-    ASSERT_EQ(frames.size(), 1u);
-    EXPECT_EQ(frames[0].sequence, sequence);
-    EXPECT_EQ(frames[0].message.index(), message.index());
-    EXPECT_EQ(decoder.statistics().skipped_bytes, 0u);
-  }
-}
 
 TEST(OwnCodec, valuesComeBackToAMillionth) {
   Decoder decoder;
@@ -44,57 +29,6 @@ TEST(OwnCodec, valuesComeBackToAMillionth) {
   EXPECT_DOUBLE_EQ(back.time_to_live, 0.2);
   const Identity identity{7, 0x47, "sixteen letters!"};
   EXPECT_EQ(std::get<Identity>(decoder.push(encode({9, identity}))[0].message).model, identity.model);
-}
-
-// The worked examples of doc/aesop_protocol.md, read from there: lines of "example NAME", then indented bytes.
-std::map<std::string, Bytes> documentedExamples() {
-  std::ifstream file(PROTOCOL_DOCUMENT);
-  std::map<std::string, Bytes> examples;
-  std::string name;
-  for (std::string line; std::getline(file, line);) {
-    if (line.rfind("Example `", 0) == 0) {
-      name = line.substr(9, line.find('`', 9) - 9);
-    } else if (!name.empty() && line.rfind("    ", 0) == 0) {
-      std::istringstream bytes(line);
-      for (unsigned byte = 0; bytes >> std::hex >> byte;) examples[name].push_back(static_cast<std::uint8_t>(byte));
-    } else if (line.rfind('#', 0) == 0) {
-      name.clear();
-    }
-  }
-  return examples;
-}
-
-template <typename T>
-T decodeExample(const std::string& name, std::uint16_t sequence) {
-  const Bytes bytes = documentedExamples()[name];
-  const std::vector<Frame> frames = Decoder().push(bytes);
-  if (frames.size() != 1 || !std::holds_alternative<T>(frames[0].message))
-    throw std::runtime_error("no such example: " + name);
-  EXPECT_EQ(frames[0].sequence, sequence) << name;
-  EXPECT_EQ(encode(frames[0]), bytes) << name << " is not what the encoder writes";
-  return std::get<T>(frames[0].message);
-}
-
-TEST(OwnCodec, documentedExamples) {
-  EXPECT_EQ(documentedExamples().size(), 5u);
-  decodeExample<Identify>("identify", 0);
-  decodeExample<Enable>("enable", 1);
-  const Velocity velocity = decodeExample<Velocity>("velocity", 258);
-  EXPECT_DOUBLE_EQ(velocity.time_to_live, 0.2);
-  EXPECT_DOUBLE_EQ(velocity.speed[0], -0.0004);
-  EXPECT_DOUBLE_EQ(velocity.speed[2], -0.0033);
-  const Identity identity = decodeExample<Identity>("identity", 0);
-  EXPECT_EQ(identity.joints, 7);
-  EXPECT_EQ(identity.driven, 0x47);
-  EXPECT_EQ(identity.model, "EMULATED AESOP");
-  const Status status = decodeExample<Status>("status", 258);
-  EXPECT_EQ(status.state, RobotState::kEnabled);
-  EXPECT_TRUE(status.homed && status.moving);
-  EXPECT_EQ(status.faults, 0);
-  EXPECT_EQ(status.echo, 258);
-  EXPECT_DOUBLE_EQ(status.time, 12.345);
-  EXPECT_DOUBLE_EQ(status.position[1], -0.9);
-  EXPECT_DOUBLE_EQ(status.velocity[6], 0.005);
 }
 
 TEST(OwnCodec, encoderRefusesWhatHasNoNumber) {

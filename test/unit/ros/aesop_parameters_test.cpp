@@ -58,6 +58,9 @@ TEST(AesopParameters, shippedFileIsTheDefaults) {
   EXPECT_EQ(read.driver.session.status_timeout, defaults.driver.session.status_timeout);
   EXPECT_EQ(read.driver.session.request_timeout, defaults.driver.session.request_timeout);
   EXPECT_EQ(read.driver.session.codec()->name(), defaults.driver.session.codec()->name());
+  EXPECT_EQ(read.wire_log.file, defaults.wire_log.file);
+  EXPECT_EQ(read.wire_log.size, defaults.wire_log.size);
+  EXPECT_EQ(read.wire_log.files, defaults.wire_log.files);
 }
 
 TEST(AesopParameters, everyParameterOfTheShippedFileIsRead) {
