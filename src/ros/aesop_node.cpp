@@ -8,6 +8,7 @@
 
 #include "laparoscope_servo/ros/aesop_conversions.h"
 #include "laparoscope_servo/ros/clocks.h"
+#include "laparoscope_servo/ros/realtime.h"
 #include "laparoscope_servo/servo/scope_geometry.h"
 
 namespace laparoscope_servo::skin {
@@ -16,7 +17,8 @@ namespace {
 
 constexpr std::chrono::milliseconds kPeriod{5};
 constexpr std::uint32_t kQueue = 100;      // commands
-constexpr double kReportPause = 1.0;       // s, between two warnings of one kind
+constexpr double kReportPause = 1.0;       // s, between two warnings of a command that was refused
+constexpr double kStrangerPause = 10.0;    // s, between two of a publisher that is not the master
 constexpr double kDiagnosticsPause = 1.0;  // s
 constexpr double kStatePeriod = 0.1;       // s, between two publications of an operating state that stays
 constexpr double kLastWord = 0.5;          // s, for the controller to confirm the disable when the node ends
@@ -65,6 +67,10 @@ AesopNode::AesopNode(const ros::NodeHandle& node, const ros::NodeHandle& private
 }
 
 void AesopNode::run(const std::atomic<bool>& stop) {
+  if (parameters_.realtime_priority > 0) {
+    const std::string refusal = goRealtime(parameters_.realtime_priority);
+    if (!refusal.empty()) ROS_WARN_STREAM(refusal);
+  }
   try {
     while (!stop && ros::ok()) {
       const auto next = std::chrono::steady_clock::now() + kPeriod;
@@ -118,7 +124,9 @@ void AesopNode::connect(double now) {
     transport_.open(parameters_.port, parameters_.baud_rate);
     driver_.opened(now);
     last_loss_.clear();
-    ROS_INFO_STREAM("port '" << parameters_.port << "' is open");
+    ROS_INFO_STREAM(
+        "port '" << parameters_.port << "' is open, "
+                 << (transport_.lowLatency() ? "set to low latency" : "its driver has no low-latency setting"));
   } catch (const aesop::TransportError& error) {
     lose(error.what(), now);
   }
@@ -170,7 +178,7 @@ void AesopNode::onCommand(const ros::MessageEvent<ScopeVelocity const>& event) {
   const ScopeVelocity& message = *event.getConstMessage();
   switch (master_.judge(event.getPublisherName(), event.getConnectionHeaderPtr(), now)) {
     case CommandMaster::Verdict::kStranger:
-      return report(master_.complaint(now), next_stranger_, now);
+      return report(master_.complaint(now), next_stranger_, kStrangerPause, now);
     case CommandMaster::Verdict::kNewConnection:
       // Restarted, replaced by another process of its name, or joined by one: which of them shall move the arm is for
       // somebody to say who sees it stand.
@@ -183,12 +191,12 @@ void AesopNode::onCommand(const ros::MessageEvent<ScopeVelocity const>& event) {
   const std::string refusal = driver_.command(velocity, message.header.stamp.toSec(), stampNow(), now);
   // Commands that come before the arm is enabled are nobody's mistake, but one that is not finite is.
   if (!refusal.empty() && (driver_.session().isEnabled() || !velocity.isFinite()))
-    report("a command was refused: " + refusal, next_report_, now);
+    report("a command was refused: " + refusal, next_report_, kReportPause, now);
 }
 
-void AesopNode::report(const std::string& refusal, double& next, double now) {
+void AesopNode::report(const std::string& refusal, double& next, double pause, double now) {
   if (now < next) return;
-  next = now + kReportPause;
+  next = now + pause;
   ROS_WARN_STREAM(refusal);
 }
 

@@ -162,6 +162,7 @@ AesopParameters readAesopParameters(ParameterReader& reader) {
   reader.require("port", "the name of the serial port, e.g. /dev/ttyUSB0");
   reader.read("port", parameters.port);
   reader.read("baud_rate", parameters.baud_rate, 1200, 1000000);
+  reader.read("realtime_priority", parameters.realtime_priority, 0, 99);
   reader.read("frame_prefix", parameters.frame_prefix);
   reader.read("service_callers", parameters.service_callers);
   for (const std::string& caller : parameters.service_callers) checkNodeName(reader, "service_callers", caller);

@@ -46,7 +46,7 @@ class AesopNode {
   static bool repeatUntil(const std::function<bool()>& done, double seconds, const std::function<void()>& step);
 
   void onCommand(const ros::MessageEvent<ScopeVelocity const>& event);
-  void report(const std::string& refusal, double& next, double now);
+  void report(const std::string& refusal, double& next, double pause, double now);
 
   // Each returns what the service answers.
   Response enable();

@@ -34,6 +34,7 @@ TEST(AesopParameters, shippedFileIsTheDefaults) {
   const AesopParameters defaults;
   EXPECT_EQ(read.port, "/dev/ttyUSB0");
   EXPECT_EQ(read.baud_rate, defaults.baud_rate);
+  EXPECT_EQ(read.realtime_priority, defaults.realtime_priority);
   EXPECT_EQ(read.frame_prefix, defaults.frame_prefix);
   expectSame(read.driver.kinematics, defaults.driver.kinematics);
   EXPECT_EQ(read.driver.insertion_point, defaults.driver.insertion_point);
