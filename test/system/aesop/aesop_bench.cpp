@@ -169,7 +169,8 @@ int publish() {
   ros::NodeHandle node;
   ros::Publisher publisher = node.advertise<ScopeVelocity>("servo_command", 1);
   const double pan = ros::param::param("~pan", 0.0);
-  // As any node does. One that has never logged registers itself again when it is replaced, and ends its successor, too.
+  // As any node does. One that has never logged registers itself again when it is replaced, and ends its successor,
+  // too.
   ROS_INFO_STREAM("commands a pan of " << pan << " rad/s");
   ros::WallRate rate(ros::param::param("~rate", 25.0));
   while (ros::ok()) {
