@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <sstream>
 
 #include "laparoscope_servo/validation/range_checker.h"
@@ -19,19 +20,31 @@ std::vector<std::string> validate(const CommandConfig& config) {
   return check.errors();
 }
 
+std::string CommandGuard::describe(Refusal refusal) const {
+  switch (refusal) {
+    case Refusal::kNotFinite:
+      return "is not finite";
+    case Refusal::kNoStamp:
+      return "has no stamp";
+    case Refusal::kOlderThanEnable:
+      return "is older than the enable";
+    case Refusal::kNotNewer:
+      return "has a stamp that is not newer than that of the one before";
+    case Refusal::kFarFromNow:
+      break;
+  }
+  std::ostringstream text;
+  text << "has a stamp more than " << config_.max_stamp_age << " s from now";
+  return text.str();
+}
+
 std::string CommandGuard::accept(const ScopeVelocity& velocity, double stamp, double stamp_now, double now) {
   if (stamp_now < last_stamp_now_) reset(stamp_now);  // the clock was set back: old stamps compare with nothing
   last_stamp_now_ = stamp_now;
-  std::string reason;
-  if (!velocity.isFinite()) {
-    last_ = ScopeVelocity();
-    reason = "it is not finite";
-  } else if (!velocity.isZero()) {
-    reason = judge(stamp, stamp_now);
-  }
-  if (!reason.empty()) {
-    ++refused_;
-    return reason;
+  if (const std::optional<Refusal> refusal = judge(velocity, stamp, stamp_now)) {
+    if (*refusal == Refusal::kNotFinite) last_ = ScopeVelocity();
+    ++refused_[static_cast<std::size_t>(*refusal)];
+    return "it " + describe(*refusal);
   }
   last_ = clamp(velocity);
   accepted_at_ = now;
@@ -40,18 +53,18 @@ std::string CommandGuard::accept(const ScopeVelocity& velocity, double stamp, do
   return "";
 }
 
-std::string CommandGuard::judge(double stamp, double stamp_now) const {
-  std::ostringstream text;
-  if (!(stamp > 0.0)) {
-    text << "it has no stamp";
-  } else if (!(stamp > not_before_)) {
-    text << "it is older than the enable";
-  } else if (!(stamp > last_stamp_)) {
-    text << "its stamp is not newer than that of the one before";
-  } else if (!(std::abs(stamp_now - stamp) <= config_.max_stamp_age)) {
-    text << "its stamp is more than " << config_.max_stamp_age << " s from now";
-  }
-  return text.str();
+std::optional<Refusal> CommandGuard::judge(const ScopeVelocity& velocity, double stamp, double stamp_now) const {
+  if (!velocity.isFinite()) return Refusal::kNotFinite;
+  if (velocity.isZero()) return std::nullopt;
+  if (!(stamp > 0.0)) return Refusal::kNoStamp;
+  if (!(stamp > not_before_)) return Refusal::kOlderThanEnable;
+  if (!(stamp > last_stamp_)) return Refusal::kNotNewer;
+  if (!(std::abs(stamp_now - stamp) <= config_.max_stamp_age)) return Refusal::kFarFromNow;
+  return std::nullopt;
+}
+
+std::uint64_t CommandGuard::refused() const {
+  return std::accumulate(refused_.begin(), refused_.end(), std::uint64_t{0});
 }
 
 ScopeVelocity CommandGuard::clamp(const ScopeVelocity& velocity) const {

@@ -99,9 +99,11 @@ std::string Driver::command(const ScopeVelocity& velocity, double stamp, double 
 void Driver::receive(const std::uint8_t* data, std::size_t size, double now) {
   if (tap_ != nullptr && size > 0) record(WireEvent::kReceived, now, Bytes(data, data + size));
   session_.receive(data, size, now);
-  const std::uint64_t received = session_.link().statistics().received;
-  if (received == monitored_) return;
-  monitored_ = received;
+  const Link& link = session_.link();
+  if (!link.isUp()) delay_.lost();
+  if (!link.isUp() || link.statistics().received == statuses_) return;
+  statuses_ = link.statistics().received;
+  delay_.received(*link.status(), now);
   watchMotion(now);
 }
 
@@ -154,7 +156,9 @@ Bytes Driver::turn(double now) {
     for (std::size_t k = 0; k < speed.size(); ++k) speed[k] = last_motion_.velocity[kinematics_.driven()[k]];
   }
   speed_ = speed;
-  return session_.transmit(speed, now);
+  const Bytes bytes = session_.transmit(speed, now);
+  if (!bytes.empty()) delay_.sent(session_.isMoving() ? last_motion_.velocity : JointVector::Zero(), now);
+  return bytes;
 }
 
 }  // namespace laparoscope_servo::aesop

@@ -71,7 +71,8 @@ std::vector<Status> Link::receive(const std::uint8_t* data, std::size_t size, do
   }
   statistics_.decoder = codec_->statistics();
   if (state_ == LinkState::kIdentifying && statistics_.decoder.other_version > versions) {
-    reason_ = "the controller speaks another version of the protocol, this driver " + codec_->name();
+    reason_ = "the controller speaks version " + std::to_string(statistics_.decoder.version_heard) +
+              " of the protocol, this driver " + codec_->name() + "; one of them has to be exchanged";
   }
   return statuses;
 }
@@ -87,7 +88,7 @@ void Link::take(const Identity& identity, double now) {
   reason_.clear();
   model_ = identity.model;
   ++statistics_.sessions;
-  statistics_.longest_round_trip = 0.0;
+  round_trips_.clear();
   status_at_ = now;
   next_ = now;
 }
@@ -101,6 +102,7 @@ void Link::take(const Status& status, double now) {
     begin("the controller answers requests that were never sent", now);
     return;
   }
+  const bool answers = !status_ || status.echo != status_->echo;  // or it echoes again what it has taken before
   ++statistics_.received;
   status_ = status;
   // Its age counts from the request: a line that holds bytes back delivers old news in time.
@@ -110,8 +112,7 @@ void Link::take(const Status& status, double now) {
     return;
   }
   status_at_ = sent_at_[status.echo % sent_at_.size()];
-  statistics_.round_trip = now - status_at_;
-  statistics_.longest_round_trip = std::max(statistics_.longest_round_trip, statistics_.round_trip);
+  if (answers) round_trips_.add(now - status_at_);
 }
 
 void Link::countLosses(std::uint16_t number) {

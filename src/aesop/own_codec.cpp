@@ -275,6 +275,7 @@ std::vector<Frame> Decoder::push(const std::uint8_t* data, std::size_t size) {
 bool Decoder::deliver(const std::uint8_t* start, std::vector<Frame>& frames) {
   if (start[2] != kProtocolVersion) {
     ++statistics_.other_version;
+    statistics_.version_heard = start[2];
     return false;
   }
   const std::optional<Message> message = readPayload(start[4], start + kHeader, start[3]);

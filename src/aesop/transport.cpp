@@ -1,5 +1,6 @@
 #include "laparoscope_servo/aesop/transport.h"
 
+#include <linux/serial.h>
 #include <sys/file.h>
 #include <sys/ioctl.h>
 #include <termios.h>
@@ -73,11 +74,14 @@ class SerialTransport::Port {
       throw TransportError("port '" + name_ + "': it refuses " + std::to_string(baud_rate) +
                            " baud, 8N1, no flow control: " + refused.code().message());
     }
+    low_latency_ = askForLowLatency();
     ::tcflush(port_.native_handle(), TCIOFLUSH);  // what was on its way to or from somebody else
     listen();
   }
 
   ~Port() { release(); }
+
+  bool lowLatency() const { return low_latency_; }
 
   Bytes read() {
     run();
@@ -109,6 +113,15 @@ class SerialTransport::Port {
   }
 
  private:
+  // Bytes are handed over as they come, not when a timer of the adapter (16 ms in FTDI's) has run out. A pty and many
+  // drivers have no such setting.
+  bool askForLowLatency() {
+    serial_struct settings{};
+    if (::ioctl(port_.native_handle(), TIOCGSERIAL, &settings) != 0) return false;
+    settings.flags |= ASYNC_LOW_LATENCY;
+    return ::ioctl(port_.native_handle(), TIOCSSERIAL, &settings) == 0;
+  }
+
   void listen() {
     port_.async_read_some(boost::asio::buffer(incoming_), [this](const error_code& error, std::size_t count) {
       if (error) {
@@ -156,6 +169,7 @@ class SerialTransport::Port {
   boost::asio::io_context context_;
   serial_port port_;
   bool exclusive_ = false;
+  bool low_latency_ = false;
   std::array<std::uint8_t, 512> incoming_{};
   Bytes received_;
   std::deque<std::uint8_t> waiting_;
@@ -177,6 +191,10 @@ void SerialTransport::close() {
 }
 bool SerialTransport::isOpen() const {
   return port_ != nullptr;
+}
+
+bool SerialTransport::lowLatency() const {
+  return port_ && port_->lowLatency();
 }
 
 Bytes SerialTransport::read() {

@@ -4,7 +4,7 @@
 #include <ros/ros.h>
 
 #include <csignal>
-#include <memory>
+#include <exception>
 
 namespace {
 
@@ -14,14 +14,7 @@ void onSignal(int) {
   stop = true;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  // Own handlers: the arm has to be disabled while there is still a node to do it.
-  ros::init(argc, argv, "aesop", ros::init_options::NoSigintHandler);
-  std::signal(SIGINT, onSignal);
-  std::signal(SIGTERM, onSignal);
-  std::signal(SIGHUP, onSignal);
+int run() {
   const ros::NodeHandle node;
   const ros::NodeHandle private_node("~");
   using namespace laparoscope_servo;
@@ -32,6 +25,23 @@ int main(int argc, char** argv) {
     return 1;
   }
   skin::AesopNode(node, private_node, parameters).run(stop);
-  ros::shutdown();
   return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  // Own handlers: the arm has to be disabled while there is still a node to do it.
+  ros::init(argc, argv, "aesop", ros::init_options::NoSigintHandler);
+  std::signal(SIGINT, onSignal);
+  std::signal(SIGTERM, onSignal);
+  std::signal(SIGHUP, onSignal);
+  int status = 1;
+  try {
+    status = run();
+  } catch (const std::exception& error) {
+    ROS_FATAL_STREAM(error.what());
+  }
+  ros::shutdown();
+  return status;
 }

@@ -8,6 +8,7 @@
 
 #include "laparoscope_servo/ros/aesop_conversions.h"
 #include "laparoscope_servo/ros/clocks.h"
+#include "laparoscope_servo/ros/realtime.h"
 #include "laparoscope_servo/servo/scope_geometry.h"
 
 namespace laparoscope_servo::skin {
@@ -16,7 +17,6 @@ namespace {
 
 constexpr std::chrono::milliseconds kPeriod{5};
 constexpr std::uint32_t kQueue = 100;      // commands
-constexpr double kReconnectPause = 0.5;    // s
 constexpr double kReportPause = 1.0;       // s, between two warnings of one kind
 constexpr double kDiagnosticsPause = 1.0;  // s
 constexpr double kStatePeriod = 0.1;       // s, between two publications of an operating state that stays
@@ -29,6 +29,7 @@ AesopNode::AesopNode(const ros::NodeHandle& node, const ros::NodeHandle& private
     : parameters_(parameters),
       tip_R_optical_(servo::obliqueOptics(parameters.optics_angle, parameters.optics_roll).transpose()),
       driver_(parameters.driver),
+      reconnect_(parameters.reconnect),
       master_(node.resolveName(parameters.publisher, false)),
       reported_(parameters.port, aesop::lineWarning(parameters.driver.session, parameters.baud_rate)),
       node_(node),
@@ -50,34 +51,49 @@ AesopNode::AesopNode(const ros::NodeHandle& node, const ros::NodeHandle& private
   advertise("pause", &AesopNode::pause, Callers::kAll);
   diagnostics_.setHardwareID(parameters_.port);
   diagnostics_.add("AESOP", [this](diagnostic_updater::DiagnosticStatusWrapper& status) {
-    reported_.fill(steadyNow(), driver_, master_, command_subscriber_.getNumPublishers(), status);
+    const double now = steadyNow();
+    reported_.fill(now, driver_, {master_, command_subscriber_.getNumPublishers(), reconnect_.remaining(now)}, status);
   });
   publishStaticFrames();
   if (!reported_.lineWarning().empty()) ROS_WARN_STREAM(reported_.lineWarning());
 }
 
 void AesopNode::run(const std::atomic<bool>& stop) {
-  while (!stop && ros::ok()) {
-    const auto next = std::chrono::steady_clock::now() + kPeriod;
-    ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.0));
-    step();
-    std::this_thread::sleep_until(next);
+  if (parameters_.realtime_priority > 0) {
+    const std::string refusal = goRealtime(parameters_.realtime_priority);
+    if (!refusal.empty()) ROS_WARN_STREAM(refusal);
   }
-  shutDown();
+  try {
+    while (!stop && ros::ok()) {
+      const auto next = std::chrono::steady_clock::now() + kPeriod;
+      ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.0));
+      step();
+      std::this_thread::sleep_until(next);
+    }
+  } catch (const std::exception& error) {
+    ROS_FATAL_STREAM(error.what() << "; the arm is disabled, the node ends");
+    shutDown([this] { exchange(steadyNow()); });  // nothing else, as it may be what has failed
+    throw;
+  }
+  shutDown([this] { step(); });
+}
+
+void AesopNode::exchange(double now) {
+  if (!transport_.isOpen()) return;
+  try {
+    const aesop::Bytes received = transport_.read();
+    driver_.receive(received.data(), received.size(), now);
+    transport_.write(driver_.transmit(now));
+  } catch (const aesop::TransportError& error) {
+    lose(error.what(), now);
+  }
 }
 
 void AesopNode::step() {
   const double now = steadyNow();
   if (!transport_.isOpen()) connect(now);
-  if (transport_.isOpen()) {
-    try {
-      const aesop::Bytes received = transport_.read();
-      driver_.receive(received.data(), received.size(), now);
-      transport_.write(driver_.transmit(now));
-    } catch (const aesop::TransportError& error) {
-      lose(error.what(), now);
-    }
-  }
+  exchange(now);
+  if (driver_.session().link().isUp()) reconnect_.up(now);
   if (!driver_.session().isEnabled()) master_.release();
   publishStatus();
   publishState(now);
@@ -88,13 +104,14 @@ void AesopNode::step() {
 }
 
 void AesopNode::connect(double now) {
-  if (now < next_attempt_) return;
-  next_attempt_ = now + kReconnectPause;
+  if (!reconnect_.due(now)) return;
   try {
     transport_.open(parameters_.port, parameters_.baud_rate);
     driver_.opened(now);
     last_loss_.clear();
-    ROS_INFO_STREAM("port '" << parameters_.port << "' is open");
+    ROS_INFO_STREAM(
+        "port '" << parameters_.port << "' is open, "
+                 << (transport_.lowLatency() ? "set to low latency" : "its driver has no low-latency setting"));
   } catch (const aesop::TransportError& error) {
     lose(error.what(), now);
   }
@@ -102,12 +119,12 @@ void AesopNode::connect(double now) {
 
 void AesopNode::lose(const std::string& reason, double now) {
   driver_.closed(reason);
-  next_attempt_ = now + kReconnectPause;
+  reconnect_.lost(now);
   if (reason != last_loss_) ROS_ERROR_STREAM(reason << "; the arm is taken for DISABLED, trying again");
   last_loss_ = reason;
 }
 
-bool AesopNode::stepUntil(const std::function<bool()>& done, double seconds) {
+bool AesopNode::repeatUntil(const std::function<bool()>& done, double seconds, const std::function<void()>& step) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
   while (!done()) {
     if (std::chrono::steady_clock::now() > end) return false;
@@ -118,14 +135,18 @@ bool AesopNode::stepUntil(const std::function<bool()>& done, double seconds) {
   return true;
 }
 
-void AesopNode::shutDown() {
+bool AesopNode::stepUntil(const std::function<bool()>& done, double seconds) {
+  return repeatUntil(done, seconds, [this] { step(); });
+}
+
+void AesopNode::shutDown(const std::function<void()>& step) {
   if (!transport_.isOpen()) return;
   driver_.disable(steadyNow());
   const auto standing = [this] {
     const auto& status = driver_.session().link().status();
     return !status || status->state != aesop::RobotState::kEnabled;
   };
-  if (!stepUntil(standing, kLastWord)) {
+  if (!repeatUntil(standing, kLastWord, step)) {
     ROS_ERROR(
         "the controller has not confirmed the disable; it stops by itself when the last command's time has run out");
   }

@@ -139,6 +139,14 @@ void readMonitor(ParameterReader& reader, aesop::MonitorConfig& config) {
   reader.refuseUnknown("monitor");
 }
 
+void readReconnect(ParameterReader& reader, aesop::ReconnectConfig& config) {
+  reader.read("reconnect/first_pause", config.first_pause, -kLarge, kLarge);
+  reader.read("reconnect/longest_pause", config.longest_pause, -kLarge, kLarge);
+  reader.read("reconnect/stable_time", config.stable_time, -1e4, 1e4);
+  reader.refuseUnknown("reconnect");
+  for (const std::string& error : aesop::validate(config)) reader.addError("reconnect/" + error);
+}
+
 }  // namespace
 
 AesopParameters readAesopParameters(ParameterReader& reader) {
@@ -146,6 +154,7 @@ AesopParameters readAesopParameters(ParameterReader& reader) {
   reader.require("port", "the name of the serial port, e.g. /dev/ttyUSB0");
   reader.read("port", parameters.port);
   reader.read("baud_rate", parameters.baud_rate, 1200, 1000000);
+  reader.read("realtime_priority", parameters.realtime_priority, 0, 99);
   reader.read("frame_prefix", parameters.frame_prefix);
   reader.read("service_callers", parameters.service_callers);
   for (const std::string& caller : parameters.service_callers) checkNodeName(reader, "service_callers", caller);
@@ -156,6 +165,7 @@ AesopParameters readAesopParameters(ParameterReader& reader) {
   readCommand(reader, parameters.publisher, parameters.driver.command);
   readLink(reader, parameters.driver.session);
   readMonitor(reader, parameters.driver.monitor);
+  readReconnect(reader, parameters.reconnect);
   readPoint(reader, "insertion_point", parameters.driver.insertion_point);
   reader.refuseUnknown("");
   reader.addErrors(aesop::validate(parameters.driver));

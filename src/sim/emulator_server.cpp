@@ -119,6 +119,8 @@ class EmulatorServer::Loop {
     try {
       acceptor_.open();
       acceptor_.bind(stream_protocol::endpoint(control_));
+      // Whoever may write to it moves the arm by hand.
+      if (::chmod(control_.c_str(), S_IRUSR | S_IWUSR) != 0) throw std::runtime_error("control socket: chmod failed");
       acceptor_.listen();
     } catch (const boost::system::system_error& error) {
       throw std::runtime_error("control socket '" + control_ + "': " + error.code().message());

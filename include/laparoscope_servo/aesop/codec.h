@@ -29,6 +29,7 @@ struct DecoderStatistics {
   std::uint64_t crc_errors = 0;
   std::uint64_t malformed = 0;      // check sum right, but a length, type or value that the format does not have
   std::uint64_t other_version = 0;  // check sum right, but another version of the format
+  unsigned version_heard = 0;       // of those, the last one's
 };
 
 class Codec {

@@ -5,8 +5,10 @@
 // is news.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +28,10 @@ struct CommandConfig {
 
 std::vector<std::string> validate(const CommandConfig& config);
 
+// Why a command does not count.
+enum class Refusal { kNotFinite, kNoStamp, kOlderThanEnable, kNotNewer, kFarFromNow };
+constexpr std::size_t kRefusals = 5;
+
 class CommandGuard {
  public:
   explicit CommandGuard(const CommandConfig& config) : config_(config) {}
@@ -43,10 +49,13 @@ class CommandGuard {
   bool timedOut(double now) const { return !last_.isZero() && !(age(now) <= config_.timeout); }
 
   std::uint64_t accepted() const { return accepted_; }
-  std::uint64_t refused() const { return refused_; }
+  std::uint64_t refused() const;
+  // In words that follow "it ".
+  std::string describe(Refusal refusal) const;
+  std::uint64_t refused(Refusal refusal) const { return refused_[static_cast<std::size_t>(refusal)]; }
 
  private:
-  std::string judge(double stamp, double stamp_now) const;
+  std::optional<Refusal> judge(const ScopeVelocity& velocity, double stamp, double stamp_now) const;
   ScopeVelocity clamp(const ScopeVelocity& velocity) const;
 
   CommandConfig config_;
@@ -56,7 +65,7 @@ class CommandGuard {
   double not_before_ = -std::numeric_limits<double>::infinity();
   double last_stamp_now_ = -std::numeric_limits<double>::infinity();
   std::uint64_t accepted_ = 0;
-  std::uint64_t refused_ = 0;
+  std::array<std::uint64_t, kRefusals> refused_{};
 };
 
 }  // namespace laparoscope_servo::aesop

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "laparoscope_servo/aesop/command_guard.h"
+#include "laparoscope_servo/aesop/motion_delay.h"
 #include "laparoscope_servo/aesop/motion_monitor.h"
 #include "laparoscope_servo/aesop/session.h"
 #include "laparoscope_servo/aesop/wire_log.h"
@@ -56,6 +57,8 @@ class Driver {
   const CommandGuard& guard() const { return guard_; }
   const Kinematics& kinematics() const { return kinematics_; }
   const Eigen::Vector3d& insertionPoint() const { return insertion_point_; }
+  // The arm's own delay, as measured by what has been sent and received.
+  const MotionDelay& delay() const { return delay_; }
   // What the last call of transmit() made of the command.
   const JointMotion& lastMotion() const { return last_motion_; }
 
@@ -70,8 +73,9 @@ class Driver {
   Eigen::Vector3d insertion_point_;
   CommandGuard guard_;
   Session session_;
+  MotionDelay delay_;
   MotionMonitor monitor_;
-  std::uint64_t monitored_ = 0;                // statuses received when the monitor took the last one
+  std::uint64_t statuses_ = 0;                 // received when the last one was looked at
   std::array<double, kDrivenJoints> speed_{};  // of the driven joints, as commanded last
   JointMotion last_motion_;
   std::string refusal_;  // of the last command; empty when it was accepted

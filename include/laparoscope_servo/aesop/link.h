@@ -9,6 +9,7 @@
 #include <string>
 
 #include "laparoscope_servo/aesop/codec.h"
+#include "laparoscope_servo/aesop/round_trips.h"
 #include "laparoscope_servo/aesop/session_config.h"
 
 namespace laparoscope_servo::aesop {
@@ -23,12 +24,10 @@ const char* name(LinkState state);
 
 struct LinkStatistics {
   DecoderStatistics decoder;
-  std::uint64_t sent = 0;           // requests
-  std::uint64_t received = 0;       // statuses
-  std::uint64_t lost = 0;           // replies of the controller that never came, by its numbers
-  std::uint64_t sessions = 0;       // times that the link came up
-  double round_trip = 0.0;          // s, of the last status
-  double longest_round_trip = 0.0;  // s, since the link came up
+  std::uint64_t sent = 0;      // requests
+  std::uint64_t received = 0;  // statuses
+  std::uint64_t lost = 0;      // replies of the controller that never came, by its numbers
+  std::uint64_t sessions = 0;  // times that the link came up
 };
 
 class Link {
@@ -62,6 +61,8 @@ class Link {
   // s since the request that it answers was sent: no less than what it tells is old. Infinite when there is none.
   double statusAge(double now) const;
   const LinkStatistics& statistics() const { return statistics_; }
+  // Of the last statuses of this session.
+  RoundTripSummary roundTrips() const { return round_trips_.summary(); }
   const std::string& model() const { return model_; }
 
  private:
@@ -80,6 +81,7 @@ class Link {
   std::uint16_t sequence_ = 0;
   std::array<double, 1024> sent_at_{};  // s, of the last requests, by sequence number modulo their count
   double next_ = 0.0;
+  RoundTrips round_trips_;
   std::optional<Status> status_;
   double status_at_ = 0.0;
   std::optional<std::uint16_t> last_number_;

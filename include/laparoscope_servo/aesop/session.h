@@ -53,6 +53,8 @@ class Session {
 
   OperatingState state() const;
   bool isEnabled() const;  // ENABLED and confirmed, and not paused
+  // The last request was a velocity.
+  bool isMoving() const { return moved_; }
   const Link& link() const { return link_; }
   void setSequence(std::uint16_t sequence) { link_.setSequence(sequence); }
 

@@ -26,6 +26,8 @@ class SerialTransport {
   void open(const std::string& port, int baud_rate);
   void close();
   bool isOpen() const;
+  // The port's driver hands bytes over at once; not every driver can be asked to.
+  bool lowLatency() const;
 
   // What has come since the last call. Throws TransportError, and closes, when the line has gone.
   Bytes read();

@@ -11,6 +11,13 @@
 
 namespace laparoscope_servo::skin {
 
+// What the node knows beside the driver.
+struct AesopReport {
+  const CommandMaster& master;
+  std::uint32_t publishers = 0;  // connections that carry commands
+  double next_attempt = 0.0;     // s until the port is tried again, while it is closed
+};
+
 // Times are seconds of a steady clock.
 class AesopDiagnostics {
  public:
@@ -19,18 +26,25 @@ class AesopDiagnostics {
       : port_(port), line_warning_(line_warning) {}
 
   const std::string& lineWarning() const { return line_warning_; }
-  // `publishers`: connections that carry commands. Level: ERROR without a link or in FAULT, WARN when the line cannot
-  // carry the rate or has lost bytes since the last call, or when others than the master command.
-  void fill(double now, const aesop::Driver& driver, const CommandMaster& master, std::uint32_t publishers,
+  // Level: ERROR without a link or in FAULT; WARN when the line cannot carry the rate or has lost bytes since the last
+  // call, or when others than the master command. Rates are those since the last call.
+  void fill(double now, const aesop::Driver& driver, const AesopReport& report,
             diagnostic_updater::DiagnosticStatusWrapper& status);
 
  private:
+  using Status = diagnostic_updater::DiagnosticStatusWrapper;
+
+  void summarise(const aesop::OperatingState& state, const aesop::Link& link, Status& status);
+  static void addMaster(double now, const AesopReport& report, Status& status);
+  static void addCommands(double now, const aesop::CommandGuard& guard, Status& status);
+  void addLine(double now, const aesop::Link& link, Status& status);
+  static void addDelay(const aesop::MotionDelay& delay, Status& status);
+
   std::string port_;
   std::string line_warning_;
-  void addMaster(double now, const CommandMaster& master, std::uint32_t publishers,
-                 diagnostic_updater::DiagnosticStatusWrapper& status) const;
-
   std::uint64_t errors_reported_ = 0;
+  aesop::LinkStatistics before_;  // at the last call
+  double called_at_ = 0.0;        // s
 };
 
 }  // namespace laparoscope_servo::skin

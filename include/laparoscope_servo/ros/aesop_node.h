@@ -28,17 +28,21 @@ class AesopNode {
   AesopNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node, const AesopParameters& parameters);
 
   // Runs until `stop` becomes true or ROS shuts down, then disables the arm and waits a moment for it to be confirmed.
+  // The same when anything throws, which is then thrown on.
   void run(const std::atomic<bool>& stop);
 
  private:
   using Response = std_srvs::Trigger::Response;
 
   void step();
+  // Bytes to and from the line, if there is one.
+  void exchange(double now);
   void connect(double now);
   void lose(const std::string& reason, double now);
-  void shutDown();
+  void shutDown(const std::function<void()>& step);
   // Steps until `done` or for `seconds`; says whether it is done.
   bool stepUntil(const std::function<bool()>& done, double seconds);
+  static bool repeatUntil(const std::function<bool()>& done, double seconds, const std::function<void()>& step);
 
   void onCommand(const ros::MessageEvent<ScopeVelocity const>& event);
   void report(const std::string& refusal, double& next, double now);
@@ -63,11 +67,11 @@ class AesopNode {
   AesopParameters parameters_;
   Eigen::Matrix3d tip_R_optical_;
   aesop::Driver driver_;
+  aesop::Reconnect reconnect_;
   CommandMaster master_;
   std::vector<std::string> service_callers_;  // resolved
   aesop::SerialTransport transport_;
   AesopDiagnostics reported_;
-  double next_attempt_ = 0.0;      // s, steady: to open the port
   double next_diagnostics_ = 0.0;  // s, steady
   double next_report_ = 0.0;       // s, steady: of a refused command
   double next_stranger_ = 0.0;     // s, steady: of a publisher that is not the master

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "laparoscope_servo/aesop/driver.h"
+#include "laparoscope_servo/aesop/reconnect.h"
 #include "laparoscope_servo/ros/parameters.h"
 #include "laparoscope_servo/sim/emulator.h"
 
@@ -13,9 +14,11 @@ namespace laparoscope_servo::skin {
 
 struct AesopParameters {
   aesop::DriverConfig driver;
-  std::string port;          // required
-  int baud_rate = 38400;     // 1200 to 1000000
-  std::string frame_prefix;  // in front of every frame's name
+  aesop::ReconnectConfig reconnect;
+  std::string port;           // required
+  int baud_rate = 38400;      // 1200 to 1000000
+  int realtime_priority = 0;  // of the loop, 0 (none) to 99
+  std::string frame_prefix;   // in front of every frame's name
   // Node whose velocity commands count; a name without a leading slash is one of the node's namespace.
   std::string publisher = "controller";
   // Nodes that may call enable, resume and clear_fault; none: every node.

@@ -69,17 +69,21 @@ AesopBench::~AesopBench() {
   ::rmdir(directory_.c_str());
 }
 
-void AesopBench::startNode() {
+void AesopBench::startNode(const std::string& program, const std::vector<std::string>& arguments,
+                           const std::string& output) {
   XmlRpc::XmlRpcValue parameters = skin::parametersFromYaml(AESOP_CONFIG);
   parameters["port"] = port();
   parameters["command"]["publisher"] = master_.empty() ? ros::this_node::getName() : master_;
+  parameters["reconnect"]["longest_pause"] = 0.5;  // tests cut the line again and again
   XmlRpc::XmlRpcValue callers;
   callers.setSize(0);
   for (const std::string& caller : service_callers_) callers[callers.size()] = caller;
   parameters["service_callers"] = callers;
   ros::param::set("/aesop", parameters);
   state_.reset();
-  node_ = std::make_unique<ChildProcess>(AESOP_NODE, std::vector<std::string>{"__name:=aesop"});
+  std::vector<std::string> all = arguments;
+  all.push_back("__name:=aesop");
+  node_ = std::make_unique<ChildProcess>(program, all, output);
   if (!waitFor([this] { return isUp() && commands_.getNumSubscribers() > 0; }, 10.0)) {
     throw std::runtime_error("the aesop node has not connected to the emulator");
   }

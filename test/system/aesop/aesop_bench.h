@@ -31,7 +31,9 @@ class AesopBench {
   explicit AesopBench(bool with_node = true);
   ~AesopBench();
 
-  void startNode();
+  // The arguments are those for a test that runs another program as the node.
+  void startNode(const std::string& program = AESOP_NODE, const std::vector<std::string>& arguments = {},
+                 const std::string& output = "");
   ChildProcess& node() { return *node_; }
   ChildProcess& emulator() { return *emulator_; }
   // What only the emulator knows.

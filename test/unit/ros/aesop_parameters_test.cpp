@@ -34,6 +34,7 @@ TEST(AesopParameters, shippedFileIsTheDefaults) {
   const AesopParameters defaults;
   EXPECT_EQ(read.port, "/dev/ttyUSB0");
   EXPECT_EQ(read.baud_rate, defaults.baud_rate);
+  EXPECT_EQ(read.realtime_priority, defaults.realtime_priority);
   EXPECT_EQ(read.frame_prefix, defaults.frame_prefix);
   expectSame(read.driver.kinematics, defaults.driver.kinematics);
   EXPECT_EQ(read.driver.insertion_point, defaults.driver.insertion_point);
@@ -47,6 +48,9 @@ TEST(AesopParameters, shippedFileIsTheDefaults) {
   EXPECT_EQ(read.driver.command.max_tilt, defaults.driver.command.max_tilt);
   EXPECT_EQ(read.driver.command.max_spin, defaults.driver.command.max_spin);
   EXPECT_EQ(read.driver.command.max_insertion, defaults.driver.command.max_insertion);
+  EXPECT_EQ(read.reconnect.first_pause, defaults.reconnect.first_pause);
+  EXPECT_EQ(read.reconnect.longest_pause, defaults.reconnect.longest_pause);
+  EXPECT_EQ(read.reconnect.stable_time, defaults.reconnect.stable_time);
   EXPECT_EQ(read.publisher, defaults.publisher);
   EXPECT_EQ(read.service_callers, defaults.service_callers);
   EXPECT_EQ(read.driver.session.rate, defaults.driver.session.rate);
@@ -64,7 +68,7 @@ TEST(AesopParameters, shippedFileIsTheDefaults) {
 TEST(AesopParameters, everyParameterOfTheShippedFileIsRead) {
   XmlRpc::XmlRpcValue tree = shipped("aesop.yaml");
   tree["port"] = std::string("/dev/ttyUSB0");
-  for (const char* group : {"motion", "command", "link", "monitor"}) {
+  for (const char* group : {"motion", "command", "link", "monitor", "reconnect"}) {
     for (auto& member : tree[group]) {
       XmlRpc::XmlRpcValue changed = tree;
       changed[group][member.first] = std::string("no number, no name");

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <stdlib.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -90,6 +91,15 @@ TEST_F(EmulatorServerTest, clientOfTheControlSocket) {
   EXPECT_THROW(client.request("dance"), std::runtime_error);
   EXPECT_THROW(client.request("state\nstate"), std::runtime_error);
   EXPECT_NO_THROW(client.state()) << "a refusal does not end the connection";
+}
+
+// Its requests move the arm by hand.
+TEST_F(EmulatorServerTest, controlSocketIsForItsUserAlone) {
+  start();
+  struct stat found {};
+  ASSERT_EQ(::stat(path("control").c_str(), &found), 0);
+  EXPECT_TRUE(S_ISSOCK(found.st_mode));
+  EXPECT_EQ(found.st_mode & 0777, 0600u);
 }
 
 TEST_F(EmulatorServerTest, hangupTakesThePortAwayAndBringsItBack) {

@@ -1,0 +1,41 @@
+// When to try the port again: at once the first time, then after pauses that double, so that a port that stays away
+// costs nothing. A session that has lasted makes the pauses short again; one that breaks soon, a loose cable, does not.
+//
+// Pure: `now` is seconds of a steady clock.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace laparoscope_servo::aesop {
+
+// Defaults are those of config/aesop.yaml, group `reconnect`.
+struct ReconnectConfig {
+  double first_pause = 0.5;    // s, 0.05 to 10
+  double longest_pause = 8.0;  // s, first_pause to 60
+  double stable_time = 5.0;    // s, 0 to 3600: a link that was up for so long has lasted
+};
+
+std::vector<std::string> validate(const ReconnectConfig& config);
+
+class Reconnect {
+ public:
+  explicit Reconnect(const ReconnectConfig& config) : config_(config), pause_(config.first_pause) {}
+
+  bool due(double now) const { return now >= next_; }
+  // s until the next attempt; 0 when it is due.
+  double remaining(double now) const { return due(now) ? 0.0 : next_ - now; }
+  // The link is up; to be called for as long as it is.
+  void up(double now);
+  // An attempt has failed, or the port has been lost.
+  void lost(double now);
+
+ private:
+  ReconnectConfig config_;
+  double pause_;
+  double next_ = 0.0;
+  std::optional<double> up_since_;
+};
+
+}  // namespace laparoscope_servo::aesop

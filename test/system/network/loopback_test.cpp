@@ -1,0 +1,110 @@
+// Started as the README shows, nothing listens beyond the loopback address.
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+
+#include "support/temporary_folder.h"
+#include "system/aesop/child_process.h"
+#include "system/network/open_sockets.h"
+
+namespace laparoscope_servo::test {
+namespace {
+
+class Socket {
+ public:
+  Socket(int type, const char* address) : file_(::socket(AF_INET, type, 0)) {
+    sockaddr_in name{};
+    name.sin_family = AF_INET;
+    ::inet_pton(AF_INET, address, &name.sin_addr);
+    if (::bind(file_, reinterpret_cast<const sockaddr*>(&name), sizeof(name)) != 0) throw std::runtime_error("bind");
+    if (type == SOCK_STREAM) ::listen(file_, 1);
+  }
+  ~Socket() { ::close(file_); }
+  int port() const {
+    sockaddr_in name{};
+    socklen_t size = sizeof(name);
+    ::getsockname(file_, reinterpret_cast<sockaddr*>(&name), &size);
+    return ntohs(name.sin_port);
+  }
+
+ private:
+  int file_;
+};
+
+// The measurement has to see what it is to find.
+TEST(OpenSockets, tellsLoopbackFromTheRest) {
+  const auto count = [](bool loopback) {
+    const std::vector<OpenSocket> open = openSockets(::getpid());
+    return std::count_if(open.begin(), open.end(), [&](const OpenSocket& s) { return s.loopback == loopback; });
+  };
+  EXPECT_EQ(count(true) + count(false), 0);
+  const Socket local(SOCK_STREAM, "127.0.0.1");
+  const Socket local_udp(SOCK_DGRAM, "127.1.2.3");
+  EXPECT_EQ(count(true), 2);
+  EXPECT_EQ(count(false), 0);
+  const Socket open(SOCK_STREAM, "0.0.0.0");
+  const Socket open_udp(SOCK_DGRAM, "0.0.0.0");
+  EXPECT_EQ(count(true), 2);
+  EXPECT_EQ(count(false), 2);
+  EXPECT_TRUE(isLoopback("00000000000000000000000001000000"));
+  EXPECT_TRUE(isLoopback("0000000000000000FFFF00000100007F"));
+  EXPECT_FALSE(isLoopback("00000000000000000000000000000000"));
+  EXPECT_FALSE(isLoopback("0000000000000000FFFF00000A00A8C0"));
+}
+
+class Launch {
+ public:
+  explicit Launch(const std::string& command)
+      : port_(Socket(SOCK_STREAM, "127.0.0.1").port()),
+        shell_("/usr/bin/env",
+               {"-u", "ROS_IP", "-u", "ROS_HOSTNAME", "-u", "ROS_NAMESPACE", "-u", "LD_PRELOAD", "PATH=/usr/bin:/bin",
+                "ROS_HOME=" + folder_.path() + "/ros", "ROS_MASTER_URI=http://localhost:" + std::to_string(port_),
+                "bash", "-c", "source " SETUP_BASH " && exec " + command + " port:=" + folder_.path() + "/arm"},
+               folder_.path() + "/log") {}
+  ~Launch() {
+    shell_.kill(SIGINT);
+    shell_.exitStatus(30.0);
+  }
+  std::vector<OpenSocket> sockets() const { return openSockets(shell_.pid()); }
+  // Waits until each of these programs listens, twice: for messages and for XML-RPC.
+  bool listens(const std::vector<std::string>& programs) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    while (std::chrono::steady_clock::now() < end && shell_.isRunning()) {
+      std::map<std::string, int> count;
+      for (const OpenSocket& socket : sockets()) count[socket.process] += socket.protocol == "tcp" ? 1 : 0;
+      if (std::all_of(programs.begin(), programs.end(), [&](const auto& name) { return count[name] >= 2; }))
+        return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+    return false;
+  }
+  std::string log() const {
+    std::ostringstream text;
+    text << std::ifstream(folder_.path() + "/log").rdbuf();
+    return text.str().substr(std::max<std::size_t>(text.str().size(), 3000) - 3000);
+  }
+
+ private:
+  test_support::TemporaryFolder folder_;
+  int port_;
+  ChildProcess shell_;
+};
+
+TEST(Loopback, nothingOfTheDemoListensBeyondIt) {
+  Launch demo("roslaunch laparoscope_servo demo.launch rviz:=false");
+  // Names as the kernel cuts them. rosout is not this package's.
+  ASSERT_TRUE(demo.listens({"aesop", "controller", "tracker", "simulated_camer", "rosout"})) << demo.log();
+  for (int k = 0; k < 20; ++k) {
+    for (const OpenSocket& socket : demo.sockets()) {
+      EXPECT_TRUE(socket.loopback) << socket.process << " listens by " << socket.protocol << " on " << socket.address;
+    }
+    if (testing::Test::HasFailure()) break;
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+}
+
+}  // namespace
+}  // namespace laparoscope_servo::test
