@@ -196,4 +196,17 @@ sim::EmulatorConfig readEmulatorConfig(ParameterReader& reader) {
   return config;
 }
 
+std::vector<std::string> errorsBesideEmulator(const XmlRpc::XmlRpcValue& tree) {
+  XmlRpc::XmlRpcValue rest;
+  if (tree.getType() != XmlRpc::XmlRpcValue::TypeStruct) return {};
+  for (const auto& member : tree) {
+    if (member.first != "kinematics" && member.first != "emulator") rest[member.first] = member.second;
+  }
+  if (!rest.valid()) return {};
+  if (!rest.hasMember("port")) rest["port"] = std::string("the emulator's own");
+  ParameterReader reader(rest, "params");
+  readAesopParameters(reader);
+  return reader.errors();
+}
+
 }  // namespace laparoscope_servo::skin

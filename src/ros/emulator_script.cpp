@@ -123,23 +123,6 @@ std::vector<sim::ScheduledFault> readScript(const XmlRpcValue& tree, std::vector
   return script;
 }
 
-std::vector<std::string> unknownEmulatorParameters(const XmlRpcValue& tree) {
-  static const char* const kKnown[] = {"kinematics", "emulator"};
-  // One file describes the arm for both ends.
-  static const char* const kOfTheNode[] = {"port",   "baud_rate", "frame_prefix", "optics", "insertion_point",
-                                           "motion", "command",   "link",         "monitor"};
-  std::vector<std::string> errors;
-  if (tree.getType() != XmlRpcValue::TypeStruct) return errors;
-  const auto in = [](const auto& names, const std::string& name) {
-    return std::find(std::begin(names), std::end(names), name) != std::end(names);
-  };
-  for (const auto& member : tree) {
-    if (in(kKnown, member.first) || in(kOfTheNode, member.first)) continue;
-    errors.push_back("params/" + member.first + " is no parameter of the emulator, nor of the aesop node");
-  }
-  return errors;
-}
-
 std::vector<sim::ScheduledFault> scriptFromYaml(const std::string& file) {
   std::vector<std::string> errors;
   std::vector<sim::ScheduledFault> script = readScript(parametersFromYaml(file), errors);

@@ -47,7 +47,7 @@ sim::EmulatorConfig readConfig(const options::variables_map& values) {
   }
   skin::ParameterReader reader(tree, "params");
   const sim::EmulatorConfig config = skin::readEmulatorConfig(reader);
-  reader.addErrors(skin::unknownEmulatorParameters(tree));
+  reader.addErrors(skin::errorsBesideEmulator(tree));
   if (!reader.errors().empty()) throw std::runtime_error(reader.report());
   return config;
 }

@@ -32,5 +32,8 @@ struct AesopParameters {
 // Missing parameters keep their defaults. All errors are left in the reader.
 AesopParameters readAesopParameters(ParameterReader& reader);
 sim::EmulatorConfig readEmulatorConfig(ParameterReader& reader);
+// Errors of what `tree` holds besides the groups `kinematics` and `emulator`: one file may describe the arm for both
+// ends, so that parameters of the aesop node are allowed, but have to be right; others are not.
+std::vector<std::string> errorsBesideEmulator(const XmlRpc::XmlRpcValue& tree);
 
 }  // namespace laparoscope_servo::skin

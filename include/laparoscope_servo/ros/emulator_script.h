@@ -17,7 +17,4 @@ std::vector<sim::ScheduledFault> readScript(const XmlRpc::XmlRpcValue& tree, std
 // The same from a file. Throws std::runtime_error with all errors, naming the file.
 std::vector<sim::ScheduledFault> scriptFromYaml(const std::string& file);
 
-// What of a parameter file is neither for the emulator nor for the aesop node: errors, each naming the parameter.
-std::vector<std::string> unknownEmulatorParameters(const XmlRpc::XmlRpcValue& tree);
-
 }  // namespace laparoscope_servo::skin

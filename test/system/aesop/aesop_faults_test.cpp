@@ -127,7 +127,7 @@ class FaultRuns {
     const double begin = steadyNow();
     // The state that the topic told last may be from before.
     command(0.3, [] {});
-    EXPECT_TRUE(bench_.waitFor([&] { return bench_.isUp() && !bench_.jointsMove(); }, 6.0))
+    EXPECT_TRUE(bench_.waitFor([&] { return bench_.isUp() && !bench_.jointsMove(); }, 12.0))  // the pauses grow
         << bench_.state_->state << ", " << bench_.state_->reason;
     if (bench_.stateIs("FAULT")) {
       EXPECT_TRUE(bench_.call("clear_fault").success);

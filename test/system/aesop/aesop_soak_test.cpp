@@ -83,9 +83,14 @@ class Soak {
   double longestGap() const { return longest_gap_; }
 
  private:
+  // The node's summaries are of the last ten seconds.
   void take(const diagnostic_msgs::DiagnosticStatus& status) {
     diagnostics_ = status;
-    if (value("round trip [s]") > 0.0) round_trips_.push_back(value("round trip [s]"));
+    if (!(value("round trip, median [s]") > 0.0)) return;
+    medians_.push_back(value("round trip, median [s]"));
+    jitters_.push_back(value("round trip, jitter [s]"));
+    p99s_.push_back(value("round trip, 99 of 100 [s]"));
+    longest_trip_ = std::max(longest_trip_, value("round trip, longest [s]"));
   }
 
   void report(double elapsed) {
@@ -94,12 +99,13 @@ class Soak {
     std::cout << "soak at " << elapsed << " s: between statuses median " << share(gaps_, 0.5) << ", 99 % "
               << share(gaps_, 0.99) << ", longest " << gap << " s since the last line; node "
               << residentMemory(bench_.node().pid()) << " MiB, emulator " << residentMemory(bench_.emulator().pid())
-              << " MiB; processor node " << share_of(cpu_node_, bench_.node().pid(), elapsed) << " %, emulator "
-              << share_of(cpu_emulator_, bench_.emulator().pid(), elapsed) << " %; enables " << enables_
-              << "; round trips seen " << round_trips_.size() << ", median " << share(round_trips_, 0.5) << ", 99 % "
-              << share(round_trips_, 0.99) << " s;";
+              << " MiB; processor node " << processorShare(cpu_node_, bench_.node().pid(), elapsed) << " %, emulator "
+              << processorShare(cpu_emulator_, bench_.emulator().pid(), elapsed) << " %; enables " << enables_
+              << "; round trip median " << share(medians_, 0.5) << ", 99 of 100 " << share(p99s_, 0.5)
+              << ", in the worst ten seconds " << share(p99s_, 1.0) << ", longest " << longest_trip_ << ", jitter "
+              << share(jitters_, 0.5) << " s;";
     for (const char* key : {"requests sent", "statuses received", "replies lost", "CRC errors", "malformed frames",
-                            "bytes skipped", "sessions", "longest round trip [s]"}) {
+                            "bytes skipped", "sessions"}) {
       std::cout << ' ' << key << ' ' << value(key) << ';';
     }
     std::cout << std::endl;
@@ -107,7 +113,7 @@ class Soak {
   }
 
   // % of one processor since the beginning.
-  static double share_of(double before, pid_t pid, double elapsed) {
+  static double processorShare(double before, pid_t pid, double elapsed) {
     return 100.0 * (processorTime(pid) - before) / std::max(elapsed, 1e-3);
   }
 
@@ -116,7 +122,10 @@ class Soak {
   std::vector<ros::Subscriber> subscribers_;
   diagnostic_msgs::DiagnosticStatus diagnostics_;
   std::vector<double> gaps_;
-  std::vector<double> round_trips_;
+  std::vector<double> medians_;
+  std::vector<double> p99s_;
+  std::vector<double> jitters_;
+  double longest_trip_ = 0.0;
   double last_stamp_ = 0.0;
   double longest_gap_ = 0.0;
   double cpu_node_ = 0.0;
@@ -130,7 +139,7 @@ TEST(AesopSoak, aLineThatDamagesFrames) {
   soak.damage(setting("AESOP_SOAK_HIT", 0.01));
   const double seconds = setting("AESOP_SOAK_SECONDS", 8.0);
   soak.run(seconds);
-  EXPECT_GT(soak.value("statuses received"), 30.0 * seconds);
+  EXPECT_GT(soak.value("statuses received"), 25.0 * seconds);
   EXPECT_LE(soak.enables(), 1 + static_cast<int>(seconds / 600.0)) << "a little damage ends no session";
   EXPECT_TRUE(bench.node().isRunning());
 }

@@ -83,17 +83,22 @@ TEST(AesopEmulator, commandLine) {
   const std::string output = bench.directory() + "/output";
   const std::string wrong = bench.directory() + "/wrong.yaml";
   const std::string link = bench.directory() + "/other";
-  std::ofstream(wrong) << "emulator: {delay: late, dely: 0.1}\n";
+  std::ofstream(wrong) << "emulator: {delay: late, dely: 0.1}\nemulatr: {delay: 0.1}\n";
+  const std::string script = bench.directory() + "/script.yaml";
+  std::ofstream(script) << "script: [{at: 1, fault: reboot}, {at: 2, fault: rust}]\n";
   struct Case {
     std::vector<std::string> arguments;
     int status;
     std::vector<std::string> says;
   };
   const Case cases[] = {
-      {{"--help"}, 0, {"--link", "--control", "fault hangup"}},
+      {{"--help"}, 0, {"--link", "--control", "hangup", "--script"}},
       {{}, 1, {"--link is missing"}},
       {{"--link", link, "--speed", "9"}, 1, {"--speed"}},
-      {{"--link", link, "--params", wrong}, 1, {"2 errors", "emulator/delay", "emulator/dely"}},
+      {{"--link", link, "--params", wrong}, 1, {"3 errors", "emulator/delay", "emulator/dely", "emulatr"}},
+      {{"--link", link, "--script", script}, 1, {"script.yaml", "entry 2", "rust"}},
+      {{"--link", link, "--script", "/no/such/file"}, 1, {"/no/such/file"}},
+      {{"--link", link, "--baud", "12"}, 1, {"--baud 12"}},
       {{"--link", link, "--params", "/no/such/file"}, 1, {"/no/such/file"}},
       {{"--link", wrong}, 1, {"no symbolic link"}},
   };
@@ -105,6 +110,7 @@ TEST(AesopEmulator, commandLine) {
   }
   ::unlink(output.c_str());
   ::unlink(wrong.c_str());
+  ::unlink(script.c_str());
 }
 
 // Last in this file: it changes what time it is for every node that starts after it.

@@ -121,6 +121,35 @@ TEST(AesopStop, commandNotFinite) {
       });
 }
 
+// A publisher that goes on, but with the stamp of long ago: a recording played again, a filter that hangs.
+TEST(AesopStop, commandsWithAnOldStamp) {
+  AesopBench bench;
+  std::vector<double> times;
+  for (int run = 0; run < runs(); ++run) {
+    ASSERT_TRUE(bench.enable());
+    ASSERT_TRUE(bench.commandUntil([&] { return bench.jointsMove(); }, direction(run)));
+    const ros::Time stamp = ros::Time::now();
+    bench.send(direction(run), 0.0, stamp);
+    const double start = steadyNow();
+    double next = start;
+    const auto repeat = [&] {
+      if (steadyNow() < next) return;
+      next += 0.02;
+      bench.send(direction(run), 0.0, stamp);
+    };
+    ASSERT_TRUE(bench.waitFor([&] {
+      repeat();
+      return !bench.jointsMove();
+    }));
+    times.push_back(steadyNow() - start);
+    EXPECT_EQ(bench.motionWithin(0.3, repeat), 0.0);
+    EXPECT_TRUE(bench.waitFor([&] { return bench.state_->reason.find("not newer") != std::string::npos; }))
+        << bench.state_->reason;
+    EXPECT_TRUE(bench.call("disable").success);
+  }
+  report("commands with an old stamp", times);
+}
+
 TEST(AesopStop, everyByteCorrupted) {
   AesopBench bench;
   std::vector<double> times;

@@ -118,6 +118,18 @@ TEST(EmulatorParameters, shippedFilesAreTheDefaults) {
   EXPECT_EQ(read.arm.time_constant, defaults.arm.time_constant);
 }
 
+TEST(EmulatorParameters, theNodesParametersAreAllowedOthersAreNot) {
+  XmlRpc::XmlRpcValue tree = mergeParameters(shipped("aesop.yaml"), shipped("emulator.yaml"));
+  EXPECT_TRUE(errorsBesideEmulator(tree).empty());
+  EXPECT_TRUE(errorsBesideEmulator(XmlRpc::XmlRpcValue()).empty());
+  tree["emulatr"]["delay"] = 0.1;
+  tree["command"]["timeout"] = -1.0;
+  const std::vector<std::string> errors = errorsBesideEmulator(tree);
+  ASSERT_EQ(errors.size(), 2u);
+  EXPECT_NE(errors[0].find("params/emulatr/delay is no parameter"), std::string::npos) << errors[0];
+  EXPECT_NE(errors[1].find("command/timeout"), std::string::npos) << errors[1];
+}
+
 TEST(EmulatorParameters, trocarOfTheNodeAndOfTheEmulatorAgree) {
   EXPECT_EQ(aesop::DriverConfig().insertion_point, sim::ArmConfig().insertion_point);
 }
