@@ -23,6 +23,12 @@ constexpr double kDiagnosticsPause = 1.0;  // s
 constexpr double kStatePeriod = 0.1;       // s, between two publications of an operating state that stays
 constexpr double kLastWord = 0.5;          // s, for the controller to confirm the disable when the node ends
 
+std::vector<std::string> resolved(const ros::NodeHandle& node, const std::vector<std::string>& names) {
+  std::vector<std::string> result;
+  for (const std::string& name : names) result.push_back(node.resolveName(name, false));
+  return result;
+}
+
 }  // namespace
 
 AesopNode::AesopNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
@@ -32,6 +38,7 @@ AesopNode::AesopNode(const ros::NodeHandle& node, const ros::NodeHandle& private
       driver_(parameters.driver),
       reconnect_(parameters.reconnect),
       master_(node.resolveName(parameters.publisher, false)),
+      callers_(resolved(node, parameters.service_callers)),
       reported_(parameters.port, aesop::lineWarning(parameters.driver.session, parameters.baud_rate)),
       node_(node),
       private_node_(private_node) {
@@ -39,8 +46,6 @@ AesopNode::AesopNode(const ros::NodeHandle& node, const ros::NodeHandle& private
   pose_publisher_ = private_node_.advertise<geometry_msgs::PoseStamped>("measured_cp", 10);
   twist_publisher_ = private_node_.advertise<geometry_msgs::TwistStamped>("measured_cv", 10);
   state_publisher_ = private_node_.advertise<OperatingState>("operating_state", 10, true);
-  for (const std::string& caller : parameters.service_callers)
-    service_callers_.push_back(node_.resolveName(caller, false));
   // Only the master's newest command counts, but others must not push it out of the queue.
   command_subscriber_ =
       node_.subscribe("servo_command", kQueue, &AesopNode::onCommand, this, ros::TransportHints().tcpNoDelay());
@@ -58,8 +63,7 @@ AesopNode::AesopNode(const ros::NodeHandle& node, const ros::NodeHandle& private
       status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, recording_->problem());
   });
   if (!parameters.wire_log.file.empty()) {
-    recording_ =
-        std::make_unique<aesop::WireLogFile>(parameters.wire_log, parameters.driver.session.codec()->name());
+    recording_ = std::make_unique<aesop::WireLogFile>(parameters.wire_log, parameters.driver.session.codec()->name());
     driver_.setTap(recording_.get());
   }
   publishStaticFrames();

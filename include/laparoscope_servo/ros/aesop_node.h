@@ -20,6 +20,7 @@
 #include "laparoscope_servo/ros/aesop_diagnostics.h"
 #include "laparoscope_servo/ros/aesop_parameters.h"
 #include "laparoscope_servo/ros/command_master.h"
+#include "laparoscope_servo/ros/service_callers.h"
 
 namespace laparoscope_servo::skin {
 
@@ -73,7 +74,7 @@ class AesopNode {
   aesop::Driver driver_;
   aesop::Reconnect reconnect_;
   CommandMaster master_;
-  std::vector<std::string> service_callers_;  // resolved
+  ServiceCallers callers_;
   aesop::SerialTransport transport_;
   AesopDiagnostics reported_;
   double next_diagnostics_ = 0.0;  // s, steady
