@@ -91,6 +91,9 @@ void readMotion(ParameterReader& reader, aesop::MotionConfig& config) {
   reader.read("motion/limit_margin_distance", config.limit_margin_distance, -kLarge, kLarge);
   reader.read("motion/singular_slow", config.singular_slow, -kLarge, kLarge);
   reader.read("motion/singular_stop", config.singular_stop, -kLarge, kLarge);
+  reader.read("motion/lever_slow", config.lever_slow, -kLarge, kLarge);
+  reader.read("motion/lever_stop", config.lever_stop, -kLarge, kLarge);
+  reader.read("motion/stopping_time", config.stopping_time, -kLarge, kLarge);
   reader.refuseUnknown("motion");
 }
 

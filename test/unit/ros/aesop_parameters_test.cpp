@@ -41,6 +41,9 @@ TEST(AesopParameters, shippedFileIsTheDefaults) {
   EXPECT_EQ(read.driver.motion.limit_margin_distance, defaults.driver.motion.limit_margin_distance);
   EXPECT_EQ(read.driver.motion.singular_slow, defaults.driver.motion.singular_slow);
   EXPECT_EQ(read.driver.motion.singular_stop, defaults.driver.motion.singular_stop);
+  EXPECT_EQ(read.driver.motion.lever_slow, defaults.driver.motion.lever_slow);
+  EXPECT_EQ(read.driver.motion.lever_stop, defaults.driver.motion.lever_stop);
+  EXPECT_EQ(read.driver.motion.stopping_time, defaults.driver.motion.stopping_time);
   EXPECT_EQ(read.driver.command.timeout, defaults.driver.command.timeout);
   EXPECT_EQ(read.driver.command.max_stamp_age, defaults.driver.command.max_stamp_age);
   EXPECT_EQ(read.driver.command.max_pan, defaults.driver.command.max_pan);
