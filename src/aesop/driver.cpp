@@ -24,6 +24,13 @@ std::uint8_t drivenMask(const Kinematics& kinematics) {
   return static_cast<std::uint8_t>(mask);
 }
 
+std::string insertionPointError(const Eigen::Vector3d& point) {
+  if (point.norm() < 10.0) return "";
+  std::ostringstream text;
+  text << "insertion_point = (" << point.transpose() << "), expected finite numbers within 10 m";
+  return text.str();
+}
+
 }  // namespace
 
 std::vector<std::string> validate(const DriverConfig& config) {
@@ -32,11 +39,8 @@ std::vector<std::string> validate(const DriverConfig& config) {
   append("motion", validate(config.motion), errors);
   append("command", validate(config.command), errors);
   append("link", validate(config.session), errors);
-  if (!(config.insertion_point.norm() < 10.0)) {
-    std::ostringstream text;
-    text << "insertion_point = (" << config.insertion_point.transpose() << "), expected finite numbers within 10 m";
-    errors.push_back(text.str());
-  }
+  const std::string point = insertionPointError(config.insertion_point);
+  if (!point.empty()) errors.push_back(point);
   return errors;
 }
 
@@ -61,6 +65,16 @@ std::string Driver::resume(double stamp_now) {
 std::string Driver::command(const ScopeVelocity& velocity, double stamp, double stamp_now, double now) {
   refusal_ = guard_.accept(velocity, stamp, stamp_now, now);
   return refusal_;
+}
+
+std::string Driver::setInsertionPoint(const Eigen::Vector3d& point) {
+  const std::string error = insertionPointError(point);
+  if (!error.empty()) return error;
+  const OperatingState state = session_.state();
+  if (state.mode != OperatingMode::kDisabled) return std::string("the arm is ") + name(state.mode) + ", not DISABLED";
+  if (state.is_busy) return "the arm moves, or is about to be enabled";
+  insertion_point_ = point;
+  return "";
 }
 
 OperatingState Driver::state(double now) const {

@@ -36,6 +36,7 @@ AesopNode::AesopNode(const ros::NodeHandle& node, const ros::NodeHandle& private
     : parameters_(parameters),
       tip_R_optical_(servo::obliqueOptics(parameters.optics_angle, parameters.optics_roll).transpose()),
       driver_(parameters.driver),
+      calibration_(private_node, parameters, driver_),
       line_warning_(aesop::lineWarning(parameters.driver.session, parameters.baud_rate)),
       node_(node),
       private_node_(private_node) {
@@ -69,6 +70,7 @@ void AesopNode::run(const std::atomic<bool>& stop) {
 
 void AesopNode::step() {
   const double now = steadyNow();
+  if (calibration_.step(stampNow(), now)) publishStaticFrames();
   if (!transport_.isOpen()) connect(now);
   if (transport_.isOpen()) {
     try {
@@ -139,6 +141,7 @@ void AesopNode::shutDown() {
 
 void AesopNode::onCommand(const ScopeVelocity& message) {
   const double now = steadyNow();
+  if (calibration_.takes(fromMessage(message), now)) return;
   const std::string refusal = driver_.command(fromMessage(message), message.header.stamp.toSec(), stampNow(), now);
   // Commands that come before the arm is enabled are nobody's mistake, but one that is not finite is.
   if (refusal.empty() || now < next_report_) return;
@@ -248,6 +251,7 @@ void AesopNode::describe(diagnostic_updater::DiagnosticStatusWrapper& status) {
   status.add("age of the last command [s]", driver_.guard().age(now));
   status.add("commands accepted", driver_.guard().accepted());
   status.add("commands refused", driver_.guard().refused());
+  calibration_.describe(status);
   status.add("round trip [s]", statistics.round_trip);
   status.add("longest round trip [s]", statistics.longest_round_trip);
   status.add("requests sent", statistics.sent);

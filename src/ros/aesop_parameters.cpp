@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+#include "laparoscope_servo/ros/insertion_point_file.h"
 
 namespace laparoscope_servo::skin {
 
@@ -10,6 +14,7 @@ namespace {
 using aesop::DhJoint;
 using aesop::JointRole;
 
+constexpr int kMany = 1000000;
 constexpr double kLarge = 100.0;  // m or rad: beyond it a number is a typing error; narrower bounds are validate()'s
 
 std::vector<double> gather(const std::array<DhJoint, aesop::kJoints>& joints, double DhJoint::*field) {
@@ -115,6 +120,46 @@ void readLink(ParameterReader& reader, aesop::SessionConfig& config) {
   reader.refuseUnknown("link");
 }
 
+void readCalibration(ParameterReader& reader, CalibrationParameters& calibration) {
+  servo::InsertionPointFitConfig& fit = calibration.fit;
+  reader.read("calibration/file", calibration.file);
+  reader.read("calibration/spacing", fit.spacing, -kLarge, kLarge);
+  reader.read("calibration/min_poses", fit.min_poses, -kMany, kMany);
+  reader.read("calibration/max_poses", fit.max_poses, -kMany, kMany);
+  reader.read("calibration/min_cone", fit.min_cone, -kLarge, kLarge);
+  reader.read("calibration/max_residual", fit.max_residual, -kLarge, kLarge);
+  reader.read("calibration/max_stddev", fit.max_stddev, -kLarge, kLarge);
+  reader.read("calibration/position_noise", fit.position_noise, -kLarge, kLarge);
+  reader.read("calibration/direction_noise", fit.direction_noise, -kLarge, kLarge);
+  reader.read("calibration/wobble", fit.wobble, -kLarge, kLarge);
+  reader.read("calibration/pattern_angle", calibration.pattern.angle, -kLarge, kLarge);
+  reader.read("calibration/pattern_speed", calibration.pattern.speed, -kLarge, kLarge);
+  reader.read("calibration/pattern_max_depth_change", calibration.pattern.max_depth_change, -kLarge, kLarge);
+  reader.read("calibration/pattern_patience", calibration.pattern.patience, -kLarge, kLarge);
+  reader.refuseUnknown("calibration");
+  for (const std::string& error : servo::validate(fit)) reader.addError("calibration/" + error);
+  for (const std::string& error : aesop::validate(calibration.pattern)) reader.addError("calibration/" + error);
+}
+
+void readInsertionPoint(ParameterReader& reader, AesopParameters& parameters) {
+  readPoint(reader, "insertion_point", parameters.driver.insertion_point);
+  parameters.insertion_point_origin = "the parameter insertion_point, not calibrated";
+  const std::string& file = parameters.insertion_point_file;
+  reader.read("insertion_point_file", parameters.insertion_point_file);
+  if (file.empty() || !aesop::validate(parameters.driver.kinematics).empty()) return;
+  try {
+    const CalibratedInsertionPoint calibrated =
+        loadInsertionPoint(file, aesop::Kinematics(parameters.driver.kinematics));
+    parameters.driver.insertion_point = calibrated.point;
+    std::ostringstream text;
+    text << file << ", calibrated " << calibrated.date << " by " << calibrated.method << ", standard deviation "
+         << calibrated.stddev << " m";
+    parameters.insertion_point_origin = text.str();
+  } catch (const std::runtime_error& error) {
+    reader.addError(error.what());
+  }
+}
+
 }  // namespace
 
 AesopParameters readAesopParameters(ParameterReader& reader) {
@@ -129,7 +174,8 @@ AesopParameters readAesopParameters(ParameterReader& reader) {
   readMotion(reader, parameters.driver.motion);
   readCommand(reader, parameters.driver.command);
   readLink(reader, parameters.driver.session);
-  readPoint(reader, "insertion_point", parameters.driver.insertion_point);
+  readCalibration(reader, parameters.calibration);
+  readInsertionPoint(reader, parameters);
   reader.refuseUnknown("");
   reader.addErrors(aesop::validate(parameters.driver));
   return parameters;

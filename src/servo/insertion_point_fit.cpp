@@ -65,28 +65,32 @@ InsertionPointFitter::InsertionPointFitter(const InsertionPointFitConfig& config
     : config_(checked(config)), spacing_(config.spacing), estimator_(estimatorConfig(config)) {}
 
 bool InsertionPointFitter::add(const Shaft& shaft) {
-  if (!insert(shaft)) return false;
+  if (!insert(shaft, taken_)) return false;
+  ++taken_;
   // However long somebody stays near one direction, there is room for the others.
   while (shafts_.size() >= static_cast<std::size_t>(config_.max_poses)) thinOut();
   measure();
   return true;
 }
 
-bool InsertionPointFitter::insert(const Shaft& shaft) {
+bool InsertionPointFitter::insert(const Shaft& shaft, std::size_t number) {
   const double near = std::cos(spacing_);
   const auto is_near = [&](const Shaft& other) { return other.direction.dot(shaft.direction) > near; };
   if (std::any_of(shafts_.begin(), shafts_.end(), is_near)) return false;
   if (!estimator_.update(0.0, shaft)) return false;
   shafts_.push_back({shaft.point, shaft.direction.normalized()});
+  kept_.push_back(number);
   return true;
 }
 
 void InsertionPointFitter::thinOut() {
   spacing_ *= 1.4;
   estimator_.reset();
-  const std::vector<Shaft> all = std::move(shafts_);
+  const std::vector<Shaft> shafts = std::move(shafts_);
+  const std::vector<std::size_t> numbers = std::move(kept_);
   shafts_.clear();
-  for (const Shaft& shaft : all) insert(shaft);
+  kept_.clear();
+  for (std::size_t k = 0; k < shafts.size(); ++k) insert(shafts[k], numbers[k]);
 }
 
 void InsertionPointFitter::measure() {

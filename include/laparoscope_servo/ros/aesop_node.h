@@ -16,6 +16,7 @@
 #include "laparoscope_servo/ScopeVelocity.h"
 #include "laparoscope_servo/aesop/transport.h"
 #include "laparoscope_servo/ros/aesop_parameters.h"
+#include "laparoscope_servo/ros/calibration_services.h"
 
 namespace laparoscope_servo::skin {
 
@@ -54,6 +55,7 @@ class AesopNode {
   Eigen::Matrix3d tip_R_optical_;
   aesop::Driver driver_;
   aesop::SerialTransport transport_;
+  CalibrationServices calibration_;
   std::string line_warning_;
   double next_attempt_ = 0.0;      // s, steady: to open the port
   double next_diagnostics_ = 0.0;  // s, steady

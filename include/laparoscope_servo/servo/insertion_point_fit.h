@@ -47,21 +47,24 @@ class InsertionPointFitter {
   // Says whether the shaft is kept for now. One that is not finite, or whose direction is not of unit length, is not.
   bool add(const Shaft& shaft);
 
-  const std::vector<Shaft>& shafts() const { return shafts_; }
+  // Which of the shafts that add() has taken are kept still, counted from 0.
+  const std::vector<std::size_t>& kept() const { return kept_; }
   const InsertionPointFit& fit() const { return fit_; }
   // What the fit misses, each with its value and what is expected; empty when it can be used. `length` [m]: from a
   // shaft's point to its far end; the insertion point has to be in between.
   std::vector<std::string> problems(double length) const;
 
  private:
-  bool insert(const Shaft& shaft);
+  bool insert(const Shaft& shaft, std::size_t number);
   void thinOut();
   void measure();
 
   InsertionPointFitConfig config_;
   double spacing_;  // rad
   InsertionPointEstimator estimator_;
+  std::size_t taken_ = 0;
   std::vector<Shaft> shafts_;
+  std::vector<std::size_t> kept_;  // numbers of shafts_
   InsertionPointFit fit_;
 };
 

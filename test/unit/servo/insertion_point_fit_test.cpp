@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -165,11 +166,14 @@ TEST(InsertionPointFit, LongMotionNearOneDirectionLeavesRoomForOthers) {
   InsertionPointFitter fitter(config);
   std::mt19937 random = engine(1);
   Swing swing;
+  std::size_t taken = 0;
   for (int k = 0; k < 3000; ++k) {
     swing.cone = k < 2000 ? 0.03 * k / 2000.0 : 0.2;
-    fitter.add(swing.at(0.37 * k, random));
+    taken += fitter.add(swing.at(0.37 * k, random)) ? 1 : 0;
     ASSERT_LT(fitter.fit().poses, 100);
-    ASSERT_EQ(fitter.shafts().size(), static_cast<std::size_t>(fitter.fit().poses));
+    ASSERT_EQ(fitter.kept().size(), static_cast<std::size_t>(fitter.fit().poses));
+    ASSERT_LT(fitter.kept().back(), taken);
+    ASSERT_TRUE(std::is_sorted(fitter.kept().begin(), fitter.kept().end()));
   }
   EXPECT_TRUE(fitter.problems(kScope).empty()) << fitter.problems(kScope).front();
   EXPECT_GT(fitter.fit().cone, 0.12);

@@ -1,0 +1,43 @@
+// The services and the topic under ~calibrate_insertion_point, see README, node `aesop`.
+#pragma once
+
+#include <diagnostic_updater/DiagnosticStatusWrapper.h>
+#include <ros/node_handle.h>
+#include <std_srvs/Trigger.h>
+
+#include <string>
+#include <vector>
+
+#include "laparoscope_servo/StartCalibration.h"
+#include "laparoscope_servo/ros/insertion_point_calibration.h"
+
+namespace laparoscope_servo::skin {
+
+class CalibrationServices {
+ public:
+  // `driver` has to outlive this.
+  CalibrationServices(const ros::NodeHandle& private_node, const AesopParameters& parameters, aesop::Driver& driver);
+
+  // Call often. True when the insertion point is another one from now on.
+  bool step(double stamp_now, double now);
+  // Whether a command of others has ended here: the arm drives its pattern.
+  bool takes(const aesop::ScopeVelocity& command, double now);
+  void describe(diagnostic_updater::DiagnosticStatusWrapper& status) const;
+
+ private:
+  bool start(StartCalibration::Request& request, StartCalibration::Response& response);
+  bool finish(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
+  bool cancel(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
+  void publish(double now);
+
+  ros::NodeHandle node_;
+  std::string frame_;
+  std::string origin_;  // of the insertion point, in words
+  InsertionPointCalibration calibration_;
+  CalibrationStage published_ = CalibrationStage::kIdle;
+  double next_publication_ = 0.0;  // s, steady
+  ros::Publisher publisher_;
+  std::vector<ros::ServiceServer> services_;
+};
+
+}  // namespace laparoscope_servo::skin
