@@ -1,5 +1,6 @@
 #include "laparoscope_servo/aesop/calibration_pattern.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -10,10 +11,12 @@ namespace laparoscope_servo::aesop {
 
 namespace {
 
-constexpr int kCorners = 12;         // of the way round the cone
-constexpr double kReached = 0.015;   // rad
-constexpr double kProgress = 0.002;  // rad, nearer than before counts as progress
-constexpr double kMargin = 0.05;     // rad, beyond the cone
+constexpr int kCorners = 12;           // of the way round the cone
+constexpr double kReached = 0.015;     // rad
+constexpr double kProgress = 0.002;    // rad, nearer than before counts as progress
+constexpr double kMargin = 0.05;       // rad, beyond the cone
+constexpr double kDepthGain = 1.0;     // 1/s
+constexpr double kDepthSpeed = 0.005;  // m/s, at most
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double angleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
@@ -40,7 +43,7 @@ CalibrationPattern::CalibrationPattern(const PatternConfig& config, const Kinema
       nearest_at_(now) {
   const Eigen::Isometry3d base_T_end = kinematics_.endEffector(q);
   start_ = base_T_end.linear().col(2);
-  start_lever_ = kinematics_.leverArm(q, insertion_point_);
+  start_lever_ = lever(base_T_end);
   for (int k = 0; k <= kCorners; ++k) {
     const double phase = 2.0 * M_PI * k / kCorners;
     const Eigen::Vector3d on_cone(std::sin(config.angle) * std::cos(phase), std::sin(config.angle) * std::sin(phase),
@@ -50,17 +53,20 @@ CalibrationPattern::CalibrationPattern(const PatternConfig& config, const Kinema
   way_.push_back(start_);
 }
 
+double CalibrationPattern::lever(const Eigen::Isometry3d& base_T_end) const {
+  return base_T_end.linear().col(2).dot(insertion_point_ - base_T_end.translation());
+}
+
 std::string CalibrationPattern::doubt(const Eigen::Isometry3d& base_T_end, const JointMotion& last) const {
   std::ostringstream text;
   const double turned = angleBetween(base_T_end.linear().col(2), start_);
-  const double lever = base_T_end.linear().col(2).dot(insertion_point_ - base_T_end.translation());
+  const double out = lever(base_T_end) - start_lever_;
   if (last.scale == 0.0) {
     text << last.reason;
   } else if (!(turned <= config_.angle + kMargin)) {
     text << "the shaft has turned by " << turned << " rad, the cone ends at " << config_.angle;
-  } else if (!(std::abs(lever - start_lever_) <= config_.max_depth_change)) {
-    text << "the depth has changed by " << start_lever_ - lever << " m, at most " << config_.max_depth_change
-         << " m are expected";
+  } else if (!(std::abs(out) <= config_.max_depth_change)) {
+    text << "the depth has changed by " << -out << " m, at most " << config_.max_depth_change << " m are expected";
   }
   return text.str();
 }
@@ -92,6 +98,8 @@ CalibrationPattern::Step CalibrationPattern::step(const JointVector& q, const Jo
   Step step;
   step.velocity.pan = config_.speed * towards.x();
   step.velocity.tilt = -config_.speed * towards.y();
+  const double deeper = kDepthGain * (lever(base_T_end) - start_lever_);
+  step.velocity.insertion = std::max(-kDepthSpeed, std::min(kDepthSpeed, deeper));
   return step;
 }
 

@@ -1,5 +1,5 @@
-// The motion by which a scope shows where its insertion point is: out to a cone, round it, back to where it was. Pan
-// and tilt only.
+// The motion by which a scope shows where its insertion point is: out to a cone, round it, back to where it was, by pan
+// and tilt. Insertion only keeps the depth, which the arm's delay would change on the way round.
 //
 // It follows the measured direction of the shaft, so that dead zones and a wrong insertion point change the speed, not
 // the way; and it ends at the first sign that something is not as expected. Pure: `now` is seconds of a steady clock.
@@ -36,6 +36,7 @@ class CalibrationPattern {
   Step step(const JointVector& q, const JointMotion& last, double now);
 
  private:
+  double lever(const Eigen::Isometry3d& base_T_end) const;
   std::string doubt(const Eigen::Isometry3d& base_T_end, const JointMotion& last) const;
 
   PatternConfig config_;

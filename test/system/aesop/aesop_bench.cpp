@@ -31,10 +31,12 @@ double steadyNow() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-AesopBench::AesopBench(bool with_node) : directory_(temporaryDirectory()) {
+AesopBench::AesopBench(bool with_node, const std::vector<std::string>& emulator_arguments)
+    : directory_(temporaryDirectory()) {
   const std::string control = directory_ + "/control";
-  emulator_ =
-      std::make_unique<ChildProcess>(AESOP_EMULATOR, std::vector<std::string>{"--link", port(), "--control", control});
+  std::vector<std::string> arguments{"--link", port(), "--control", control};
+  arguments.insert(arguments.end(), emulator_arguments.begin(), emulator_arguments.end());
+  emulator_ = std::make_unique<ChildProcess>(AESOP_EMULATOR, arguments);
   const double end = steadyNow() + 5.0;
   while (!truth_) {
     try {
@@ -68,8 +70,8 @@ AesopBench::~AesopBench() {
   ::rmdir(directory_.c_str());
 }
 
-void AesopBench::startNode() {
-  XmlRpc::XmlRpcValue parameters = skin::parametersFromYaml(AESOP_CONFIG);
+void AesopBench::startNode(const XmlRpc::XmlRpcValue& overlay) {
+  XmlRpc::XmlRpcValue parameters = skin::mergeParameters(skin::parametersFromYaml(AESOP_CONFIG), overlay);
   parameters["port"] = port();
   ros::param::set("/aesop", parameters);
   state_.reset();

@@ -27,10 +27,11 @@ class AesopBench {
  public:
   // Starts the emulator, and the node unless `with_node` is false. The node is named `aesop`, its parameters are those
   // of config/aesop.yaml.
-  explicit AesopBench(bool with_node = true);
+  explicit AesopBench(bool with_node = true, const std::vector<std::string>& emulator_arguments = {});
   ~AesopBench();
 
-  void startNode();
+  // `overlay`: parameters over those of config/aesop.yaml. Throws when the node does not connect.
+  void startNode(const XmlRpc::XmlRpcValue& overlay = XmlRpc::XmlRpcValue());
   ChildProcess& node() { return *node_; }
   ChildProcess& emulator() { return *emulator_; }
   // What only the emulator knows.

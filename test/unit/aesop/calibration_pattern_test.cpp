@@ -22,6 +22,7 @@ struct Outcome {
   double seconds = 0.0;
   double largest_angle = 0.0;  // rad, of the shaft from where it started
   double angle_at_end = 0.0;
+  double depth_change = 0.0;  // m, the largest, at the believed insertion point
   int quadrants = 0;
 };
 
@@ -34,6 +35,7 @@ Outcome run(
   sim::Arm arm(kinematics, arm_config);
   arm.step(0.0);
   const Eigen::Matrix3d start = kinematics.endEffector(arm.position()).linear();
+  const double start_lever = kinematics.leverArm(arm.position(), kBelieved);
   CalibrationPattern pattern(config, kinematics, arm.position(), kBelieved, 0.0);
   JointMotion motion;
   Outcome result;
@@ -45,7 +47,7 @@ Outcome run(
     const bool over = step.done || !step.problem.empty();
     EXPECT_TRUE(!over || step.velocity.isZero());
     EXPECT_EQ(step.velocity.spin, 0.0);
-    EXPECT_EQ(step.velocity.insertion, 0.0);
+    EXPECT_LE(std::abs(step.velocity.insertion), 0.005);
     EXPECT_LE(std::hypot(step.velocity.pan, step.velocity.tilt), config.speed + 1e-12);
     motion = jointMotion(kinematics, MotionConfig(), q, kBelieved, step.velocity);
     std::array<double, kDrivenJoints> speed{};
@@ -55,6 +57,8 @@ Outcome run(
     const Vector3d axis = start.transpose() * kinematics.endEffector(arm.position()).linear().col(2);
     result.angle_at_end = std::acos(std::min(1.0, axis.z()));
     result.largest_angle = std::max(result.largest_angle, result.angle_at_end);
+    const double lever = kinematics.leverArm(arm.position(), kBelieved);
+    result.depth_change = std::max(result.depth_change, std::abs(lever - start_lever));
     if (result.angle_at_end > 0.8 * config.angle)
       quadrants |= 1u << ((axis.x() > 0.0 ? 1 : 0) + (axis.y() > 0.0 ? 2 : 0));
     result.quadrants = __builtin_popcount(quadrants);
@@ -84,7 +88,7 @@ TEST(CalibrationPattern, GoesRoundTheConeAndBack) {
 TEST(CalibrationPattern, AWrongInsertionPointDoesNotLeadItAstray) {
   for (const Vector3d& wrong : {Vector3d(0.01, 0.0, 0.0), Vector3d(0.0, -0.01, 0.0), Vector3d(0.0, 0.0, 0.01),
                                 Vector3d(-0.006, 0.006, -0.006)}) {
-    for (const double speed : {0.02, 0.05, 0.1}) {
+    for (const double speed : {0.02, 0.05, 0.15}) {
       sim::ArmConfig arm;
       arm.insertion_point += wrong;
       PatternConfig config;
@@ -92,8 +96,9 @@ TEST(CalibrationPattern, AWrongInsertionPointDoesNotLeadItAstray) {
       const Outcome done = run(arm, config);
       EXPECT_TRUE(done.end.done) << wrong.transpose() << ": " << done.end.problem;
       EXPECT_EQ(done.quadrants, 4);
-      EXPECT_LT(done.largest_angle, config.angle + 0.04);
+      EXPECT_LT(done.largest_angle, config.angle + 0.05);
       EXPECT_LT(done.angle_at_end, 0.04);
+      EXPECT_LT(done.depth_change, 0.004);
     }
   }
 }
@@ -129,7 +134,7 @@ TEST(CalibrationPattern, EndsWhenTheShaftLeavesTheConeOrTheDepth) {
     if (now > 5.0) q[0] += 0.02;
   };
   const Outcome out = run(sim::ArmConfig(), PatternConfig(), KinematicsConfig(), pulled);
-  EXPECT_NE(out.end.problem.find("the depth has changed by -0.02"), std::string::npos) << out.end.problem;
+  EXPECT_NE(out.end.problem.find("the depth has changed by -0.0"), std::string::npos) << out.end.problem;
 }
 
 TEST(CalibrationPattern, PositionsThatAreNotFiniteEndIt) {
