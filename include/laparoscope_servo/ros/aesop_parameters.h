@@ -20,12 +20,12 @@ struct CalibrationParameters {
 
 struct AesopParameters {
   aesop::DriverConfig driver;
-  std::string port;          // required
-  int baud_rate = 38400;     // 1200 to 1000000
+  std::string port;                    // required
+  int baud_rate = 38400;               // 1200 to 1000000
   std::string insertion_point_file;    // a calibration that takes the place of insertion_point; empty: none
   std::string insertion_point_origin;  // where driver.insertion_point is from, in words
   CalibrationParameters calibration;
-  std::string frame_prefix;  // in front of every frame's name
+  std::string frame_prefix;   // in front of every frame's name
   double optics_angle = 0.0;  // rad, between the shaft and the optical axis, -1.3 to 1.3
   double optics_roll = 0.0;   // rad, of the camera about the shaft, -3.2 to 3.2
 };
