@@ -25,6 +25,13 @@ std::uint8_t drivenMask(const Kinematics& kinematics) {
   return static_cast<std::uint8_t>(mask);
 }
 
+std::string insertionPointError(const Eigen::Vector3d& point) {
+  if (point.norm() < 10.0) return "";
+  std::ostringstream text;
+  text << "insertion_point = (" << point.transpose() << "), expected finite numbers within 10 m";
+  return text.str();
+}
+
 }  // namespace
 
 std::vector<std::string> validate(const DriverConfig& config) {
@@ -34,11 +41,8 @@ std::vector<std::string> validate(const DriverConfig& config) {
   append("command", validate(config.command), errors);
   append("link", validate(config.session), errors);
   append("monitor", validate(config.monitor), errors);
-  if (!(config.insertion_point.norm() < 10.0)) {
-    std::ostringstream text;
-    text << "insertion_point = (" << config.insertion_point.transpose() << "), expected finite numbers within 10 m";
-    errors.push_back(text.str());
-  }
+  const std::string point = insertionPointError(config.insertion_point);
+  if (!point.empty()) errors.push_back(point);
   return errors;
 }
 
@@ -113,6 +117,17 @@ void Driver::watchMotion(double now) {
   if (mode != OperatingMode::kEnabled && mode != OperatingMode::kPaused) return monitor_.reset();
   const std::string reason = monitor_.take(*session_.link().status(), speed_, now);
   if (!reason.empty()) session_.giveUp(reason);
+}
+
+std::string Driver::setInsertionPoint(const Eigen::Vector3d& point) {
+  const std::string error = insertionPointError(point);
+  if (!error.empty()) return error;
+  const OperatingState state = session_.state();
+  if (state.mode != OperatingMode::kDisabled) return std::string("the arm is ") + name(state.mode) + ", not DISABLED";
+  if (state.is_busy) return "the arm moves, or is about to be enabled";
+  if (tap_ != nullptr) record(WireEvent::kInsertionPoint, payloadOf({point.x(), point.y(), point.z()}));
+  insertion_point_ = point;
+  return "";
 }
 
 OperatingState Driver::state(double now) const {

@@ -87,6 +87,13 @@ std::vector<std::string> validate(const MotionConfig& config) {
   if (!(config.singular_slow > config.singular_stop && config.singular_slow < 1.0)) {
     errors.push_back(describe("singular_slow", config.singular_slow, "above singular_stop and below 1"));
   }
+  if (!(config.lever_stop > 0.01)) errors.push_back(describe("lever_stop", config.lever_stop, "above 0.01 m"));
+  if (!(config.lever_slow > config.lever_stop && config.lever_slow < 0.3)) {
+    errors.push_back(describe("lever_slow", config.lever_slow, "above lever_stop and below 0.3 m"));
+  }
+  if (!(config.stopping_time >= 0.05 && config.stopping_time <= 5.0)) {
+    errors.push_back(describe("stopping_time", config.stopping_time, "0.05 to 5 s"));
+  }
   return errors;
 }
 

@@ -12,7 +12,11 @@ namespace {
 
 constexpr double kLength = 0.3;             // m, makes lengths comparable with angles
 constexpr double kLargestDeviation = 0.02;  // m, of the shaft's line from the insertion point
-constexpr double kLookAhead = 0.1;          // s, to see whether a motion leads towards a singularity
+// rad or m, of the joint that moves most, to see whether a motion leads towards a singularity: short, as a long step
+// would end on the far side of it, where matters look better.
+constexpr double kLookAhead = 1e-4;
+constexpr double kSingular = 1e-3;    // smallest singular value from which directions mean something
+constexpr double kTangential = 1e-6;  // 1/s; slower than this, nothing gets worse
 
 // Columns of the joints that move: driven and passive ones in the order of the arm.
 std::vector<int> movingJoints(const Kinematics& kinematics) {
@@ -33,21 +37,25 @@ geometry::Matrix6d movingJacobian(const Kinematics& kinematics, const JointVecto
 // Keeps the strongest reason for slowing a motion.
 class Brake {
  public:
-  // `room`: what is left before the motion has to stand, `margin`: where slowing begins.
-  void apply(double room, double margin, const std::string& what) {
-    limit(std::max(0.0, std::min(1.0, room / margin)), what);
+  explicit Brake(double stopping_time) : stopping_time_(stopping_time) {}
+
+  // `room`: what is left before the motion has to stand, `margin`: where slowing begins at the latest, `speed`: at
+  // which the room becomes less. The room shrinks no faster than would take the stopping time to its end.
+  void apply(double room, double margin, double speed, const std::string& what) {
+    limit(std::max(0.0, std::min(1.0, room / std::max(margin, stopping_time_ * speed))), what);
   }
   void limit(double scale, const std::string& what) {
     if (!(scale < scale_)) return;
     scale_ = scale;
-    reason_ = what;
+    what_ = what;
   }
   double scale() const { return scale_; }
-  const std::string& reason() const { return reason_; }
+  std::string reason() const { return what_.empty() ? "" : (scale_ > 0.0 ? "slowed: " : "held: ") + what_; }
 
  private:
+  double stopping_time_;
   double scale_ = 1.0;
-  std::string reason_;
+  std::string what_;
 };
 
 std::string jointReason(int joint, const char* what) {
@@ -59,9 +67,9 @@ void brakeAtJointLimits(const Kinematics& kinematics, const MotionConfig& config
   for (int k = 0; k < kJoints; ++k) {
     const DhJoint& joint = kinematics.config().joints[static_cast<std::size_t>(k)];
     const double margin = joint.prismatic ? config.limit_margin_distance : config.limit_margin_angle;
-    if (velocity[k] > 0.0) brake.apply(joint.maximum - q[k], margin, jointReason(k, " is near its upper limit"));
-    if (velocity[k] < 0.0) brake.apply(q[k] - joint.minimum, margin, jointReason(k, " is near its lower limit"));
     const double speed = std::abs(velocity[k]);
+    if (velocity[k] > 0.0) brake.apply(joint.maximum - q[k], margin, speed, jointReason(k, " is near its upper limit"));
+    if (velocity[k] < 0.0) brake.apply(q[k] - joint.minimum, margin, speed, jointReason(k, " is near its lower limit"));
     if (speed > joint.max_speed) brake.limit(joint.max_speed / speed, jointReason(k, " is at its highest speed"));
   }
 }
@@ -69,14 +77,35 @@ void brakeAtJointLimits(const Kinematics& kinematics, const MotionConfig& config
 void brakeAtDepth(const KinematicsConfig& kinematics, const MotionConfig& config, double d2, double insertion,
                   Brake& brake) {
   const double margin = config.limit_margin_distance;
-  if (insertion > 0.0) brake.apply(kinematics.depth_maximum - d2, margin, "the scope is near its greatest depth");
-  if (insertion < 0.0) brake.apply(d2 - kinematics.depth_minimum, margin, "the scope is near its smallest depth");
+  const double speed = std::abs(insertion);
+  if (insertion > 0.0)
+    brake.apply(kinematics.depth_maximum - d2, margin, speed, "the scope is near its greatest depth");
+  if (insertion < 0.0)
+    brake.apply(d2 - kinematics.depth_minimum, margin, speed, "the scope is near its smallest depth");
+}
+
+void brakeAtShortLever(const MotionConfig& config, double d1, const ScopeVelocity& velocity, Brake& brake) {
+  const char* what = "the end effector is near the insertion point";
+  const double margin = config.lever_slow - config.lever_stop;
+  const bool turns = velocity.pan != 0.0 || velocity.tilt != 0.0;
+  if (turns || velocity.insertion > 0.0) {
+    brake.apply(d1 - config.lever_stop, margin, std::max(0.0, velocity.insertion), what);
+  }
+}
+
+// Of conditioning() when the joints move with `velocity`; 1/s.
+double conditioningRate(const Kinematics& kinematics, const JointVector& q, const JointVector& velocity, double now) {
+  const double fastest = velocity.lpNorm<Eigen::Infinity>();
+  if (!(fastest > 0.0)) return 0.0;
+  const double dt = kLookAhead / fastest;
+  return (conditioning(kinematics, q + dt * velocity) - now) / dt;
 }
 
 void brakeAtSingularity(const Kinematics& kinematics, const MotionConfig& config, const JointVector& q,
                         const JointVector& velocity, double now, Brake& brake) {
-  if (now >= config.singular_slow || conditioning(kinematics, q + kLookAhead * velocity) >= now) return;
-  brake.apply(now - config.singular_stop, config.singular_slow - config.singular_stop,
+  const double rate = conditioningRate(kinematics, q, velocity, now);
+  if (rate >= -kTangential) return;
+  brake.apply(now - config.singular_stop, config.singular_slow - config.singular_stop, -rate,
               "the arm is near a singular position");
 }
 
@@ -125,7 +154,7 @@ JointMotion jointMotion(const Kinematics& kinematics, const MotionConfig& config
     return refused(text.str());
   }
   const double well = conditioning(kinematics, q);
-  if (!(well > 0.1 * config.singular_stop)) return refused("the arm is in a singular position");
+  if (!(well > kSingular)) return refused("the arm is in a singular position");
 
   const double d1 = p.z();
   const Eigen::Matrix3d base_R_end = base_T_end.linear();
@@ -137,9 +166,10 @@ JointMotion jointMotion(const Kinematics& kinematics, const MotionConfig& config
   JointMotion motion;
   const std::vector<int> joints = movingJoints(kinematics);
   for (int k = 0; k < 6; ++k) motion.velocity[joints[static_cast<std::size_t>(k)]] = solution[k];
-  Brake brake;
+  Brake brake(config.stopping_time);
   brakeAtJointLimits(kinematics, config, q, motion.velocity, brake);
   brakeAtDepth(kinematics.config(), config, kinematics.config().scope_length - d1, velocity.insertion, brake);
+  brakeAtShortLever(config, d1, velocity, brake);
   brakeAtSingularity(kinematics, config, q, motion.velocity, well, brake);
   motion.scale = brake.scale();
   motion.reason = brake.reason();

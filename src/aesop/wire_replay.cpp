@@ -42,7 +42,11 @@ void WireReplay::feed(const WireRecord& record) {
       driver_.command({numbers[0], numbers[1], numbers[2], numbers[3]}, numbers[4], numbers[5], now_);
       break;
     }
-    case WireEvent::kInsertionPoint:
+    case WireEvent::kInsertionPoint: {
+      const std::vector<double> numbers = numbersOf(record, 3);
+      driver_.setInsertionPoint({numbers[0], numbers[1], numbers[2]});
+      break;
+    }
     case WireEvent::kState:
       break;
   }

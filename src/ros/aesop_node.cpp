@@ -39,6 +39,7 @@ AesopNode::AesopNode(const ros::NodeHandle& node, const ros::NodeHandle& private
       reconnect_(parameters.reconnect),
       master_(node.resolveName(parameters.publisher, false)),
       callers_(resolved(node, parameters.service_callers)),
+      calibration_(private_node, parameters, callers_, driver_),
       reported_(parameters.port, aesop::lineWarning(parameters.driver.session, parameters.baud_rate)),
       node_(node),
       private_node_(private_node) {
@@ -59,6 +60,7 @@ AesopNode::AesopNode(const ros::NodeHandle& node, const ros::NodeHandle& private
   diagnostics_.add("AESOP", [this](diagnostic_updater::DiagnosticStatusWrapper& status) {
     const double now = steadyNow();
     reported_.fill(now, driver_, {master_, command_subscriber_.getNumPublishers(), reconnect_.remaining(now)}, status);
+    calibration_.describe(status);
     if (recording_ && !recording_->problem().empty())
       status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, recording_->problem());
   });
@@ -103,6 +105,7 @@ void AesopNode::exchange(double now) {
 
 void AesopNode::step() {
   const double now = steadyNow();
+  if (calibration_.step(stampNow(), now)) publishStaticFrames();
   if (!transport_.isOpen()) connect(now);
   exchange(now);
   if (driver_.session().link().isUp()) reconnect_.up(now);
@@ -192,6 +195,7 @@ void AesopNode::onCommand(const ros::MessageEvent<ScopeVelocity const>& event) {
       break;
   }
   const aesop::ScopeVelocity velocity = fromMessage(message);
+  if (calibration_.takes(velocity, now)) return;
   const std::string refusal = driver_.command(velocity, message.header.stamp.toSec(), stampNow(), now);
   // Commands that come before the arm is enabled are nobody's mistake, but one that is not finite is.
   if (!refusal.empty() && (driver_.session().isEnabled() || !velocity.isFinite()))

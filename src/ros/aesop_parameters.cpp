@@ -4,6 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+#include "laparoscope_servo/ros/insertion_point_file.h"
 
 namespace laparoscope_servo::skin {
 
@@ -12,6 +16,7 @@ namespace {
 using aesop::DhJoint;
 using aesop::JointRole;
 
+constexpr int kMany = 1000000;
 constexpr double kLarge = 100.0;  // m or rad: beyond it a number is a typing error; narrower bounds are validate()'s
 
 std::vector<double> gather(const std::array<DhJoint, aesop::kJoints>& joints, double DhJoint::*field) {
@@ -93,6 +98,9 @@ void readMotion(ParameterReader& reader, aesop::MotionConfig& config) {
   reader.read("motion/limit_margin_distance", config.limit_margin_distance, -kLarge, kLarge);
   reader.read("motion/singular_slow", config.singular_slow, -kLarge, kLarge);
   reader.read("motion/singular_stop", config.singular_stop, -kLarge, kLarge);
+  reader.read("motion/lever_slow", config.lever_slow, -kLarge, kLarge);
+  reader.read("motion/lever_stop", config.lever_stop, -kLarge, kLarge);
+  reader.read("motion/stopping_time", config.stopping_time, -kLarge, kLarge);
   reader.refuseUnknown("motion");
 }
 
@@ -155,6 +163,46 @@ void readMonitor(ParameterReader& reader, aesop::MonitorConfig& config) {
   reader.refuseUnknown("monitor");
 }
 
+void readCalibration(ParameterReader& reader, CalibrationParameters& calibration) {
+  servo::InsertionPointFitConfig& fit = calibration.fit;
+  reader.read("calibration/file", calibration.file);
+  reader.read("calibration/spacing", fit.spacing, -kLarge, kLarge);
+  reader.read("calibration/min_poses", fit.min_poses, -kMany, kMany);
+  reader.read("calibration/max_poses", fit.max_poses, -kMany, kMany);
+  reader.read("calibration/min_cone", fit.min_cone, -kLarge, kLarge);
+  reader.read("calibration/max_residual", fit.max_residual, -kLarge, kLarge);
+  reader.read("calibration/max_stddev", fit.max_stddev, -kLarge, kLarge);
+  reader.read("calibration/position_noise", fit.position_noise, -kLarge, kLarge);
+  reader.read("calibration/direction_noise", fit.direction_noise, -kLarge, kLarge);
+  reader.read("calibration/wobble", fit.wobble, -kLarge, kLarge);
+  reader.read("calibration/pattern_angle", calibration.pattern.angle, -kLarge, kLarge);
+  reader.read("calibration/pattern_speed", calibration.pattern.speed, -kLarge, kLarge);
+  reader.read("calibration/pattern_max_depth_change", calibration.pattern.max_depth_change, -kLarge, kLarge);
+  reader.read("calibration/pattern_patience", calibration.pattern.patience, -kLarge, kLarge);
+  reader.refuseUnknown("calibration");
+  for (const std::string& error : servo::validate(fit)) reader.addError("calibration/" + error);
+  for (const std::string& error : aesop::validate(calibration.pattern)) reader.addError("calibration/" + error);
+}
+
+void readInsertionPoint(ParameterReader& reader, AesopParameters& parameters) {
+  readPoint(reader, "insertion_point", parameters.driver.insertion_point);
+  parameters.insertion_point_origin = "the parameter insertion_point, not calibrated";
+  const std::string& file = parameters.insertion_point_file;
+  reader.read("insertion_point_file", parameters.insertion_point_file);
+  if (file.empty() || !aesop::validate(parameters.driver.kinematics).empty()) return;
+  try {
+    const CalibratedInsertionPoint calibrated =
+        loadInsertionPoint(file, aesop::Kinematics(parameters.driver.kinematics));
+    parameters.driver.insertion_point = calibrated.point;
+    std::ostringstream text;
+    text << file << ", calibrated " << calibrated.date << " by " << calibrated.method << ", standard deviation "
+         << calibrated.stddev << " m";
+    parameters.insertion_point_origin = text.str();
+  } catch (const std::runtime_error& error) {
+    reader.addError(error.what());
+  }
+}
+
 }  // namespace
 
 AesopParameters readAesopParameters(ParameterReader& reader) {
@@ -175,7 +223,8 @@ AesopParameters readAesopParameters(ParameterReader& reader) {
   readWireLog(reader, parameters.wire_log);
   readReconnect(reader, parameters.reconnect);
   readMonitor(reader, parameters.driver.monitor);
-  readPoint(reader, "insertion_point", parameters.driver.insertion_point);
+  readCalibration(reader, parameters.calibration);
+  readInsertionPoint(reader, parameters);
   reader.refuseUnknown("");
   reader.addErrors(aesop::validate(parameters.driver));
   return parameters;

@@ -171,6 +171,8 @@ servo::ControllerInput ControllerNode::input() {
   const double steady_now = steadyNow();
   servo::ControllerInput input;
   input.time = steady_now;
+  // Poses are counted in this frame, and d2 from it.
+  if (insertion_point_watch_.moved(tf_, config_.insertion_point)) clock_jump_ = "the insertion point is another one";
   input.clock_jump = clock_jump_;
   input.robot = robot_;
   input.robot.age = steady_now - robot_arrival_;

@@ -39,6 +39,10 @@ class Driver {
   // Takes a command, or says why not. Commands while not ENABLED are judged, but move nothing.
   std::string command(const ScopeVelocity& velocity, double stamp, double stamp_now, double now);
 
+  // Another insertion point [m, in aesop_base], or why not: never while ENABLED, PAUSED or in FAULT, nor while the arm
+  // moves.
+  std::string setInsertionPoint(const Eigen::Vector3d& point);
+
   void opened(double now);
   void closed(const std::string& reason);
   void receive(const std::uint8_t* data, std::size_t size, double now);

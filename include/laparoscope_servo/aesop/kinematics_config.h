@@ -54,6 +54,13 @@ struct MotionConfig {
   // start pose.
   double singular_slow = 0.20;
   double singular_stop = 0.10;  // > 0, < singular_slow
+  // Of d1: the shorter it is, the further the scope turns for the same motion of the arm, and the more a wrong
+  // insertion point does. m, 0.01 < stop < slow < 0.3; pan, tilt and deeper only.
+  double lever_slow = 0.05;
+  double lever_stop = 0.03;
+  // s, 0.05 to 5, from a command to joints that stand: never faster than would reach a limit within it, so that the
+  // delay of the arm carries nothing beyond.
+  double stopping_time = 0.5;
 };
 
 // Every error, each naming the field, its value and what was expected. Empty when the configuration can be used.

@@ -19,6 +19,7 @@
 #include "laparoscope_servo/aesop/transport.h"
 #include "laparoscope_servo/ros/aesop_diagnostics.h"
 #include "laparoscope_servo/ros/aesop_parameters.h"
+#include "laparoscope_servo/ros/calibration_services.h"
 #include "laparoscope_servo/ros/command_master.h"
 #include "laparoscope_servo/ros/service_callers.h"
 
@@ -76,6 +77,7 @@ class AesopNode {
   CommandMaster master_;
   ServiceCallers callers_;
   aesop::SerialTransport transport_;
+  CalibrationServices calibration_;
   AesopDiagnostics reported_;
   double next_diagnostics_ = 0.0;  // s, steady
   double next_report_ = 0.0;       // s, steady: of a refused command

@@ -5,13 +5,21 @@
 #include <string>
 #include <vector>
 
+#include "laparoscope_servo/aesop/calibration_pattern.h"
 #include "laparoscope_servo/aesop/driver.h"
 #include "laparoscope_servo/aesop/reconnect.h"
 #include "laparoscope_servo/aesop/wire_log_file.h"
 #include "laparoscope_servo/ros/parameters.h"
+#include "laparoscope_servo/servo/insertion_point_fit.h"
 #include "laparoscope_servo/sim/emulator.h"
 
 namespace laparoscope_servo::skin {
+
+struct CalibrationParameters {
+  std::string file;  // where a calibrated insertion point is saved; empty: nowhere
+  servo::InsertionPointFitConfig fit;
+  aesop::PatternConfig pattern;
+};
 
 struct AesopParameters {
   aesop::DriverConfig driver;
@@ -19,10 +27,13 @@ struct AesopParameters {
   std::string port;           // required
   int baud_rate = 38400;      // 1200 to 1000000
   int realtime_priority = 0;  // of the loop, 0 (none) to 99
+  std::string insertion_point_file;    // a calibration that takes the place of insertion_point; empty: none
+  std::string insertion_point_origin;  // where driver.insertion_point is from, in words
+  CalibrationParameters calibration;
   std::string frame_prefix;   // in front of every frame's name
   // Node whose velocity commands count; a name without a leading slash is one of the node's namespace.
   std::string publisher = "controller";
-  // Nodes that may call enable, resume and clear_fault; none: every node.
+  // Nodes that may call what lets the arm move: enable, resume, clear_fault, the calibration; none: every node.
   std::vector<std::string> service_callers;
   aesop::WireLogConfig wire_log;
   double optics_angle = 0.0;  // rad, between the shaft and the optical axis, -1.3 to 1.3

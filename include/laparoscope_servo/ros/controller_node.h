@@ -22,6 +22,7 @@
 
 #include "laparoscope_servo/ros/controller_parameters.h"
 #include "laparoscope_servo/ros/stamp_watch.h"
+#include "laparoscope_servo/ros/static_frame_watch.h"
 #include "laparoscope_servo/servo/controller.h"
 
 namespace laparoscope_servo::skin {
@@ -55,6 +56,7 @@ class ControllerNode {
   servo::TaskErrorInput task_error_;
   StampWatch task_error_watch_;
   StampWatch depth_watch_;
+  StaticFrameWatch insertion_point_watch_;
   servo::RobotFacts robot_;
   double robot_arrival_ = 0.0;  // s, steady
   servo::DeadManFacts dead_man_;

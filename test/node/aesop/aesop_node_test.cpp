@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "laparoscope_servo/aesop/driver.h"
 #include "system/aesop/aesop_bench.h"
 
 namespace laparoscope_servo::test {
@@ -91,6 +92,35 @@ TEST(AesopNode, pauseHoldsAndResumeWaitsForACommand) {
   EXPECT_TRUE(bench.call("resume").success);
   EXPECT_EQ(bench.motionWithin(0.4), 0.0);
   EXPECT_TRUE(bench.commandUntil([&] { return bench.jointsMove(); }, 0.05));
+}
+
+TEST(AesopNode, slowsAndHoldsAtTheDepthAndSaysSo) {
+  AesopBench bench;
+  bench.truth().hand({0.0, 0.0, 0.0, 0.09}, 0.5);
+  ASSERT_TRUE(bench.waitFor([&] { return !bench.truth().motion().moving; }));
+  ASSERT_TRUE(bench.enable());
+  const auto deeper = [&](const std::string& reason) {
+    return bench.waitFor([&] {
+      bench.send(0.0, 0.02, ros::Time::now());
+      return bench.state_->reason.find(reason) != std::string::npos;
+    });
+  };
+  EXPECT_TRUE(deeper("slowed: the scope is near its greatest depth")) << bench.state_->reason;
+  // Slowed like this it comes as near as it likes, and not beyond.
+  const aesop::Kinematics kinematics{aesop::KinematicsConfig()};
+  const auto room = [&] {
+    const double lever = kinematics.leverArm(bench.truth().state().q, aesop::DriverConfig().insertion_point);
+    return aesop::KinematicsConfig().depth_maximum - (aesop::KinematicsConfig().scope_length - lever);
+  };
+  EXPECT_TRUE(bench.waitFor([&] {
+    bench.send(0.0, 0.02, ros::Time::now());
+    return room() < 0.003;
+  })) << room();
+  EXPECT_GT(room(), 0.0);
+  EXPECT_TRUE(bench.waitFor([&] {
+    bench.send(0.0, -0.02, ros::Time::now());
+    return room() > 0.006;
+  })) << "the way back is free";
 }
 
 TEST(AesopNode, aFaultClearsToDisabled) {

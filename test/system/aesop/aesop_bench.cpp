@@ -32,10 +32,12 @@ double steadyNow() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-AesopBench::AesopBench(bool with_node) : directory_(temporaryDirectory()) {
+AesopBench::AesopBench(bool with_node, const std::vector<std::string>& emulator_arguments)
+    : directory_(temporaryDirectory()) {
   const std::string control = directory_ + "/control";
-  emulator_ = std::make_unique<ChildProcess>(
-      AESOP_EMULATOR, std::vector<std::string>{"--link", port(), "--control", control, "--baud", "38400"});
+  std::vector<std::string> arguments{"--link", port(), "--control", control, "--baud", "38400"};
+  arguments.insert(arguments.end(), emulator_arguments.begin(), emulator_arguments.end());
+  emulator_ = std::make_unique<ChildProcess>(AESOP_EMULATOR, arguments);
   const double end = steadyNow() + 5.0;
   while (!truth_) {
     try {
@@ -71,7 +73,7 @@ AesopBench::~AesopBench() {
 
 void AesopBench::startNode(const std::string& program, const std::vector<std::string>& arguments,
                            const std::string& output) {
-  XmlRpc::XmlRpcValue parameters = skin::parametersFromYaml(AESOP_CONFIG);
+  XmlRpc::XmlRpcValue parameters = skin::mergeParameters(skin::parametersFromYaml(AESOP_CONFIG), overlay_);
   parameters["port"] = port();
   parameters["command"]["publisher"] = master_.empty() ? ros::this_node::getName() : master_;
   parameters["reconnect"]["longest_pause"] = 0.5;  // tests cut the line again and again

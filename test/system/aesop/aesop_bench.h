@@ -28,12 +28,14 @@ class AesopBench {
  public:
   // Starts the emulator, and the node unless `with_node` is false. The node is named `aesop`, its parameters are those
   // of config/aesop.yaml.
-  explicit AesopBench(bool with_node = true);
+  explicit AesopBench(bool with_node = true, const std::vector<std::string>& emulator_arguments = {});
   ~AesopBench();
 
   // The arguments are those for a test that runs another program as the node.
   void startNode(const std::string& program = AESOP_NODE, const std::vector<std::string>& arguments = {},
                  const std::string& output = "");
+  // Parameters over those of config/aesop.yaml, from the next start on.
+  void setParameters(const XmlRpc::XmlRpcValue& overlay) { overlay_ = overlay; }
   ChildProcess& node() { return *node_; }
   ChildProcess& emulator() { return *emulator_; }
   // What only the emulator knows.
@@ -81,6 +83,7 @@ class AesopBench {
   std::optional<diagnostic_msgs::DiagnosticStatus> diagnostics_;
 
  private:
+  XmlRpc::XmlRpcValue overlay_;
   std::string directory_;
   ros::NodeHandle node_handle_;
   std::unique_ptr<ChildProcess> emulator_;

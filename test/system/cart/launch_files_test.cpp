@@ -41,6 +41,7 @@ TEST(LaunchFiles, CartAndDemoStartWhatTheySay) {
   demo.insert({"/aesop_emulator", "/simulated_camera"});
   EXPECT_EQ(nodesOf("cart.launch port:=/dev/ttyX rviz:=false"), cart);
   EXPECT_EQ(nodesOf("demo.launch rviz:=false"), demo);
+  EXPECT_EQ(nodesOf("calibrate.launch port:=/dev/ttyX file:=/x.yaml"), Nodes{"/aesop"});
   EXPECT_EQ(nodesOf("tracker.launch"), Nodes{"/tracker"});
   EXPECT_EQ(nodesOf("tracker.launch manager:=camera_manager"), Nodes{"/tracker"});
 }
@@ -58,14 +59,24 @@ TEST(LaunchFiles, ControllerOfACartAsksForTheRobotAndForADeadManThatIsGiven) {
   EXPECT_NE(demo.find("/controller/safety/dead_man_required: true"), std::string::npos) << demo;
 }
 
+TEST(LaunchFiles, CalibrationIsWrittenWhereTheCartReadsIt) {
+  const std::string calibrate = parametersOf("calibrate.launch port:=/dev/ttyX file:=/x.yaml");
+  EXPECT_NE(calibrate.find("/aesop/calibration/file: /x.yaml"), std::string::npos) << calibrate;
+  EXPECT_NE(calibrate.find("/aesop/insertion_point_file: ''"), std::string::npos) << "need not be there yet: " << calibrate;
+  const std::string cart = parametersOf("cart.launch port:=/dev/ttyX rviz:=false insertion_point_file:=/x.yaml");
+  EXPECT_NE(cart.find("/aesop/insertion_point_file: /x.yaml"), std::string::npos) << cart;
+  EXPECT_NE(cart.find("/aesop/calibration/file: /x.yaml"), std::string::npos) << cart;
+  EXPECT_NE(outputOf("roslaunch --nodes laparoscope_servo calibrate.launch port:=/dev/ttyX").find("file"), std::string::npos);
+}
+
 TEST(LaunchFiles, CartNeedsItsPort) {
   EXPECT_NE(outputOf("roslaunch --nodes laparoscope_servo cart.launch").find("port"), std::string::npos);
 }
 
 TEST(LaunchFiles, EveryArgumentIsDocumented) {
-  for (const char* launch : {"cart", "demo", "replay", "tracker"}) {
+  for (const char* launch : {"calibrate", "cart", "demo", "replay", "tracker"}) {
     const std::string text = outputOf("roslaunch --ros-args laparoscope_servo " + std::string(launch) + ".launch");
-    EXPECT_NE(text.find("YAML file laid over config/tracker.yaml"), std::string::npos) << text;
+    EXPECT_NE(text.find("YAML file laid over config/"), std::string::npos) << text;
     EXPECT_EQ(text.find("undocumented"), std::string::npos) << text;
   }
 }

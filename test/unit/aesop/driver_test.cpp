@@ -201,6 +201,31 @@ TEST_P(DriverTest, badLines) {
   EXPECT_GT(driver_.session().link().statistics().decoder.crc_errors, 0u);
 }
 
+TEST_P(DriverTest, theInsertionPointChangesOnlyWhileDisabledAndAtRest) {
+  const Eigen::Vector3d before = driver_.insertionPoint();
+  const Eigen::Vector3d other = before + Eigen::Vector3d(0.001, 0.0, 0.0);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_NE(driver_.setInsertionPoint({nan, 0.0, 0.0}).find("expected finite numbers"), std::string::npos);
+  EXPECT_NE(driver_.setInsertionPoint({20.0, 0.0, 0.0}).find("20"), std::string::npos);
+  enable();
+  EXPECT_NE(driver_.setInsertionPoint(other).find("the arm is ENABLED"), std::string::npos);
+  ASSERT_EQ(driver_.pause(), "");
+  EXPECT_NE(driver_.setInsertionPoint(other).find("the arm is PAUSED"), std::string::npos);
+  ASSERT_EQ(driver_.resume(kStampOffset + now_), "");
+  run(1.0, 0.05);
+  ASSERT_EQ(driver_.disable(now_), "");
+  EXPECT_NE(driver_.setInsertionPoint(other).find("moves"), std::string::npos);
+  emulator_.setFaultCause(kFaultMotor, now_);
+  run(1.0);
+  EXPECT_NE(driver_.setInsertionPoint(other).find("the arm is FAULT"), std::string::npos);
+  EXPECT_EQ(driver_.insertionPoint(), before);
+  emulator_.setFaultCause(0, now_);
+  ASSERT_EQ(driver_.clearFault(now_), "");
+  run(0.3);
+  EXPECT_EQ(driver_.setInsertionPoint(other), "");
+  EXPECT_EQ(driver_.insertionPoint(), other);
+}
+
 TEST_P(DriverTest, slowedAtTheDepthWithItsReason) {
   enable();
   for (int k = 0; k < 800; ++k) {

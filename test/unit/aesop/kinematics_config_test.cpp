@@ -46,7 +46,8 @@ TEST(KinematicsConfig, passiveJointsTurn) {
 TEST(MotionConfig, notANumberIsRefusedEverywhere) {
   MotionConfig config;
   config.limit_margin_angle = config.limit_margin_distance = config.singular_slow = config.singular_stop = kNan;
-  EXPECT_EQ(validate(config).size(), 4u);
+  config.lever_slow = config.lever_stop = config.stopping_time = kNan;
+  EXPECT_EQ(validate(config).size(), 7u);
 }
 
 }  // namespace

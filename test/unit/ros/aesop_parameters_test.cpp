@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "laparoscope_servo/ros/insertion_point_file.h"
+#include "support/temporary_folder.h"
+
 namespace laparoscope_servo::skin {
 namespace {
 
@@ -42,6 +45,9 @@ TEST(AesopParameters, shippedFileIsTheDefaults) {
   EXPECT_EQ(read.driver.motion.limit_margin_distance, defaults.driver.motion.limit_margin_distance);
   EXPECT_EQ(read.driver.motion.singular_slow, defaults.driver.motion.singular_slow);
   EXPECT_EQ(read.driver.motion.singular_stop, defaults.driver.motion.singular_stop);
+  EXPECT_EQ(read.driver.motion.lever_slow, defaults.driver.motion.lever_slow);
+  EXPECT_EQ(read.driver.motion.lever_stop, defaults.driver.motion.lever_stop);
+  EXPECT_EQ(read.driver.motion.stopping_time, defaults.driver.motion.stopping_time);
   EXPECT_EQ(read.driver.command.timeout, defaults.driver.command.timeout);
   EXPECT_EQ(read.driver.command.max_stamp_age, defaults.driver.command.max_stamp_age);
   EXPECT_EQ(read.driver.command.max_pan, defaults.driver.command.max_pan);
@@ -66,13 +72,60 @@ TEST(AesopParameters, shippedFileIsTheDefaults) {
   EXPECT_EQ(read.driver.monitor.slowest_distance, defaults.driver.monitor.slowest_distance);
   EXPECT_EQ(read.driver.monitor.tolerance_angle, defaults.driver.monitor.tolerance_angle);
   EXPECT_EQ(read.driver.monitor.tolerance_distance, defaults.driver.monitor.tolerance_distance);
+  EXPECT_EQ(read.insertion_point_file, defaults.insertion_point_file);
+  EXPECT_EQ(read.calibration.file, defaults.calibration.file);
+  const servo::InsertionPointFitConfig& fit = read.calibration.fit;
+  EXPECT_EQ(fit.spacing, defaults.calibration.fit.spacing);
+  EXPECT_EQ(fit.min_poses, defaults.calibration.fit.min_poses);
+  EXPECT_EQ(fit.max_poses, defaults.calibration.fit.max_poses);
+  EXPECT_EQ(fit.min_cone, defaults.calibration.fit.min_cone);
+  EXPECT_EQ(fit.max_residual, defaults.calibration.fit.max_residual);
+  EXPECT_EQ(fit.max_stddev, defaults.calibration.fit.max_stddev);
+  EXPECT_EQ(fit.position_noise, defaults.calibration.fit.position_noise);
+  EXPECT_EQ(fit.direction_noise, defaults.calibration.fit.direction_noise);
+  EXPECT_EQ(fit.wobble, defaults.calibration.fit.wobble);
+  const aesop::PatternConfig& pattern = read.calibration.pattern;
+  EXPECT_EQ(pattern.angle, defaults.calibration.pattern.angle);
+  EXPECT_EQ(pattern.speed, defaults.calibration.pattern.speed);
+  EXPECT_EQ(pattern.max_depth_change, defaults.calibration.pattern.max_depth_change);
+  EXPECT_EQ(pattern.patience, defaults.calibration.pattern.patience);
+}
+
+TEST(AesopParameters, aCalibratedInsertionPointTakesThePlaceOfTheConfiguredOne) {
+  const test_support::TemporaryFolder folder;
+  CalibratedInsertionPoint calibrated;
+  calibrated.point = Eigen::Vector3d(0.58, -0.07, -0.04);
+  calibrated.method = "HAND";
+  calibrated.date = "2026-01-02T03:04:05Z";
+  calibrated.poses = {aesop::JointVector::Zero()};
+  calibrated.residual = residual(aesop::Kinematics(aesop::KinematicsConfig()), calibrated.poses, calibrated.point);
+  XmlRpc::XmlRpcValue tree = shipped("aesop.yaml");
+  tree["port"] = std::string("/dev/ttyUSB0");
+  {
+    ParameterReader reader(tree, "/aesop");
+    EXPECT_NE(readAesopParameters(reader).insertion_point_origin.find("not calibrated"), std::string::npos);
+  }
+  tree["insertion_point_file"] = folder.file("point.yaml");
+  {
+    ParameterReader reader(tree, "/aesop");
+    readAesopParameters(reader);
+    ASSERT_EQ(reader.errors().size(), 1u) << "a file that is named has to be there";
+    EXPECT_NE(reader.errors()[0].find("point.yaml"), std::string::npos) << reader.errors()[0];
+  }
+  saveInsertionPoint(folder.file("point.yaml"), calibrated);
+  ParameterReader reader(tree, "/aesop");
+  const AesopParameters read = readAesopParameters(reader);
+  EXPECT_TRUE(reader.errors().empty()) << reader.report();
+  EXPECT_EQ(read.driver.insertion_point, calibrated.point);
+  EXPECT_NE(read.insertion_point_origin.find("2026-01-02"), std::string::npos) << read.insertion_point_origin;
 }
 
 TEST(AesopParameters, everyParameterOfTheShippedFileIsRead) {
   XmlRpc::XmlRpcValue tree = shipped("aesop.yaml");
   tree["port"] = std::string("/dev/ttyUSB0");
-  for (const char* group : {"motion", "command", "link", "reconnect", "monitor"}) {
+  for (const char* group : {"motion", "command", "link", "reconnect", "monitor", "calibration"}) {
     for (auto& member : tree[group]) {
+      if (member.first == "file") continue;  // any text is right
       XmlRpc::XmlRpcValue changed = tree;
       changed[group][member.first] = std::string("no number, no name");
       ParameterReader reader(changed, "/aesop");

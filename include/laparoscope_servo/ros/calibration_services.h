@@ -1,0 +1,47 @@
+// The services and the topic under ~calibrate_insertion_point, see README, node `aesop`.
+#pragma once
+
+#include <diagnostic_updater/DiagnosticStatusWrapper.h>
+#include <ros/node_handle.h>
+#include <ros/service_callback_helper.h>
+#include <std_srvs/Trigger.h>
+
+#include <string>
+#include <vector>
+
+#include "laparoscope_servo/StartCalibration.h"
+#include "laparoscope_servo/ros/insertion_point_calibration.h"
+#include "laparoscope_servo/ros/service_callers.h"
+
+namespace laparoscope_servo::skin {
+
+class CalibrationServices {
+ public:
+  // `driver` has to outlive this. `callers`: who may start a calibration, which may move the arm, or end it with a result.
+  CalibrationServices(const ros::NodeHandle& private_node, const AesopParameters& parameters,
+                      const ServiceCallers& callers, aesop::Driver& driver);
+
+  // Call often. True when the insertion point is another one from now on.
+  bool step(double stamp_now, double now);
+  // Whether a command of others has ended here: the arm drives its pattern.
+  bool takes(const aesop::ScopeVelocity& command, double now);
+  void describe(diagnostic_updater::DiagnosticStatusWrapper& status) const;
+
+ private:
+  bool start(ros::ServiceEvent<StartCalibration::Request, StartCalibration::Response>& event);
+  bool finish(ros::ServiceEvent<std_srvs::Trigger::Request, std_srvs::Trigger::Response>& event);
+  bool cancel(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
+  void publish(double now);
+
+  ros::NodeHandle node_;
+  ServiceCallers callers_;
+  std::string frame_;
+  std::string origin_;  // of the insertion point, in words
+  InsertionPointCalibration calibration_;
+  CalibrationStage published_ = CalibrationStage::kIdle;
+  double next_publication_ = 0.0;  // s, steady
+  ros::Publisher publisher_;
+  std::vector<ros::ServiceServer> services_;
+};
+
+}  // namespace laparoscope_servo::skin

@@ -1,0 +1,149 @@
+#include "laparoscope_servo/servo/insertion_point_fit.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+#include "laparoscope_servo/validation/range_checker.h"
+
+namespace laparoscope_servo::servo {
+
+namespace {
+
+using Eigen3d = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>;  // eigenvalues ascending
+
+const InsertionPointFitConfig& checked(const InsertionPointFitConfig& config) {
+  std::string text;
+  for (const std::string& error : validate(config)) text += (text.empty() ? "" : "; ") + error;
+  if (!text.empty()) throw std::invalid_argument("insertion point fit: " + text);
+  return config;
+}
+
+InsertionPointConfig estimatorConfig(const InsertionPointFitConfig& fit) {
+  InsertionPointConfig config;
+  config.position_noise = fit.position_noise;
+  config.direction_noise = fit.direction_noise;
+  config.wobble = fit.wobble;
+  config.drift = 0.0;
+  // What is kept differs in direction already.
+  config.same_direction = 0.0;
+  config.samples_per_direction = 1000;
+  config.max_samples = std::max(10, fit.max_poses);
+  config.min_samples = 5;
+  // Earlier, the point would be anywhere along the shaft.
+  config.min_eigenvalue = 0.25 * std::pow(std::sin(fit.min_cone), 2);
+  return config;
+}
+
+std::string problem(const char* what, double value, const char* expected, double bound, const char* unit,
+                    const char* cure) {
+  std::ostringstream text;
+  text.precision(3);
+  text << what << ' ' << value << unit << ", expected " << expected << ' ' << bound << unit << ": " << cure;
+  return text.str();
+}
+
+}  // namespace
+
+std::vector<std::string> validate(const InsertionPointFitConfig& config) {
+  validation::RangeChecker check;
+  check.range("spacing", config.spacing, 0.001, 0.2, "rad");
+  check.range("max_poses", config.max_poses, 10, 1000);
+  check.range("min_poses", config.min_poses, 5, std::max(5, config.max_poses / 2));
+  check.range("min_cone", config.min_cone, 0.01, 0.5, "rad");
+  check.range("max_residual", config.max_residual, 1e-4, 0.1, "m");
+  check.range("max_stddev", config.max_stddev, 1e-4, 0.1, "m");
+  check.range("position_noise", config.position_noise, 1e-6, 0.05, "m");
+  check.range("direction_noise", config.direction_noise, 0.0, 0.1, "rad");
+  check.range("wobble", config.wobble, 0.0, 0.05, "m");
+  return check.errors();
+}
+
+InsertionPointFitter::InsertionPointFitter(const InsertionPointFitConfig& config)
+    : config_(checked(config)), spacing_(config.spacing), estimator_(estimatorConfig(config)) {}
+
+bool InsertionPointFitter::add(const Shaft& shaft) {
+  if (!insert(shaft, taken_)) return false;
+  ++taken_;
+  // However long somebody stays near one direction, there is room for the others.
+  while (shafts_.size() >= static_cast<std::size_t>(config_.max_poses)) thinOut();
+  measure();
+  return true;
+}
+
+bool InsertionPointFitter::insert(const Shaft& shaft, std::size_t number) {
+  const double near = std::cos(spacing_);
+  const auto is_near = [&](const Shaft& other) { return other.direction.dot(shaft.direction) > near; };
+  if (std::any_of(shafts_.begin(), shafts_.end(), is_near)) return false;
+  if (!estimator_.update(0.0, shaft)) return false;
+  shafts_.push_back({shaft.point, shaft.direction.normalized()});
+  kept_.push_back(number);
+  return true;
+}
+
+void InsertionPointFitter::thinOut() {
+  spacing_ *= 1.4;
+  estimator_.reset();
+  const std::vector<Shaft> shafts = std::move(shafts_);
+  const std::vector<std::size_t> numbers = std::move(kept_);
+  shafts_.clear();
+  kept_.clear();
+  for (std::size_t k = 0; k < shafts.size(); ++k) insert(shafts[k], numbers[k]);
+}
+
+void InsertionPointFitter::measure() {
+  const InsertionPointEstimate& estimate = estimator_.estimate();
+  fit_.poses = static_cast<int>(shafts_.size());
+  fit_.known = estimate.valid;
+  fit_.point = estimate.point;
+  fit_.covariance = estimate.valid ? estimate.covariance : Eigen::Matrix3d::Zero().eval();
+  fit_.stddev = std::sqrt(std::max(0.0, Eigen3d(fit_.covariance, Eigen::EigenvaluesOnly).eigenvalues()[2]));
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  double squares = 0.0;
+  fit_.largest_residual = 0.0;
+  for (const Shaft& shaft : shafts_) {
+    const Eigen::Vector3d& a = shaft.direction;
+    spread += (Eigen::Matrix3d::Identity() - a * a.transpose()) / static_cast<double>(fit_.poses);
+    const double distance = a.cross(fit_.point - shaft.point).norm();
+    const double along = a.dot(fit_.point - shaft.point);
+    squares += distance * distance;
+    fit_.largest_residual = std::max(fit_.largest_residual, distance);
+    fit_.nearest = &shaft == shafts_.data() ? along : std::min(fit_.nearest, along);
+    fit_.farthest = &shaft == shafts_.data() ? along : std::max(fit_.farthest, along);
+  }
+  const double smallest = Eigen3d(spread, Eigen::EigenvaluesOnly).eigenvalues()[0];
+  fit_.cone = std::asin(std::sqrt(std::max(0.0, std::min(1.0, smallest))));
+  fit_.residual = std::sqrt(squares / static_cast<double>(fit_.poses));
+}
+
+std::vector<std::string> InsertionPointFitter::problems(double length) const {
+  std::vector<std::string> problems;
+  const char* turn = "turn the scope further, to all sides";
+  if (fit_.poses < config_.min_poses) {
+    problems.push_back(problem("poses of different directions:", fit_.poses, "at least", config_.min_poses, "", turn));
+  }
+  if (!(fit_.cone >= config_.min_cone)) {
+    problems.push_back(problem("the shaft has turned by", fit_.cone, "at least", config_.min_cone, " rad", turn));
+  }
+  if (!fit_.known) return problems.empty() ? std::vector<std::string>{"the shafts do not meet anywhere"} : problems;
+  if (!(fit_.residual <= config_.max_residual)) {
+    problems.push_back(problem("the shafts pass the point at", fit_.residual, "at most", config_.max_residual, " m",
+                               "has the trocar moved, is the table of joints that of this arm?"));
+  }
+  if (!(fit_.stddev <= config_.max_stddev)) {
+    problems.push_back(
+        problem("the point's standard deviation is", fit_.stddev, "at most", config_.max_stddev, " m", turn));
+  }
+  if (!(fit_.nearest > 0.0 && fit_.farthest < length)) {
+    std::ostringstream text;
+    text.precision(3);
+    text << "the point lies " << fit_.nearest << " to " << fit_.farthest
+         << " m along the shaft, expected above 0 and below its length of " << length << " m";
+    problems.push_back(text.str());
+  }
+  return problems;
+}
+
+}  // namespace laparoscope_servo::servo
