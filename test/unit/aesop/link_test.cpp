@@ -68,6 +68,41 @@ TEST_F(LinkTest, statusBeforeIdentityIsOldNews) {
   EXPECT_FALSE(link_.status().has_value());
 }
 
+TEST_F(LinkTest, aStatusIsAsOldAsTheRequestThatItAnswers) {
+  bringUp(0.0);
+  // A line that holds everything back by 0.2 s, then by more than a status may be old.
+  controller_.hear(link_.send(Poll(), 1.0));
+  receive(link_, controller_.say(), 1.2);
+  EXPECT_NEAR(link_.statusAge(1.25), 0.25, 1e-9);
+  link_.watch(1.25);
+  EXPECT_TRUE(link_.isUp());
+  controller_.hear(link_.send(Poll(), 1.3));
+  for (int k = 1; k < 20; ++k) link_.send(Poll(), 1.3 + 0.025 * k);
+  receive(link_, controller_.say(), 1.7);
+  EXPECT_NEAR(link_.statusAge(1.7), 0.4, 1e-9);
+  link_.watch(1.7);
+  EXPECT_FALSE(link_.isUp());
+  EXPECT_NE(link_.reason().find("answers later"), std::string::npos) << link_.reason();
+}
+
+TEST_F(LinkTest, anEchoOfWhatWasNeverSentEndsTheSession) {
+  bringUp(0.0);
+  controller_.hear(link_.send(Poll(), 0.1));
+  controller_.status.echo = static_cast<std::uint16_t>(link_.sequence() + 1);
+  EXPECT_TRUE(receive(link_, controller_.say(), 0.12).empty());
+  EXPECT_EQ(link_.state(), LinkState::kIdentifying);
+  EXPECT_NE(link_.reason().find("never sent"), std::string::npos) << link_.reason();
+}
+
+TEST_F(LinkTest, anEchoOfLongAgoIsNoAnswer) {
+  bringUp(0.0);
+  for (int k = 0; k < 2000; ++k) link_.send(Poll(), 0.001 * k);
+  receive(link_, controller_.say(), 2.0);
+  EXPECT_TRUE(std::isinf(link_.statusAge(2.0)));
+  link_.watch(2.0);
+  EXPECT_FALSE(link_.isUp());
+}
+
 TEST_F(LinkTest, silenceLosesTheLink) {
   bringUp(0.0);
   for (int k = 1; k < 40; ++k) {

@@ -4,55 +4,10 @@
 
 #include <limits>
 
-#include "fake_controller.h"
+#include "session_fixture.h"
 
 namespace laparoscope_servo::aesop {
 namespace {
-
-using Speed = std::array<double, kDrivenJoints>;
-constexpr Speed kStand{};
-constexpr Speed kMove{0.01, 0.0, 0.0, 0.0};
-
-class SessionTest : public ::testing::Test {
- protected:
-  // One slot of the line: what the session sends, and the controller's answer when it gives one. Returns the last
-  // request.
-  std::optional<Message> exchange(const Speed& speed, bool answer = true) {
-    now_ += 0.026;
-    const std::vector<Message> requests = controller_.hear(session_.transmit(speed, now_));
-    if (requests.empty()) return std::nullopt;
-    if (std::holds_alternative<Identify>(requests.back())) controller_.status.state = RobotState::kDisabled;
-    if (answer) {
-      const Bytes reply =
-          std::holds_alternative<Identify>(requests.back()) ? controller_.identity() : controller_.say();
-      session_.receive(reply.data(), reply.size(), now_ + 0.01);
-    }
-    return requests.back();
-  }
-  template <typename T>
-  bool sends(const Speed& speed = kStand, bool answer = true) {
-    const std::optional<Message> request = exchange(speed, answer);
-    return request && std::holds_alternative<T>(*request);
-  }
-  void connect() {
-    session_.opened(now_);
-    ASSERT_TRUE(sends<Identify>());
-    ASSERT_TRUE(sends<Poll>());
-    ASSERT_TRUE(session_.link().isUp());
-  }
-  void enable() {
-    ASSERT_EQ(session_.enable(now_), "");
-    ASSERT_TRUE(sends<Enable>(kStand, false));
-    controller_.status.state = RobotState::kEnabled;
-    ASSERT_TRUE(sends<Enable>());
-    ASSERT_TRUE(session_.isEnabled());
-  }
-  OperatingMode mode() const { return session_.state().mode; }
-
-  double now_ = 0.0;
-  Session session_{SessionConfig(), kDrivenMask};
-  FakeController controller_;
-};
 
 TEST_F(SessionTest, startsDisabledAndSaysWhy) {
   EXPECT_EQ(mode(), OperatingMode::kDisabled);
@@ -144,22 +99,6 @@ TEST_F(SessionTest, whatCannotBeSentIsAStop) {
   }
 }
 
-TEST_F(SessionTest, disableGoesOutAtOnceAndUntilConfirmed) {
-  connect();
-  enable();
-  ASSERT_TRUE(sends<Velocity>(kMove));
-  EXPECT_EQ(session_.disable(now_), "");
-  now_ += 0.001;
-  EXPECT_TRUE(std::holds_alternative<Disable>(controller_.hear(session_.transmit(kMove, now_)).at(0)));
-  EXPECT_EQ(mode(), OperatingMode::kDisabled);
-  EXPECT_TRUE(session_.state().is_busy);
-  EXPECT_TRUE(sends<Disable>(kMove));
-  controller_.status.state = RobotState::kDisabled;
-  EXPECT_TRUE(sends<Disable>(kMove));
-  EXPECT_TRUE(sends<Poll>(kMove));
-  EXPECT_FALSE(session_.state().is_busy);
-}
-
 TEST_F(SessionTest, pauseStopsAndStaysEnabled) {
   EXPECT_NE(session_.pause(), "");
   EXPECT_NE(session_.resume(), "");
@@ -217,45 +156,6 @@ TEST_F(SessionTest, unknownFaultBitsAreAFaultWhateverTheState) {
   controller_.status.faults = 0x8000;  // still saying ENABLED
   exchange(kMove);
   EXPECT_EQ(mode(), OperatingMode::kFault);
-  EXPECT_TRUE(sends<Disable>(kMove));
-}
-
-TEST_F(SessionTest, aControllerThatDisablesItselfIsNotEnabledAgain) {
-  connect();
-  enable();
-  controller_.status.state = RobotState::kDisabled;
-  exchange(kMove);
-  EXPECT_EQ(mode(), OperatingMode::kDisabled);
-  EXPECT_NE(session_.state().reason.find("disabled itself"), std::string::npos);
-  EXPECT_TRUE(sends<Disable>(kMove)) << "it may say so and not do so";
-  for (int k = 0; k < 10; ++k) EXPECT_TRUE(sends<Poll>(kMove));
-}
-
-TEST_F(SessionTest, disableIsRepeatedUntilTheArmStands) {
-  connect();
-  enable();
-  ASSERT_TRUE(sends<Velocity>(kMove));
-  session_.giveUp("joint 3 does not follow");
-  controller_.status.state = RobotState::kDisabled;
-  controller_.status.moving = true;
-  for (int k = 0; k < 100; ++k) EXPECT_TRUE(sends<Disable>(kMove));
-  EXPECT_EQ(mode(), OperatingMode::kDisabled);
-  EXPECT_TRUE(session_.state().is_busy);
-  EXPECT_EQ(session_.enable(now_), "") << "it is under way, but waits for that";
-  EXPECT_TRUE(sends<Disable>(kMove));
-  controller_.status.moving = false;
-  EXPECT_TRUE(sends<Disable>(kMove));
-  EXPECT_TRUE(sends<Enable>(kMove));
-}
-
-TEST_F(SessionTest, aDisableIsNotConfirmedByWhatWasSaidBefore) {
-  connect();
-  enable();
-  ASSERT_TRUE(sends<Velocity>(kMove));
-  controller_.status.state = RobotState::kDisabled;
-  const Bytes before = controller_.say();
-  session_.giveUp("a test");
-  session_.receive(before.data(), before.size(), now_);
   EXPECT_TRUE(sends<Disable>(kMove));
 }
 

@@ -37,8 +37,11 @@ class EmulatorServerTest : public ::testing::Test {
     ::unlink(path("file").c_str());
     ::rmdir(directory_.c_str());
   }
-  void start() {
-    server_ = std::make_unique<EmulatorServer>(EmulatorConfig(), server(path("port"), path("control")));
+  void start(int baud_rate = 0, const std::vector<ScheduledFault>& script = {}) {
+    ServerConfig config = server(path("port"), path("control"));
+    config.baud_rate = baud_rate;
+    config.script = script;
+    server_ = std::make_unique<EmulatorServer>(EmulatorConfig(), config);
     thread_ = std::thread([this] { server_->run(stop_); });
   }
   void end() {
@@ -76,6 +79,33 @@ TEST_F(EmulatorServerTest, answersOnThePort) {
     return !frames.empty();
   }));
   EXPECT_TRUE(std::holds_alternative<aesop::Identity>(frames.at(0).message));
+}
+
+TEST_F(EmulatorServerTest, theLineTakesItsTime) {
+  start(1200);
+  aesop::SerialTransport transport;
+  transport.open(path("port"), 38400);
+  const auto begin = std::chrono::steady_clock::now();
+  transport.write(aesop::encode({1, aesop::Identify()}));
+  aesop::Decoder decoder;
+  ASSERT_TRUE(waitFor([&] { return !decoder.push(transport.read()).empty(); }));
+  const double passed = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  EXPECT_GE(passed, (9 + 27) * 10.0 / 1200.0);
+}
+
+TEST_F(EmulatorServerTest, aScriptRunsByItself) {
+  ScheduledFault cut;
+  cut.at = 0.1;
+  cut.fault.name = "hangup";
+  cut.fault.duration = 0.1;
+  start(0, {cut});
+  const auto is_there = [&] { return ::access(path("port").c_str(), F_OK) == 0; };
+  EXPECT_TRUE(waitFor([&] { return !is_there(); }));
+  EXPECT_TRUE(waitFor(is_there));
+  cut.fault.name = "rust";
+  ServerConfig wrong = server(path("other"), "");
+  wrong.script = {cut};
+  EXPECT_THROW(EmulatorServer(EmulatorConfig(), wrong), std::invalid_argument);
 }
 
 TEST_F(EmulatorServerTest, clientOfTheControlSocket) {

@@ -1,0 +1,66 @@
+// The way back to DISABLED: repeated until the controller confirms it, whatever it said before.
+#include <gtest/gtest.h>
+
+#include "laparoscope_servo/aesop/session.h"
+#include "session_fixture.h"
+
+namespace laparoscope_servo::aesop {
+namespace {
+
+TEST_F(SessionTest, disableGoesOutAtOnceAndUntilConfirmed) {
+  connect();
+  enable();
+  ASSERT_TRUE(sends<Velocity>(kMove));
+  EXPECT_EQ(session_.disable(now_), "");
+  now_ += 0.001;
+  EXPECT_TRUE(std::holds_alternative<Disable>(controller_.hear(session_.transmit(kMove, now_)).at(0)));
+  EXPECT_EQ(mode(), OperatingMode::kDisabled);
+  EXPECT_TRUE(session_.state().is_busy);
+  EXPECT_TRUE(sends<Disable>(kMove));
+  controller_.status.state = RobotState::kDisabled;
+  EXPECT_TRUE(sends<Disable>(kMove));
+  EXPECT_TRUE(sends<Poll>(kMove));
+  EXPECT_FALSE(session_.state().is_busy);
+}
+
+TEST_F(SessionTest, aControllerThatDisablesItselfIsNotEnabledAgain) {
+  connect();
+  enable();
+  controller_.status.state = RobotState::kDisabled;
+  exchange(kMove);
+  EXPECT_EQ(mode(), OperatingMode::kDisabled);
+  EXPECT_NE(session_.state().reason.find("disabled itself"), std::string::npos);
+  EXPECT_TRUE(sends<Disable>(kMove)) << "it may say so and not do so";
+  for (int k = 0; k < 10; ++k) EXPECT_TRUE(sends<Poll>(kMove));
+}
+
+TEST_F(SessionTest, disableIsRepeatedUntilTheArmStands) {
+  connect();
+  enable();
+  ASSERT_TRUE(sends<Velocity>(kMove));
+  session_.giveUp("joint 3 does not follow");
+  controller_.status.state = RobotState::kDisabled;
+  controller_.status.moving = true;
+  for (int k = 0; k < 100; ++k) EXPECT_TRUE(sends<Disable>(kMove));
+  EXPECT_EQ(mode(), OperatingMode::kDisabled);
+  EXPECT_TRUE(session_.state().is_busy);
+  EXPECT_EQ(session_.enable(now_), "") << "it is under way, but waits for that";
+  EXPECT_TRUE(sends<Disable>(kMove));
+  controller_.status.moving = false;
+  EXPECT_TRUE(sends<Disable>(kMove));
+  EXPECT_TRUE(sends<Enable>(kMove));
+}
+
+TEST_F(SessionTest, aDisableIsNotConfirmedByWhatWasSaidBefore) {
+  connect();
+  enable();
+  ASSERT_TRUE(sends<Velocity>(kMove));
+  controller_.status.state = RobotState::kDisabled;
+  const Bytes before = controller_.say();
+  session_.giveUp("a test");
+  session_.receive(before.data(), before.size(), now_);
+  EXPECT_TRUE(sends<Disable>(kMove));
+}
+
+}  // namespace
+}  // namespace laparoscope_servo::aesop
