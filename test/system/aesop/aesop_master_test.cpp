@@ -95,7 +95,7 @@ TEST(AesopMaster, onlyNamedNodesMayEnable) {
   AesopBench bench(false);
   bench.service_callers_ = {"/theatre"};
   bench.startNode();
-  for (const char* service : {"enable", "resume", "clear_fault"}) {
+  for (const char* service : {"enable", "resume", "clear_fault", "calibrate_insertion_point/finish"}) {
     const std_srvs::Trigger::Response refused = bench.call(service);
     EXPECT_FALSE(refused.success) << service;
     EXPECT_TRUE(mentions(refused.message, ros::this_node::getName())) << refused.message;

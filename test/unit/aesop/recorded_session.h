@@ -53,6 +53,7 @@ class RecordedSession {
     emulator_.setFaultCause(0, now_);
     driver_.clearFault(now_);
     run(0.5);
+    driver_.setInsertionPoint(driver_.insertionPoint() + Eigen::Vector3d(0.001, 0.0, -0.001));
     driver_.enable(stamp(), now_);
     run(0.5, std::numeric_limits<double>::quiet_NaN());
     run(1.0, 0.05);

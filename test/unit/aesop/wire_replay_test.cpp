@@ -28,7 +28,7 @@ TEST_F(WireReplayTest, theSessionHasEverythingInIt) {
   EXPECT_EQ(modes.size(), 4u);
   std::set<WireEvent> events;
   for (const WireRecord& record : records_) events.insert(record.event);
-  EXPECT_EQ(events.size(), 11u);
+  EXPECT_EQ(events.size(), 12u);
 }
 
 TEST_F(WireReplayTest, goesThroughTheSameStatesAndSendsTheSameBytes) {
