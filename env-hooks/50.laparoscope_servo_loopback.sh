@@ -1,3 +1,4 @@
+# shellcheck shell=sh
 # What is started from this shell listens on the loopback address alone, unless ROS_IP, ROS_HOSTNAME or ROS_MASTER_URI tell
 # of other machines: ROS 1 asks nobody who he is (doc/network.md).
 if [ -z "${ROS_IP:-}${ROS_HOSTNAME:-}" ]; then

@@ -1,6 +1,7 @@
 #include "laparoscope_servo/aesop/wire_log_file.h"
 
 #include <fcntl.h>
+#include <pthread.h>
 #include <signal.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -96,6 +97,9 @@ class WireLogFile::Writer {
   }
 
   void run() {
+    // The thread that drives the arm may have a real-time priority, which this one would inherit.
+    const sched_param ordinary{};
+    ::pthread_setschedparam(::pthread_self(), SCHED_OTHER, &ordinary);
     std::unique_lock<std::mutex> lock(mutex_);
     for (bool last = false; !last && problem_.empty();) {
       wake_.wait_for(lock, kPause, [this] { return ending_; });

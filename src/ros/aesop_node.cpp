@@ -17,10 +17,17 @@ namespace {
 
 constexpr std::chrono::milliseconds kPeriod{5};
 constexpr std::uint32_t kQueue = 100;      // commands
-constexpr double kReportPause = 1.0;       // s, between two warnings of one kind
+constexpr double kReportPause = 1.0;       // s, between two warnings of a command that was refused
+constexpr double kStrangerPause = 10.0;    // s, between two of a publisher that is not the master
 constexpr double kDiagnosticsPause = 1.0;  // s
 constexpr double kStatePeriod = 0.1;       // s, between two publications of an operating state that stays
 constexpr double kLastWord = 0.5;          // s, for the controller to confirm the disable when the node ends
+
+std::vector<std::string> resolved(const ros::NodeHandle& node, const std::vector<std::string>& names) {
+  std::vector<std::string> result;
+  for (const std::string& name : names) result.push_back(node.resolveName(name, false));
+  return result;
+}
 
 }  // namespace
 
@@ -31,6 +38,7 @@ AesopNode::AesopNode(const ros::NodeHandle& node, const ros::NodeHandle& private
       driver_(parameters.driver),
       reconnect_(parameters.reconnect),
       master_(node.resolveName(parameters.publisher, false)),
+      callers_(resolved(node, parameters.service_callers)),
       reported_(parameters.port, aesop::lineWarning(parameters.driver.session, parameters.baud_rate)),
       node_(node),
       private_node_(private_node) {
@@ -38,8 +46,6 @@ AesopNode::AesopNode(const ros::NodeHandle& node, const ros::NodeHandle& private
   pose_publisher_ = private_node_.advertise<geometry_msgs::PoseStamped>("measured_cp", 10);
   twist_publisher_ = private_node_.advertise<geometry_msgs::TwistStamped>("measured_cv", 10);
   state_publisher_ = private_node_.advertise<OperatingState>("operating_state", 10, true);
-  for (const std::string& caller : parameters.service_callers)
-    service_callers_.push_back(node_.resolveName(caller, false));
   // Only the master's newest command counts, but others must not push it out of the queue.
   command_subscriber_ =
       node_.subscribe("servo_command", kQueue, &AesopNode::onCommand, this, ros::TransportHints().tcpNoDelay());
@@ -53,7 +59,13 @@ AesopNode::AesopNode(const ros::NodeHandle& node, const ros::NodeHandle& private
   diagnostics_.add("AESOP", [this](diagnostic_updater::DiagnosticStatusWrapper& status) {
     const double now = steadyNow();
     reported_.fill(now, driver_, {master_, command_subscriber_.getNumPublishers(), reconnect_.remaining(now)}, status);
+    if (recording_ && !recording_->problem().empty())
+      status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, recording_->problem());
   });
+  if (!parameters.wire_log.file.empty()) {
+    recording_ = std::make_unique<aesop::WireLogFile>(parameters.wire_log, parameters.driver.session.codec()->name());
+    driver_.setTap(recording_.get());
+  }
   publishStaticFrames();
   if (!reported_.lineWarning().empty()) ROS_WARN_STREAM(reported_.lineWarning());
 }
@@ -95,12 +107,19 @@ void AesopNode::step() {
   exchange(now);
   if (driver_.session().link().isUp()) reconnect_.up(now);
   if (!driver_.session().isEnabled()) master_.release();
+  watchRecording();
   publishStatus();
   publishState(now);
   if (now >= next_diagnostics_) {
     next_diagnostics_ = now + kDiagnosticsPause;
     diagnostics_.force_update();
   }
+}
+
+void AesopNode::watchRecording() {
+  if (!recording_ || recording_ended_ || recording_->problem().empty()) return;
+  recording_ended_ = true;
+  ROS_WARN_STREAM(recording_->problem() << "; the arm is driven on without it");
 }
 
 void AesopNode::connect(double now) {
@@ -163,7 +182,7 @@ void AesopNode::onCommand(const ros::MessageEvent<ScopeVelocity const>& event) {
   const ScopeVelocity& message = *event.getConstMessage();
   switch (master_.judge(event.getPublisherName(), event.getConnectionHeaderPtr(), now)) {
     case CommandMaster::Verdict::kStranger:
-      return report(master_.complaint(now), next_stranger_, now);
+      return report(master_.complaint(now), next_stranger_, kStrangerPause, now);
     case CommandMaster::Verdict::kNewConnection:
       // Restarted, replaced by another process of its name, or joined by one: which of them shall move the arm is for
       // somebody to say who sees it stand.
@@ -176,12 +195,12 @@ void AesopNode::onCommand(const ros::MessageEvent<ScopeVelocity const>& event) {
   const std::string refusal = driver_.command(velocity, message.header.stamp.toSec(), stampNow(), now);
   // Commands that come before the arm is enabled are nobody's mistake, but one that is not finite is.
   if (!refusal.empty() && (driver_.session().isEnabled() || !velocity.isFinite()))
-    report("a command was refused: " + refusal, next_report_, now);
+    report("a command was refused: " + refusal, next_report_, kReportPause, now);
 }
 
-void AesopNode::report(const std::string& refusal, double& next, double now) {
+void AesopNode::report(const std::string& refusal, double& next, double pause, double now) {
   if (now < next) return;
-  next = now + kReportPause;
+  next = now + pause;
   ROS_WARN_STREAM(refusal);
 }
 

@@ -2,8 +2,6 @@
 // time.
 #include <ros/ros.h>
 
-#include <algorithm>
-
 #include "laparoscope_servo/ros/aesop_node.h"
 #include "laparoscope_servo/ros/clocks.h"
 
@@ -28,13 +26,8 @@ void AesopNode::advertise(const std::string& name, Action action, Callers caller
   const boost::function<bool(Event&)> serve = [=](Event& event) {
     const std::string caller = event.getCallerName();
     Response& response = event.getResponse();
-    if (callers == Callers::kNamed && !service_callers_.empty() &&
-        std::find(service_callers_.begin(), service_callers_.end(), caller) == service_callers_.end()) {
-      response =
-          answer(name + " is refused to " + shownName(caller) + ": the parameter service_callers does not name it");
-    } else {
-      response = (this->*action)();
-    }
+    const std::string refusal = callers == Callers::kNamed ? callers_.refusal(name, caller) : "";
+    response = refusal.empty() ? (this->*action)() : answer(refusal);
     ROS_INFO_STREAM(name << ", called by " << shownName(caller) << ": " << (response.success ? "done" : "refused")
                          << (response.message.empty() ? "" : ", ") << response.message);
     return true;

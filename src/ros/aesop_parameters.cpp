@@ -139,6 +139,14 @@ void readMonitor(ParameterReader& reader, aesop::MonitorConfig& config) {
   reader.refuseUnknown("monitor");
 }
 
+void readWireLog(ParameterReader& reader, aesop::WireLogConfig& config) {
+  reader.read("wire_log/file", config.file);
+  reader.read("wire_log/size", config.size, -kLarge, 1e4);
+  reader.read("wire_log/files", config.files, -1000, 1000);
+  reader.refuseUnknown("wire_log");
+  for (const std::string& error : aesop::validate(config)) reader.addError("wire_log/" + error);
+}
+
 void readReconnect(ParameterReader& reader, aesop::ReconnectConfig& config) {
   reader.read("reconnect/first_pause", config.first_pause, -kLarge, kLarge);
   reader.read("reconnect/longest_pause", config.longest_pause, -kLarge, kLarge);
@@ -165,6 +173,7 @@ AesopParameters readAesopParameters(ParameterReader& reader) {
   readCommand(reader, parameters.publisher, parameters.driver.command);
   readLink(reader, parameters.driver.session);
   readMonitor(reader, parameters.driver.monitor);
+  readWireLog(reader, parameters.wire_log);
   readReconnect(reader, parameters.reconnect);
   readPoint(reader, "insertion_point", parameters.driver.insertion_point);
   reader.refuseUnknown("");

@@ -14,6 +14,11 @@ Eigen::Quaterniond quaternion(const geometry_msgs::Quaternion& q) {
   return Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized();
 }
 
+bool isRotation(const geometry_msgs::Quaternion& q) {
+  const double length = Eigen::Vector4d(q.x, q.y, q.z, q.w).norm();
+  return length > 1e-6 && std::isfinite(length);
+}
+
 std::string name(servo::ControllerState state) {
   switch (state) {
     case servo::ControllerState::kArmed:
@@ -38,6 +43,7 @@ servo::TaskErrorInput fromMessage(const TaskError& message) {
   servo::TaskErrorInput input;
   input.problem.clear();
   input.valid = message.valid;
+  input.region = message.reference_stamp.toSec();
   input.visible_fraction = message.visible_fraction;
   input.corner_error = message.corner_error;
   servo::TaskError& error = input.error;
@@ -56,8 +62,13 @@ servo::TaskErrorInput fromMessage(const TaskError& message) {
 }
 
 servo::DepthInput fromTransforms(const geometry_msgs::Transform& camera_T_insertion_point, const geometry_msgs::Transform& camera_T_shaft) {
-  const Eigen::Quaterniond camera_R_insertion_point = quaternion(camera_T_insertion_point.rotation);
   servo::DepthInput depth;
+  if (!isRotation(camera_T_insertion_point.rotation) || !isRotation(camera_T_shaft.rotation)) {
+    depth.problem = "tf has a rotation that is none: a quaternion of length 0, or not finite";
+    return depth;
+  }
+  depth.problem.clear();
+  const Eigen::Quaterniond camera_R_insertion_point = quaternion(camera_T_insertion_point.rotation);
   depth.camera_R_shaft = quaternion(camera_T_shaft.rotation).toRotationMatrix();
   const Eigen::Vector3d in_camera = vector(camera_T_insertion_point.translation);
   const Eigen::Vector3d along = depth.camera_R_shaft.transpose() * in_camera;  // O_A from O_C, in the shaft's axes

@@ -203,7 +203,7 @@ servo::DepthInput ControllerNode::depth(double steady_now) {
   try {
     const auto transform = tf_.lookupTransform(config_.camera, config_.insertion_point, ros::Time(0));
     depth = fromTransforms(transform.transform, tf_.lookupTransform(config_.camera, config_.shaft, ros::Time(0)).transform);
-    depth.problem.clear();
+    if (!depth.problem.empty()) return depth;
     if (transform.header.stamp.isZero()) {
       // d2 changes when the scope is inserted: a transform that cannot change says nothing about the arm.
       depth.problem =

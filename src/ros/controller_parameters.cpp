@@ -43,6 +43,7 @@ void readTarget(ParameterReader& reader, servo::ControllerConfig& config) {
   readNumber(reader, "predictor/min_delay", config.predictor.min_delay);
   readNumber(reader, "predictor/max_delay", config.predictor.max_delay);
   reader.read("predictor/feed_forward", config.predictor.feed_forward);
+  readNumber(reader, "predictor/command_lifetime", config.predictor.command_lifetime);
   reader.read("breathing/enabled", config.breathing.enabled);
   readNumber(reader, "breathing/rate", config.breathing.rate);
   readNumber(reader, "breathing/rate_stddev", config.breathing.rate_stddev);
@@ -126,6 +127,7 @@ servo::ControllerConfig controllerConfig(ParameterReader& reader) {
   readNumber(reader, "range/cone_margin", config.range.cone_margin);
   reader.read("insertion_point/use", config.insertion_point.use);
   readNumber(reader, "insertion_point/prior_stddev", config.insertion_point.prior_stddev);
+  readNumber(reader, "insertion_point/correction_rate", config.insertion_point.correction_rate);
   readNumber(reader, "insertion_point/wobble", config.insertion_point.estimator.wobble);
   readNumber(reader, "insertion_point/warning_residual", config.insertion_point.estimator.warning_residual);
   readNumber(reader, "insertion_point/stop_residual", config.insertion_point.estimator.stop_residual);

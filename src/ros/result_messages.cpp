@@ -73,6 +73,7 @@ Homography homographyMessage(const Processed& processed) {
 TaskError taskErrorMessage(const Processed& processed) {
   TaskError message;
   message.header = processed.header;
+  message.reference_stamp = processed.reference_stamp;
   const tracking::TrackResult& result = processed.result;
   if (result.state != tracking::State::kTracking || !processed.camera) return message;
   servo::TaskError error;

@@ -66,6 +66,7 @@ class Loop {
   SimulationSample control(double time) {
     servo::ControllerInput input;
     input.time = time;
+    input.robot = {"", true, 0.0};
     while (!images_.empty() && images_.front().first + config_.image_delay <= time + 1e-9) {
       latest_ = images_.front();
       images_.pop_front();

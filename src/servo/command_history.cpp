@@ -14,8 +14,9 @@ void CommandHistory::add(double time, const ScopeVelocity& velocity) {
 Eigen::Vector4d CommandHistory::displacement(double begin, double end, double delay) const {
   Eigen::Vector4d sum = Eigen::Vector4d::Zero();
   for (std::size_t k = 0; k < commands_.size(); ++k) {
-    const double from = std::max(begin, commands_[k].time + delay);
-    const double to = k + 1 < commands_.size() ? std::min(end, commands_[k + 1].time + delay) : end;
+    const double until = commands_[k].time + lifetime_;
+    const double over = k + 1 < commands_.size() ? std::min(until, commands_[k + 1].time) : until;
+    const double from = std::max(begin, commands_[k].time + delay), to = std::min(end, over + delay);
     if (to > from) sum += (to - from) * commands_[k].velocity;
   }
   return sum;
@@ -23,7 +24,9 @@ Eigen::Vector4d CommandHistory::displacement(double begin, double end, double de
 
 Eigen::Vector4d CommandHistory::velocity(double time, double delay) const {
   for (auto command = commands_.rbegin(); command != commands_.rend(); ++command) {
-    if (command->time + delay <= time) return command->velocity;
+    if (command->time + delay > time) continue;
+    if (time < command->time + lifetime_ + delay) return command->velocity;
+    break;
   }
   return Eigen::Vector4d::Zero();
 }

@@ -1,6 +1,7 @@
 #include "laparoscope_servo/servo/controller.h"
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 #include <stdexcept>
 
@@ -36,7 +37,8 @@ Controller::Controller(const ControllerConfig& config)
     : config_(checked(config)),
       servo_(config),
       machine_(config.safety),
-      insertion_point_(config.insertion_point.estimator, priorOf(config.insertion_point)) {}
+      insertion_point_(config.insertion_point.estimator, priorOf(config.insertion_point)),
+      d2_correction_(config.insertion_point.correction_rate) {}
 
 SafetyFacts Controller::facts(const ControllerInput& input) const {
   SafetyFacts facts;
@@ -44,24 +46,30 @@ SafetyFacts Controller::facts(const ControllerInput& input) const {
   facts.clock_jump = input.clock_jump;
   facts.residual = insertion_point_.residualLevel();
   facts.robot = input.robot;
-  facts.pose = {input.depth.problem, input.depth.age, d2(input), input.depth.lateral_offset};
+  facts.pose = {input.depth.problem, input.depth.age, d2(input), input.depth.lateral_offset,
+                std::abs(d2_correction_.wanted())};
   facts.dead_man = input.dead_man;
   if (task_ == Task::kManual) {
     facts.tracker = nothingMissing();
     return facts;
   }
   const TaskErrorInput& task = input.task_error;
-  facts.tracker = {task.problem, task.age, task.image_age, task.valid, task.visible_fraction, task.corner_error};
+  facts.tracker = {task.problem, task.age, task.image_age, task.valid, task.region, task.visible_fraction, task.corner_error};
   if (task.problem.empty() && task.valid && !isFinite(task.error)) facts.tracker.problem = "task error is not finite";
   return facts;
 }
 
 // What is estimated takes the place of the calibration, which is its prior: where the poses tell nothing, they agree.
-double Controller::d2(const ControllerInput& input) const {
+double Controller::d2(const ControllerInput& input) const { return input.depth.d2 + d2_correction_.value(); }
+
+void Controller::correctDepth(const ControllerInput& input) {
   const InsertionPointEstimate& estimate = insertion_point_.estimate();
-  if (!config_.insertion_point.use || !input.depth.insertion_point_T_tip || !estimate.valid) return input.depth.d2;
-  const Eigen::Isometry3d& tip = *input.depth.insertion_point_T_tip;
-  return shaftDepth(estimate, {tip.translation(), tip.linear().col(2)}, 0.0).d2;
+  double wanted = 0.0;
+  if (config_.insertion_point.use && input.depth.insertion_point_T_tip && estimate.valid) {
+    const Eigen::Isometry3d& tip = *input.depth.insertion_point_T_tip;
+    wanted = shaftDepth(estimate, {tip.translation(), tip.linear().col(2)}, 0.0).d2 - input.depth.d2;
+  }
+  d2_correction_.update(input.time, wanted);
 }
 
 std::string Controller::engage(const ControllerInput& input) {
@@ -108,6 +116,7 @@ ControllerOutput Controller::update(const ControllerInput& input) {
     const Eigen::Isometry3d& tip = *input.depth.insertion_point_T_tip;
     insertion_point_.update(input.time, {tip.translation(), tip.linear().col(2)});
   }
+  correctDepth(input);
   SafetyFacts known = facts(input);
   SafetyOutput safety = machine_.step(known);
   ControllerOutput output;
@@ -149,6 +158,8 @@ ServoInput Controller::servoInput(const ControllerInput& input) const {
   servo.image_time = input.task_error.image_time.value_or(input.time - input.task_error.image_age);
   servo.error = input.task_error.error;
   servo.scope = {input.depth.camera_R_shaft, d2(input)};
+  servo.d2_doubt = std::abs(d2_correction_.wanted());
+  servo.pose_time = input.time - input.depth.age;
   servo.insertion_point_T_tip = input.depth.insertion_point_T_tip;
   servo.period = has_time_ ? std::min(input.time - last_time_, config_.safety.max_period) : 0.0;
   return servo;

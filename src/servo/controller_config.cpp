@@ -51,6 +51,7 @@ void checkLaws(const ControllerConfig& config, Checker& check) {
   check.range("predictor/max_delay", predictor.max_delay, 0.0, 1.0, "s");
   check.atLeast("predictor/max_delay", predictor.max_delay, "predictor/min_delay", predictor.min_delay);
   check.range("predictor/delay", predictor.delay, std::max(0.0, predictor.min_delay), std::min(1.0, predictor.max_delay), "s");
+  check.range("predictor/command_lifetime", predictor.command_lifetime, 0.02, 2.0, "s");
 }
 
 void checkTarget(const TargetMotionConfig& config, Checker& check) {
@@ -100,6 +101,7 @@ void checkRange(const WorkRange& range, Checker& check) {
 
 void checkInsertionPoint(const InsertionPointUse& config, Checker& check) {
   check.range("insertion_point/prior_stddev", config.prior_stddev, 0.0, 1.0, "m");
+  check.range("insertion_point/correction_rate", config.correction_rate, 0.0, 0.1, "m/s");
   for (const std::string& error : validate(config.estimator)) check.add("insertion_point/" + error);
 }
 

@@ -14,6 +14,11 @@ Eigen::Matrix4d featureJacobian(double x, double y, double depth, const ScopeGeo
   return interaction * insertionPointMotions(scope);
 }
 
+double shortTurn(double turn) {
+  constexpr double kLongest = 3.5;  // half a turn and what noise adds to it
+  return std::abs(turn) < kLongest ? turn : std::remainder(turn, 2.0 * M_PI);
+}
+
 double depthOf(const TaskError& error, double desired_depth) {
   return desired_depth * std::exp(error.log_depth - error.desired_log_depth);
 }
@@ -31,7 +36,7 @@ LawVelocity FeatureLaw::velocity(const TaskError& error, const ScopeGeometry& sc
     return velocity;
   }
   const Eigen::Matrix4d inverse = j.inverse();
-  const double turn = std::remainder(error.alpha - error.desired_alpha, 2.0 * M_PI);
+  const double turn = shortTurn(error.alpha - error.desired_alpha);
   velocity.centring = ScopeVelocity::fromVector(inverse.leftCols<3>() * centring);
   velocity.turning = ScopeVelocity::fromVector(inverse.col(3) * (-gains_.orientation * turn));
   return velocity;

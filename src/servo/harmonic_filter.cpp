@@ -53,11 +53,13 @@ void HarmonicFilter::seed(double frequency, double stddev) {
   seed_ = frequency;
   seed_stddev_ = stddev;
   locked_ = running_ = false;
+  startSearching();
 }
 
 void HarmonicFilter::unseed() {
   seed_.reset();
   locked_ = running_ = false;
+  startSearching();
 }
 
 void HarmonicFilter::reset() {
@@ -66,6 +68,13 @@ void HarmonicFilter::reset() {
   shift_ = Channels::Zero(channels_);
   usual_ = 0.0;
   locked_ = running_ = false;
+  startSearching();
+}
+
+void HarmonicFilter::startSearching() {
+  share_ = 0.0;
+  searched_ = false;
+  seed_counts_ = true;
 }
 
 bool HarmonicFilter::update(double time, const Eigen::VectorXd& z, double stddev) {
@@ -89,8 +98,14 @@ bool HarmonicFilter::update(double time, const Eigen::VectorXd& z, double stddev
   }
   if (!locked_ && time >= next_search_) {
     next_search_ = time + kSearchPeriod;
-    search();
+    // A seed that did not lock may be wrong: every other search does without.
+    if (searched_) seed_counts_ = !seed_counts_;
+    searched_ = true;
+    running_ = false;
+    share_ = 1.0;
   }
+  // One window a sample: a controller waits for it.
+  if (!locked_ && share_ > 0.0) search();
   return true;
 }
 
@@ -155,7 +170,7 @@ Channels HarmonicFilter::meanUntil(std::size_t last, double seconds) const {
 
 FrequencyBand HarmonicFilter::band() const {
   FrequencyBand band{config_.min_frequency, config_.max_frequency};
-  if (seed_) {
+  if (seeded()) {
     band.minimum = std::max(band.minimum, *seed_ - 3.0 * seed_stddev_);
     band.maximum = std::min(band.maximum, *seed_ + 3.0 * seed_stddev_);
   }
@@ -178,20 +193,17 @@ FoundFrequency HarmonicFilter::findIn(double seconds) {
     bin.time += (sample.time - bin.time) / n;
     bin.z += (sample.z - bin.z) / n;
   }
-  return findFrequency(binned_, band(), 0.5 * history_.back().stddev, seed_ ? kSeededPeriods : kPeriods);
+  return findFrequency(binned_, band(), 0.5 * history_.back().stddev, seeded() ? kSeededPeriods : kPeriods);
 }
 
 void HarmonicFilter::search() {
-  running_ = false;
-  double seconds = history_.back().time - history_.front().time;
-  FoundFrequency found = findIn(seconds);
-  bool good = found.found && found.unexplained < kMaxUnexplained;
+  const bool whole = share_ == 1.0;
+  const double seconds = share_ * (history_.back().time - history_.front().time);
   // What lies further back may be of another time: a breath held, the patient moved.
-  while (!good && (seconds *= kShorter) > kShortest) {
-    found = findIn(seconds);
-    good = found.found && found.unexplained < 0.5 * kMaxUnexplained;
-  }
-  if (!good) return;
+  share_ = kShorter * seconds > kShortest ? kShorter * share_ : 0.0;
+  const FoundFrequency found = findIn(seconds);
+  if (!(found.found && found.unexplained < (whole ? 1.0 : 0.5) * kMaxUnexplained)) return;
+  share_ = 0.0;
   while (history_.front().time < history_.back().time - seconds - kBin) history_.pop_front();
   start(found.frequency);
   for (std::size_t i = 0; i < history_.size(); ++i) step(i);
@@ -210,7 +222,7 @@ void HarmonicFilter::start(double frequency) {
   for (const Sample& sample : history_) squares += (sample.z - mean).squaredNorm();
   const double amplitude = std::sqrt(2.0 * squares / static_cast<double>(history_.size()) / channels_);
   const double length = history_.back().time - history_.front().time;
-  kalman_.start(started_, history_.front().z, frequency, seed_ ? seed_stddev_ : 0.05 / length, amplitude);
+  kalman_.start(started_, history_.front().z, frequency, seeded() ? seed_stddev_ : 0.05 / length, amplitude);
 }
 
 void HarmonicFilter::step(std::size_t index) {
@@ -223,7 +235,7 @@ void HarmonicFilter::step(std::size_t index) {
   kalman_.predictTo(sample.time, walks);
   if (sample.jumped) kalman_.loosenOffset(5.0 * sample.stddev);
   if (sample.time - started_ > 1.0 / kalman_.frequency()) score(sample, dt);
-  const double margin = seed_ ? seed_stddev_ : 0.0;
+  const double margin = seeded() ? seed_stddev_ : 0.0;
   const FrequencyBand bounds = band();
   kalman_.correct(sample.z, sample.stddev, bounds.minimum - margin, bounds.maximum + margin);
   snapshots_.push_back({sample.time, kalman_.state(), meanUntil(index, 0.12), lineUntil(index, 0.5)});

@@ -38,7 +38,6 @@ void HarmonicKalman::predictTo(double time, const Walks& walks) {
   time_ = time;
   if (!(dt > 0.0)) return;
   const double f = x_[0];
-  f_ = Covariance::Identity(x_.size(), x_.size());
   for (int c = 0; c < channelCount(x_); ++c) {
     for (int k = 1; k <= harmonics_; ++k) {
       const int i = phasorIndex(c, k);
@@ -47,11 +46,14 @@ void HarmonicKalman::predictTo(double time, const Walks& walks) {
       turn << std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle);
       const Eigen::Vector2d turned = turn * x_.segment<2>(i);
       x_.segment<2>(i) = turned;
-      f_.block<2, 2>(i, i) = turn;
-      f_.block<2, 1>(i, 0) = kTwoPi * k * dt * Eigen::Vector2d(-turned[1], turned[0]);
+      // P := F P F', where F turns this pair and adds to it by the frequency, and leaves the rest.
+      const Eigen::Vector2d by_frequency = kTwoPi * k * dt * Eigen::Vector2d(-turned[1], turned[0]);
+      rows_ = turn * p_.middleRows<2>(i) + by_frequency * p_.row(0);
+      p_.middleRows<2>(i) = rows_;
+      columns_ = p_.middleCols<2>(i) * turn.transpose() + p_.col(0) * by_frequency.transpose();
+      p_.middleCols<2>(i) = columns_;
     }
   }
-  p_ = (f_ * p_).eval() * f_.transpose();
   p_(0, 0) += walks.frequency * walks.frequency * dt;
   for (int c = 0; c < channelCount(x_); ++c) {
     p_(offsetIndex(c), offsetIndex(c)) += walks.offset * walks.offset * dt;

@@ -34,6 +34,11 @@ std::string text(const Parts&... parts) {
   return stream.str();
 }
 
+bool isOfTracker(Condition condition) {
+  return condition == Condition::kTrackerUnusable || condition == Condition::kTrackerSilent ||
+         condition == Condition::kImageOld || condition == Condition::kTrackerInvalid || condition == Condition::kOccluded;
+}
+
 std::string when(bool holds, const std::string& reason) {
   return holds ? reason : std::string();
 }
@@ -54,6 +59,7 @@ const std::vector<SafetyTransition>& safetyTransitions() {
       {kEngaged, Condition::kShaftOffInsertionPoint, State::kFault, disengage},
       {kEngaged | kLost | kFault, Condition::kDisengaged, State::kIdle, engage},
       {kHold, Condition::kHeldTooLong, State::kLost, engage},
+      {kHold, Condition::kRegionChanged, State::kLost, engage},
       {kEngaged, Condition::kRobotSilent, State::kHold, by_itself},
       {kEngaged, Condition::kRobotNotEnabled, State::kHold, by_itself},
       {kEngaged, Condition::kPoseUnknown, State::kHold, by_itself},
@@ -77,7 +83,7 @@ SafetyOutput SafetyMachine::step(const SafetyFacts& facts) {
     if (!transition.contains(state_)) continue;
     const std::string why = cause(transition.condition, facts);
     if (why.empty()) continue;
-    enter(transition, why, facts.time);
+    enter(transition, why, facts);
     break;
   }
   // A pause counts only while somebody may expect motion.
@@ -98,8 +104,13 @@ std::string SafetyMachine::refusal(const SafetyFacts& facts) const {
   return "";
 }
 
-void SafetyMachine::enter(const SafetyTransition& transition, const std::string& cause, double time) {
-  if (transition.to == State::kHold && state_ != State::kHold) hold_since_ = time;
+void SafetyMachine::enter(const SafetyTransition& transition, const std::string& cause, const SafetyFacts& facts) {
+  if (transition.to == State::kHold && state_ != State::kHold) {
+    hold_since_ = facts.time;
+    held_region_ = facts.tracker.region;
+    held_for_arm_ = false;
+  }
+  if (transition.to == State::kHold && !isOfTracker(transition.condition)) held_for_arm_ = true;
   const bool needs_somebody = transition.to == State::kLost || transition.to == State::kFault;
   reason_ = needs_somebody ? cause + "; " + transition.way_on : cause;
   state_ = transition.to;
@@ -134,6 +145,9 @@ std::string SafetyMachine::cause(SafetyCondition condition, const SafetyFacts& f
                   text("the shaft passes the insertion point at more than ", c.max_lateral_offset, " m"));
     case Condition::kHeldTooLong:
       return when(facts.time - hold_since_ >= c.resume_time, text("held for ", c.resume_time, " s: ", reason_));
+    case Condition::kRegionChanged:
+      return when(held_for_arm_ && held_region_ && tracker.region && *tracker.region != *held_region_,
+                  "another region was selected while the arm was waited for");
     case Condition::kRobotSilent:
       if (!c.robot_required) return "";
       if (!robot.problem.empty()) return robot.problem;
@@ -146,7 +160,7 @@ std::string SafetyMachine::cause(SafetyCondition condition, const SafetyFacts& f
     case Condition::kPoseOld:
       return when(!isFresh(pose.age, c.max_depth_age), text("depth d2 is older than ", c.max_depth_age, " s"));
     case Condition::kDepthOutOfRange:
-      return when(!(pose.d2 >= c.min_depth && pose.d2 <= c.max_depth),
+      return when(!(pose.d2 - pose.d2_doubt >= c.min_depth && pose.d2 + pose.d2_doubt <= c.max_depth),
                   text("depth d2 is not between ", c.min_depth, " and ", c.max_depth, " m"));
     case Condition::kTrackerUnusable:
       return tracker.problem;

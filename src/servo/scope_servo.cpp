@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kSameImage = 1e-6;  // s, rounding
 constexpr double kBlocked = 0.3;     // s, for which the robot does not do what it was told
-constexpr double kHistory = 5.0;  // s, more than the oldest image and the longest delay
+constexpr double kHistory = 5.0;     // s, more than the oldest image and the longest delay
 
 std::unique_ptr<ControlLaw> lawOf(const ControllerConfig& config) {
   if (config.law == LawKind::kPaper) return std::make_unique<PaperLaw>(config.gains);
@@ -48,7 +48,7 @@ ScopeServo::ScopeServo(const ControllerConfig& config)
       band_(config.rest),
       oscillation_(config.oscillation),
       limiter_(beforeDeadZone(config)),
-      history_(kHistory),
+      history_(kHistory, config.predictor.command_lifetime),
       delay_(delayConfig(config.predictor)),
       target_(config.target),
       breathing_(config.breathing, config.target) {}
@@ -71,6 +71,7 @@ void ScopeServo::forgetTarget() {
   target_.reset();
   breathing_.reset();
   has_image_ = false;
+  turn_ = 0.0;
   displacement_.setZero();
 }
 
@@ -107,8 +108,12 @@ TaskError ScopeServo::oriented(const ServoInput& input) const {
   error.e_w.setZero();
   if (config_.spin == SpinMode::kReleased || !input.insertion_point_T_tip) return error;
   const Eigen::Vector3d up(config_.horizon.up[0], config_.horizon.up[1], config_.horizon.up[2]);
-  const Eigen::Matrix3d camera_R_base = input.scope.camera_R_shaft * input.insertion_point_T_tip->linear().transpose();
-  error.alpha = horizonAngle(camera_R_base * up).value_or(0.0);
+  // When the image was taken, by what the scope has done before or after the pose.
+  const Eigen::Vector4d since = history_.displacement(input.image_time, input.pose_time, delay()) -
+                                history_.displacement(input.pose_time, input.image_time, delay());
+  const Eigen::Matrix3d pose_R_image = geometry::so3Exp(-angularVelocity(ScopeVelocity::fromVector(since)));
+  const Eigen::Matrix3d base_R_shaft = input.insertion_point_T_tip->linear() * pose_R_image;
+  error.alpha = horizonError(input.scope.camera_R_shaft * base_R_shaft.transpose() * up);
   return error;
 }
 
@@ -163,6 +168,11 @@ ScopeVelocity ScopeServo::command(const ServoInput& input, const ServoLimits& li
     error = moved(error, history_.displacement(image_time_, input.time + delay(), delay()), input.scope, config_.features.desired_depth);
   }
   if (!follow.vector().allFinite()) return follow;
+  // Half a turn away both ways are as long: the one that was begun is gone on with.
+  const double turn = error.alpha - error.desired_alpha;
+  const double same_way = turn_ + std::remainder(turn - turn_, 2.0 * M_PI);
+  turn_ = shortTurn(same_way);
+  error.alpha = error.desired_alpha + turn_;
   const bool follows = follow.vector() != Eigen::Vector4d::Zero();
   const LawVelocity wanted = law_->velocity(follows ? error : band_.apply(error, input.time), input.scope);
   if (!wanted.sum().vector().allFinite()) return wanted.sum();
@@ -179,8 +189,9 @@ ScopeVelocity ScopeServo::drive(const ServoInput& input, const ScopeVelocity& wa
 
 ScopeVelocity ScopeServo::send(const ServoInput& input, ScopeVelocity velocity) {
   const Eigen::Vector4d free = velocity.vector();
-  velocity = input.insertion_point_T_tip ? within(config_.range, velocity, input.scope.d2, input.insertion_point_T_tip->linear())
-                                         : within(config_.range, velocity, input.scope.d2);
+  const double d2 = input.scope.d2 + std::copysign(input.d2_doubt, velocity.insertion);
+  velocity = input.insertion_point_T_tip ? within(config_.range, velocity, d2, input.insertion_point_T_tip->linear())
+                                         : within(config_.range, velocity, d2);
   at_bound_ = velocity.vector() != free;
   limiter_.applied(velocity);
   const ScopeVelocity command = config_.dead_zone.inverse ? throughDeadZone(velocity, config_.dead_zone.width) : velocity;

@@ -28,7 +28,8 @@ void TargetMotion::observe(double time, const Features& place, const Features& m
     axis.covariance.diagonal() += Eigen::Vector2d(wander[k] + acceleration[k] * dt * dt / 3.0, acceleration[k]);
     axis.covariance(0, 1) += 0.5 * acceleration[k] * dt;
     axis.covariance(1, 0) = axis.covariance(0, 1);
-    const double innovation = place[k] - axis.state[0];
+    double innovation = place[k] - axis.state[0];
+    if (k == 3) innovation = std::remainder(innovation, 2.0 * M_PI);  // a turn more is the same orientation
     const double expected = axis.covariance(0, 0) + noise[k];
     if (!(innovation * innovation < config_.jump * config_.jump * expected)) {  // another target: it stands until it is seen to move
       axis = {Eigen::Vector2d(place[k], 0.0), Eigen::Vector2d(noise[k], 0.0).asDiagonal(), false};
@@ -50,8 +51,9 @@ TargetPrediction TargetMotion::predict(double time) const {
     const Axis& axis = axes_[k];
     prediction.place[k] = axis.state[0];
     if (!axis.moves) continue;
-    prediction.velocity[k] = std::exp(-config_.damping * ahead) * axis.state[1];
-    prediction.place[k] += ahead * axis.state[1];
+    const double kept = std::exp(-config_.damping * ahead);
+    prediction.velocity[k] = kept * axis.state[1];
+    prediction.place[k] += axis.state[1] * (config_.damping > 0.0 ? (1.0 - kept) / config_.damping : ahead);
   }
   return prediction;
 }

@@ -12,6 +12,7 @@
 
 #include <atomic>
 #include <functional>
+#include <memory>
 #include <string>
 
 #include "laparoscope_servo/ScopeVelocity.h"
@@ -19,6 +20,7 @@
 #include "laparoscope_servo/ros/aesop_diagnostics.h"
 #include "laparoscope_servo/ros/aesop_parameters.h"
 #include "laparoscope_servo/ros/command_master.h"
+#include "laparoscope_servo/ros/service_callers.h"
 
 namespace laparoscope_servo::skin {
 
@@ -45,7 +47,7 @@ class AesopNode {
   static bool repeatUntil(const std::function<bool()>& done, double seconds, const std::function<void()>& step);
 
   void onCommand(const ros::MessageEvent<ScopeVelocity const>& event);
-  void report(const std::string& refusal, double& next, double now);
+  void report(const std::string& refusal, double& next, double pause, double now);
 
   // Each returns what the service answers.
   Response enable();
@@ -58,6 +60,7 @@ class AesopNode {
   enum class Callers { kAll, kNamed };
   void advertise(const std::string& name, Action action, Callers callers);
 
+  void watchRecording();
   void publishStatus();
   // The driver's, with what it does not know: whose commands were refused.
   aesop::OperatingState state(double now) const;
@@ -66,10 +69,12 @@ class AesopNode {
 
   AesopParameters parameters_;
   Eigen::Matrix3d tip_R_optical_;
+  std::unique_ptr<aesop::WireLogFile> recording_;  // outlives the driver that it listens to; null: none
+  bool recording_ended_ = false;                   // and was reported
   aesop::Driver driver_;
   aesop::Reconnect reconnect_;
   CommandMaster master_;
-  std::vector<std::string> service_callers_;  // resolved
+  ServiceCallers callers_;
   aesop::SerialTransport transport_;
   AesopDiagnostics reported_;
   double next_diagnostics_ = 0.0;  // s, steady

@@ -7,6 +7,7 @@
 
 #include "laparoscope_servo/aesop/driver.h"
 #include "laparoscope_servo/aesop/reconnect.h"
+#include "laparoscope_servo/aesop/wire_log_file.h"
 #include "laparoscope_servo/ros/parameters.h"
 #include "laparoscope_servo/sim/emulator.h"
 
@@ -23,6 +24,7 @@ struct AesopParameters {
   std::string publisher = "controller";
   // Nodes that may call enable, resume and clear_fault; none: every node.
   std::vector<std::string> service_callers;
+  aesop::WireLogConfig wire_log;
   double optics_angle = 0.0;  // rad, between the shaft and the optical axis, -1.3 to 1.3
   double optics_roll = 0.0;   // rad, of the camera about the shaft, -3.2 to 3.2
 };

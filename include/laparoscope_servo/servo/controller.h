@@ -12,6 +12,7 @@
 #include "laparoscope_servo/servo/insertion_point_estimator.h"
 #include "laparoscope_servo/servo/safety_machine.h"
 #include "laparoscope_servo/servo/scope_servo.h"
+#include "laparoscope_servo/servo/slow_correction.h"
 
 namespace laparoscope_servo::servo {
 
@@ -24,6 +25,7 @@ enum class Task {
 struct TaskErrorInput {
   std::string problem = "no task error was received";  // why there is none that could be used; empty: there is
   bool valid = false;                                  // the tracker's own word
+  double region = 0.0;                                 // another number is another region of interest
   TaskError error;
   double age = std::numeric_limits<double>::infinity();           // s, since the message came
   double image_age = std::numeric_limits<double>::infinity();     // s, since the image was taken
@@ -109,6 +111,7 @@ class Controller {
  private:
   SafetyFacts facts(const ControllerInput& input) const;
   double d2(const ControllerInput& input) const;
+  void correctDepth(const ControllerInput& input);
   ServoInput servoInput(const ControllerInput& input) const;
   ScopeVelocity drive(const ControllerInput& input);
   std::string manualProblem(const ManualInput& manual) const;
@@ -119,6 +122,7 @@ class Controller {
   Task task_ = Task::kHoldView;
   bool task_changed_ = false;  // since the last step
   InsertionPointEstimator insertion_point_;
+  SlowCorrection d2_correction_;  // m
   bool has_time_ = false;
   double last_time_ = 0.0;  // s, of the last step
 };

@@ -28,6 +28,7 @@ struct PredictorConfig {
   double min_delay = 0.0;    // s, nothing less is measured
   double max_delay = 0.4;    // s, nor more
   bool feed_forward = true;  // the target's own velocity is added to the law's
+  double command_lifetime = 0.2;  // s, for which the robot does what it was told last, before it stops by itself
 };
 
 // The breath, as far as it moves the target.
@@ -42,6 +43,7 @@ struct BreathingConfig {
 struct InsertionPointUse {
   bool use = true;             // false: the calibration is taken for true, and nothing watches it
   double prior_stddev = 0.01;  // m, of the calibration, per axis; 0: it counts for nothing
+  double correction_rate = 0.005;  // m/s, at which the d2 that is used goes from the calibration's to the estimate's
   InsertionPointConfig estimator;
 };
 

@@ -27,6 +27,9 @@ enum class SpinMode {
 // ROI's centre now, `x`, `y` normalised.
 Eigen::Matrix4d featureJacobian(double x, double y, double depth, const ScopeGeometry& scope);
 
+// rad, of a turn: the shorter way round, unless both are about as long.
+double shortTurn(double turn);
+
 // Z [m] from the log depth of the features.
 double depthOf(const TaskError& error, double desired_depth);
 

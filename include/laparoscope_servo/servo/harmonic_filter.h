@@ -35,7 +35,8 @@ class HarmonicFilter {
   // configuration or the number of channels is not valid.
   HarmonicFilter(const HarmonicFilterConfig& config, int channels);
 
-  // The frequency is known [Hz], with a standard deviation; forgets what was found before. Throws std::invalid_argument
+  // The frequency is known [Hz], with a standard deviation; forgets what was found before. Where nothing periodic is
+  // found at it, another is searched. Throws std::invalid_argument
   // unless it lies within the bounds and the standard deviation is at least 0 and finite.
   void seed(double frequency, double stddev);
 
@@ -90,6 +91,8 @@ class HarmonicFilter {
   void score(const Sample& sample, double dt);
   double longMemory() const;
   void judge(double stddev);
+  void startSearching();
+  bool seeded() const { return seed_ && seed_counts_; }
   void search();
   FoundFrequency findIn(double seconds);
   FrequencyBand band() const;
@@ -110,7 +113,10 @@ class HarmonicFilter {
   double scored_ = 0.0;   // s, of predictions that were judged
   Errors long_;
   Errors short_;
-  double next_search_ = 0.0;
+  double next_search_ = 0.0;  // s
+  double share_ = 0.0;        // of the samples, in which to search next; 0: no search is under way
+  bool searched_ = false;
+  bool seed_counts_ = true;
 };
 
 }  // namespace laparoscope_servo::servo

@@ -61,7 +61,8 @@ class HarmonicKalman {
   double time_ = 0.0;
   State x_;
   Covariance p_;
-  Covariance f_;
+  Eigen::Matrix<double, 2, Eigen::Dynamic, 0, 2, kMaxStates> rows_;
+  Eigen::Matrix<double, Eigen::Dynamic, 2, 0, kMaxStates, 2> columns_;
 };
 
 }  // namespace laparoscope_servo::servo

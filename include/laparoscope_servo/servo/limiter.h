@@ -2,8 +2,9 @@
 //
 // All four components of a part are scaled together, so that the ROI takes the same path in the image, only slower. What has to be limited
 // comes in parts: all of it is scaled until it fits, and then each part, the first ones first, grows into the room that is left. A change beyond the acceleration's limit
-// scales the whole change, so that the command goes straight from the last one to the wanted one. Both limits hold for each component,
-// whatever is asked for.
+// scales the whole change, so that the command goes straight from the last one to the wanted one: while it is on the way there, the direction
+// is neither's. Both limits hold for each component, whatever is asked for, unless the limits on velocity fall: the new ones are reached as fast
+// as the acceleration allows.
 #pragma once
 
 #include <initializer_list>

@@ -5,7 +5,8 @@
 //   SERVO  the only state in which the scope moves
 //   HOLD   engaged, but something that motion relies on is missing for now; goes on by itself when it comes back within
 //          `resume_time`, so that an instrument may cross the region
-//   LOST   was missing for longer: engaged no more, somebody has to look at the arm and engage again
+//   LOST   was missing for longer, or another region was selected while it was the arm that was waited for: engaged no
+//          more, somebody has to look at the arm and engage again
 //   FAULT  something that must not be: only disengaging clears it
 //
 // Whatever is not SERVO commands exactly zero, at once. One table holds all transitions, see safetyTransitions(). Pure:
@@ -13,6 +14,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -45,6 +47,7 @@ struct PoseFacts {
   double age = std::numeric_limits<double>::infinity();
   double d2 = 0.0;              // m, along the shaft from the insertion point to the camera
   double lateral_offset = 0.0;  // m, of the insertion point from the shaft
+  double d2_doubt = 0.0;        // m, by which d2 may be less or more
 };
 
 struct TrackerFacts {
@@ -52,6 +55,7 @@ struct TrackerFacts {
   double age = std::numeric_limits<double>::infinity();           // since it came
   double image_age = std::numeric_limits<double>::infinity();     // since the image behind it was taken
   bool valid = false;                                             // the tracker's own word
+  std::optional<double> region;                                   // another number is another region of interest
   double visible_fraction = 0.0;                                  // 0 to 1, of the region of interest
   double corner_error = std::numeric_limits<double>::infinity();  // px, expected of the worst corner
 };
@@ -93,6 +97,7 @@ enum class SafetyCondition {
   kResidualStop,
   kShaftOffInsertionPoint,
   kHeldTooLong,
+  kRegionChanged,
   kRobotSilent,
   kRobotNotEnabled,
   kPoseUnknown,
@@ -138,7 +143,7 @@ class SafetyMachine {
   bool clockJumped(double time) const;
   // The reason when the condition holds, empty when it does not.
   std::string cause(SafetyCondition condition, const SafetyFacts& facts) const;
-  void enter(const SafetyTransition& transition, const std::string& cause, double time);
+  void enter(const SafetyTransition& transition, const std::string& cause, const SafetyFacts& facts);
   SafetyOutput output(const SafetyFacts& facts) const;
 
   SafetyConfig config_;
@@ -147,6 +152,8 @@ class SafetyMachine {
   bool has_time_ = false;
   double last_time_ = 0.0;   // s, of the last step while engaged
   double hold_since_ = 0.0;  // s
+  std::optional<double> held_region_;
+  bool held_for_arm_ = false;  // not for the tracker alone, which says nothing while it learns another region
 };
 
 }  // namespace laparoscope_servo::servo

@@ -22,7 +22,9 @@ struct ServoInput {
   TaskError error;
   ScopeGeometry scope;
   std::optional<Eigen::Isometry3d> insertion_point_T_tip;  // with the shaft's axes; without it, no cone and no horizon
-  double period = 0.0;  // s, since the last command, 0 for the first
+  double d2_doubt = 0.0;   // m, by which d2 may be less or more
+  double pose_time = 0.0;  // s, of the scope's pose, on the same clock
+  double period = 0.0;     // s, since the last command, 0 for the first
 };
 
 struct ServoLimits {
@@ -97,6 +99,7 @@ class ScopeServo {
   Eigen::Matrix4d jacobian_ = Eigen::Matrix4d::Identity();  // of the features at the reference, see target_motion.h
   Eigen::Vector4d displacement_ = Eigen::Vector4d::Zero();  // of the scope at the last image, since the first
   Eigen::Vector4d to_target_ = Eigen::Vector4d::Zero();     // in the last image
+  double turn_ = 0.0;                                       // rad, of the last command, alpha
 };
 
 }  // namespace laparoscope_servo::servo

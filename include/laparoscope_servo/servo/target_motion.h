@@ -1,8 +1,8 @@
 // Where the target is, and how it moves by itself.
 //
 // The target's place is told in the features (x, y, log depth, alpha) as a camera at the reference would see them: what is left to do
-// according to the image, plus the way that the scope has come, both to first order. It stands still when the tissue does, however
-// the scope moves. A Kalman filter for each feature, with a place and a velocity. What the scope itself does is not known exactly - the depths
+// according to the image, plus the sum of the scope's small motions, each in the axes that it had then. It stands still when the tissue does:
+// exactly for motions along one direction, to first order in their angles otherwise. A Kalman filter for each feature, with a place and a velocity. What the scope itself does is not known exactly - the depths
 // d2 and Z* are believed, the delay is -, so that its motion is part of the process noise.
 #pragma once
 

@@ -3,38 +3,13 @@
 
 #include <limits>
 
-#include "fake_cart.h"
+#include "controller_fixture.h"
 
 namespace laparoscope_servo {
 namespace {
 
-class ControllerEngage : public ::testing::Test {
+class ControllerEngage : public ControllerFixture {
  protected:
-  // One for all tests: connections take longer than the tests.
-  static FakeCart& cart() {
-    static FakeCart instance;
-    return instance;
-  }
-  static void TearDownTestSuite() { cart().end(); }
-
-  void SetUp() override {
-    cart_.set([](Feed& feed) {
-      feed = Feed();
-      feed.message = offTarget();
-    });
-    ASSERT_TRUE(cart_.waitForController());
-    bool success = false;
-    cart_.engage(false, success);
-    ASSERT_TRUE(success);
-  }
-
-  void engageAndMove() {
-    cart_.set([](Feed& feed) { feed.message = offTarget(); });
-    ASSERT_TRUE(cart_.engageWhenReady());
-    ASSERT_TRUE(cart_.waitForState(ControllerState::SERVO));
-    ASSERT_TRUE(waitFor([this] { return cart_.moves(); }));
-  }
-
   // After this change of what is published, the arm stands and the reason holds these words.
   void expectHold(const std::function<void(Feed&)>& change, const std::string& words) {
     engageAndMove();
@@ -70,8 +45,6 @@ class ControllerEngage : public ::testing::Test {
     EXPECT_TRUE(cart_.stands());
     EXPECT_EQ(cart_.state().state, ControllerState::IDLE);
   }
-
-  FakeCart& cart_ = cart();
 };
 
 TEST_F(ControllerEngage, PublishesZerosWhileNotEngaged) {
@@ -125,6 +98,41 @@ TEST_F(ControllerEngage, HoldsWhenTheTrackerLosesAndResumes) {
   cart_.set([](Feed& feed) { feed.message.valid = true; });
   EXPECT_TRUE(cart_.waitForState(ControllerState::SERVO, 1.0));
   EXPECT_TRUE(waitFor([this] { return cart_.moves(); }));
+}
+
+// A region that somebody selects while the scope is held is not followed by itself.
+TEST_F(ControllerEngage, AnotherRegionWhileTheArmIsWaitedForIsLost) {
+  engageAndMove();
+  cart_.set([](Feed& feed) { feed.tf = false; });
+  ASSERT_TRUE(cart_.waitForState(ControllerState::HOLD, 1.0));
+  cart_.set([](Feed& feed) {
+    feed.tf = true;
+    feed.message.reference_stamp = ros::Time(1.0);
+  });
+  ASSERT_TRUE(cart_.waitForState(ControllerState::LOST, 1.0));
+  EXPECT_NE(cart_.state().reason.find("another region"), std::string::npos) << cart_.state().reason;
+  EXPECT_TRUE(cart_.stands());
+}
+
+// A picture that is only turned: a straight scope spins, an oblique one has to turn its tip, too.
+TEST_F(ControllerEngage, ObliqueOpticsServoInTheShaftsAxes) {
+  const auto turned = [](double optics) {
+    return [optics](Feed& feed) {
+      feed.optics = optics;
+      feed.message.x = feed.message.y = feed.message.log_depth = 0.0;
+      feed.message.e_v.x = feed.message.e_v.y = feed.message.e_v.z = 0.0;
+      feed.message.alpha = 0.5;
+    };
+  };
+  engageAndMove();
+  for (const double optics : {0.0, 0.5236}) {
+    cart_.set(turned(optics));
+    const auto settled = [&] {
+      const ScopeVelocity command = cart_.nextCommands(1).back();
+      return command.spin > 0.05 && (std::abs(command.pan) > 0.02) == (optics > 0.0);
+    };
+    EXPECT_TRUE(waitFor(settled)) << optics << ": pan " << cart_.nextCommands(1).back().pan;
+  }
 }
 
 TEST_F(ControllerEngage, IsLostWhenTheTaskErrorStaysAway) {

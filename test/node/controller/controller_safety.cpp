@@ -1,35 +1,13 @@
 // The ways between the safety states, where all that can be asked for is asked for.
-#include "fake_cart.h"
+#include "controller_fixture.h"
 
 namespace laparoscope_servo {
 namespace {
 
-class ControllerSafety : public ::testing::Test {
+class ControllerSafety : public ControllerFixture {
  protected:
-  static FakeCart& cart() {
-    static FakeCart instance;
-    return instance;
-  }
-  static void TearDownTestSuite() { cart().end(); }
-
-  void SetUp() override {
-    cart_.strike([](Feed& feed) { feed = Feed{}, feed.message = offTarget(); });
-    ASSERT_TRUE(cart_.waitForController());
-    bool success = false;
-    cart_.engage(false, success);
-    ASSERT_TRUE(cart_.waitForState(ControllerState::IDLE));
-  }
-
-  void engageAndMove() {
-    ASSERT_TRUE(cart_.engageWhenReady());
-    ASSERT_TRUE(cart_.waitForState(ControllerState::SERVO));
-    ASSERT_TRUE(waitFor([this] { return cart_.moves(); }));
-  }
-
   // Of the last command.
   double pan() { return cart_.nextCommands(1).back().pan; }
-
-  FakeCart& cart_ = cart();
 };
 
 TEST_F(ControllerSafety, TheDeadManSwitchLetsMoveAndStops) {

@@ -55,6 +55,7 @@ struct Feed {
   double tf_stamp_offset = 0.0;  // s
   double d2 = 0.1;               // m
   double lateral = 0.0;          // m
+  double optics = 0.0;           // rad, of the camera on the scope, about its x axis
   std::string robot_state = "ENABLED";
   TaskError message;
 };
@@ -261,13 +262,16 @@ class FakeCart {
     geometry_msgs::TransformStamped insertion_point = camera;
     insertion_point.child_frame_id = "insertion_point";
     insertion_point.transform.translation.x = feed.lateral;
-    insertion_point.transform.translation.z = -feed.d2;
+    insertion_point.transform.translation.y = feed.d2 * std::sin(feed.optics);
+    insertion_point.transform.translation.z = -feed.d2 * std::cos(feed.optics);
     // As on the cart, its z axis points out of the body.
     insertion_point.transform.rotation.x = 1.0;
     insertion_point.transform.rotation.w = 0.0;
     geometry_msgs::TransformStamped shaft = camera;
     shaft.header.frame_id = "laparoscope_optical";
     shaft.child_frame_id = "scope_tip";
+    shaft.transform.rotation.x = std::sin(0.5 * feed.optics);
+    shaft.transform.rotation.w = std::cos(0.5 * feed.optics);
     broadcaster_.sendTransform({camera, insertion_point, shaft});
   }
 

@@ -79,6 +79,7 @@ void AesopBench::startNode(const std::string& program, const std::vector<std::st
   callers.setSize(0);
   for (const std::string& caller : service_callers_) callers[callers.size()] = caller;
   parameters["service_callers"] = callers;
+  parameters["wire_log"]["file"] = wire_log_;
   ros::param::set("/aesop", parameters);
   state_.reset();
   std::vector<std::string> all = arguments;

@@ -71,6 +71,8 @@ class AesopBench {
   std::string master_;
   // Who may enable; everybody when empty.
   std::vector<std::string> service_callers_;
+  // File to record to; none when empty.
+  std::string wire_log_;
 
   std::optional<OperatingState> state_;
   std::optional<sensor_msgs::JointState> joints_;

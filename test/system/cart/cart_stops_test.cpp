@@ -30,6 +30,8 @@ class CartStops : public testing::Test {
     ros::param::set("/tracker", skin::parametersFromYaml(config("tracker.yaml")));
     ros::param::set("/controller", skin::parametersFromYaml(config("controller.yaml")));
     ros::param::set("/controller/safety/robot_required", true);
+    bench_.master_ = "/controller";
+    bench_.startNode();
     camera_ = start(SIMULATED_CAMERA, {"__name:=simulated_camera"});
     tracker_ = start(TRACKER, {"__name:=tracker", "image:=image_raw"});
     controller_ = start(
@@ -76,7 +78,7 @@ class CartStops : public testing::Test {
   }
 
   ros::NodeHandle node_;
-  AesopBench bench_;
+  AesopBench bench_{false};
   std::unique_ptr<ChildProcess> camera_;
   std::unique_ptr<ChildProcess> tracker_;
   std::unique_ptr<ChildProcess> controller_;

@@ -5,6 +5,8 @@
 #include <sys/socket.h>
 
 #include <algorithm>
+#include <cstdio>
+#include <cstring>
 
 #include "support/temporary_folder.h"
 #include "system/aesop/child_process.h"
@@ -55,15 +57,47 @@ TEST(OpenSockets, tellsLoopbackFromTheRest) {
   EXPECT_FALSE(isLoopback("0000000000000000FFFF00000A00A8C0"));
 }
 
+// What a shell in this environment has after the hook, sourced twice as in overlaid workspaces.
+std::string afterTheHook(const std::string& environment, const std::string& variable) {
+  const std::string command = "env -i PATH=/usr/bin:/bin " + environment +
+                              " CATKIN_ENV_HOOK_WORKSPACE='" DEVEL_PREFIX "' sh -eu -c '. \"" ENV_HOOK
+                              "\"; . \"" ENV_HOOK "\"; echo \"${" +
+                              variable + ":-}\"'";
+  FILE* output = ::popen(command.c_str(), "r");
+  char line[4096] = "";
+  if (output == nullptr || std::fgets(line, sizeof(line), output) == nullptr) return "nothing came of it";
+  if (::pclose(output) != 0) return "it failed";
+  return std::string(line, std::strcspn(line, "\n"));
+}
+
+TEST(EnvironmentHook, keepsToLoopbackUnlessTheEnvironmentTellsOfOtherMachines) {
+  for (const char* local : {"", "ROS_MASTER_URI=http://localhost:11311", "ROS_MASTER_URI=http://localhost",
+                            "ROS_MASTER_URI=http://127.0.0.1:11312/", "ROS_IP= ROS_HOSTNAME="}) {
+    EXPECT_EQ(afterTheHook(local, "ROS_IP"), "127.0.0.1") << local;
+  }
+  for (const char* spread : {"ROS_MASTER_URI=http://cart:11311", "ROS_MASTER_URI=http://localhost.example.org:11311",
+                             "ROS_HOSTNAME=cart", "ROS_HOSTNAME=localhost"}) {
+    EXPECT_EQ(afterTheHook(spread, "ROS_IP"), "") << spread;
+  }
+  EXPECT_EQ(afterTheHook("ROS_IP=10.9.0.2", "ROS_IP"), "10.9.0.2");
+}
+
+TEST(EnvironmentHook, preloadsItsLibraryOnceAndKeepsOthers) {
+  const std::string library = DEVEL_PREFIX "/lib/liblaparoscope_servo_loopback.so";
+  EXPECT_EQ(afterTheHook("", "LD_PRELOAD"), library);
+  EXPECT_EQ(afterTheHook("LD_PRELOAD=libm.so.6", "LD_PRELOAD"), library + ":libm.so.6");
+}
+
 class Launch {
  public:
   explicit Launch(const std::string& command)
       : port_(Socket(SOCK_STREAM, "127.0.0.1").port()),
-        shell_("/usr/bin/env",
-               {"-u", "ROS_IP", "-u", "ROS_HOSTNAME", "-u", "ROS_NAMESPACE", "-u", "LD_PRELOAD", "PATH=/usr/bin:/bin",
-                "ROS_HOME=" + folder_.path() + "/ros", "ROS_MASTER_URI=http://localhost:" + std::to_string(port_),
-                "bash", "-c", "source " SETUP_BASH " && exec " + command + " port:=" + folder_.path() + "/arm"},
-               folder_.path() + "/log") {}
+        shell_(
+            "/usr/bin/env",
+            {"-u", "ROS_IP", "-u", "ROS_HOSTNAME", "-u", "ROS_NAMESPACE", "-u", "LD_PRELOAD", "PATH=/usr/bin:/bin",
+             "ROS_HOME=" + folder_.path() + "/ros", "ROS_MASTER_URI=http://localhost:" + std::to_string(port_), "bash",
+             "-c", "source '" DEVEL_PREFIX "/setup.bash' && exec " + command + " port:=" + folder_.path() + "/arm"},
+            folder_.path() + "/log") {}
   ~Launch() {
     shell_.kill(SIGINT);
     shell_.exitStatus(30.0);

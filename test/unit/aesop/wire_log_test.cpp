@@ -6,6 +6,7 @@
 #include <random>
 
 #include "recorded_session.h"
+#include "support/page_examples.h"
 
 namespace laparoscope_servo::aesop {
 namespace {
@@ -51,12 +52,9 @@ TEST(WireLog, recordsComeBack) {
   EXPECT_EQ(textOf(records[4]), "text");
 }
 
-// The bytes of doc/wire_log.md.
 TEST(WireLog, isWrittenAsDocumented) {
   const Bytes bytes = encoded({{WireEvent::kOpened, 1000, {}}, {WireEvent::kSent, 1300, {0x42}}}, {2, 1000, "own"});
-  const Bytes expected = {'L', 'S', '-', 'W', 'I', 'R', 'E', '\n', 1,   0,   2,   0, 0, 0, 0, 0,    0, 0, 0xE8,
-                          3,   0,   0,   0,   0,   0,   0,   3,    'o', 'w', 'n', 1, 0, 0, 4, 0xAC, 2, 1, 0x42};
-  EXPECT_EQ(bytes, expected);
+  EXPECT_EQ(bytes, test_support::pageExamples(WIRE_LOG_DOCUMENT)["recording"]);
 }
 
 TEST(WireLog, everyNumberComesBackBitForBit) {

@@ -63,6 +63,9 @@ TEST(AesopParameters, shippedFileIsTheDefaults) {
   EXPECT_EQ(read.driver.monitor.slowest_distance, defaults.driver.monitor.slowest_distance);
   EXPECT_EQ(read.driver.monitor.tolerance_angle, defaults.driver.monitor.tolerance_angle);
   EXPECT_EQ(read.driver.monitor.tolerance_distance, defaults.driver.monitor.tolerance_distance);
+  EXPECT_EQ(read.wire_log.file, defaults.wire_log.file);
+  EXPECT_EQ(read.wire_log.size, defaults.wire_log.size);
+  EXPECT_EQ(read.wire_log.files, defaults.wire_log.files);
 }
 
 TEST(AesopParameters, everyParameterOfTheShippedFileIsRead) {

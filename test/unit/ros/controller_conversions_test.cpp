@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace laparoscope_servo::skin {
 namespace {
 
@@ -27,11 +29,13 @@ TEST(ControllerConversions, TaskErrorKeepsEveryField) {
   message.visible_fraction = 0.75;
   message.corner_error = 0.5;
   message.valid = true;
+  message.reference_stamp = ros::Time(3, 500000000);
   const servo::TaskErrorInput input = fromMessage(message);
   EXPECT_TRUE(input.valid);
   EXPECT_EQ(input.problem, "");
   EXPECT_EQ(input.visible_fraction, 0.75);
   EXPECT_EQ(input.corner_error, 0.5);
+  EXPECT_EQ(input.region, 3.5);
   message.valid = false;
   EXPECT_FALSE(fromMessage(message).valid);
   const servo::TaskError& error = input.error;
@@ -68,6 +72,16 @@ TEST(ControllerConversions, DepthIsPositiveForACameraBeyondTheInsertionPoint) {
   EXPECT_NEAR((depth.insertion_point_T_tip->translation() - Eigen::Vector3d(-0.003, 0.004, 0.1)).norm(), 0.0, 1e-15);
   transform.translation.z = 0.1;
   EXPECT_EQ(fromTransforms(transform, identity()).d2, -0.1);
+}
+
+TEST(ControllerConversions, ARotationThatIsNoneIsAProblem) {
+  EXPECT_EQ(fromTransforms(identity(), identity()).problem, "");
+  geometry_msgs::Transform none = identity();
+  for (const double w : {0.0, std::nan("")}) {
+    none.rotation.w = w;
+    EXPECT_NE(fromTransforms(none, identity()).problem.find("rotation"), std::string::npos);
+    EXPECT_NE(fromTransforms(identity(), none).problem.find("rotation"), std::string::npos);
+  }
 }
 
 // Oblique optics: depth and offset count along and across the shaft, not the optical axis.

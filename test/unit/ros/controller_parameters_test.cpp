@@ -39,6 +39,7 @@ std::vector<double> numbers(const ControllerNodeConfig& config) {
                           c.breathing.filter.min_frequency,
                           c.breathing.filter.max_frequency,
                           c.predictor.feed_forward ? 1.0 : 0.0,
+                          c.predictor.command_lifetime,
                           c.target.centre_noise,
                           c.target.depth_noise,
                           c.target.orientation_noise,
@@ -77,6 +78,7 @@ std::vector<double> numbers(const ControllerNodeConfig& config) {
                           c.range.cone_margin,
                           c.insertion_point.use ? 1.0 : 0.0,
                           c.insertion_point.prior_stddev,
+                          c.insertion_point.correction_rate,
                           c.insertion_point.estimator.warning_residual,
                           c.insertion_point.estimator.stop_residual,
                           c.insertion_point.estimator.wobble,
@@ -219,7 +221,7 @@ TEST(ControllerParameters, EveryNumberOfTheFileHasAFieldOfItsOwn) {
       }
     }
   }
-  EXPECT_EQ(changed, 80);
+  EXPECT_EQ(changed, 82);
 }
 
 TEST(ControllerParameters, NothingSetGivesTheDefaults) {

@@ -127,12 +127,14 @@ TEST(TaskErrorMessage, SeesAShiftToTheRight) {
   EXPECT_NEAR(message.e_v.x, 0.1, 1e-12);
 }
 
-TEST(TaskErrorMessage, IsInvalidUnlessTrackingWithIntrinsics) {
+TEST(TaskErrorMessage, NamesItsRegionAlwaysAndIsInvalidUnlessTrackingWithIntrinsics) {
   for (const auto state : {tracking::State::kIdle, tracking::State::kSearching, tracking::State::kLost}) {
     Processed processed = tracked();
     processed.result.state = state;
     EXPECT_FALSE(taskErrorMessage(processed).valid);
+    EXPECT_EQ(taskErrorMessage(processed).reference_stamp, processed.reference_stamp);
   }
+  EXPECT_EQ(taskErrorMessage(tracked()).reference_stamp, tracked().reference_stamp);
   Processed blind = tracked();
   blind.camera.reset();
   EXPECT_FALSE(taskErrorMessage(blind).valid);

@@ -8,7 +8,7 @@ namespace laparoscope_servo::servo {
 namespace {
 
 TEST(CommandHistory, ExecutesNothingBeforeTheFirstCommand) {
-  CommandHistory history(3.0);
+  CommandHistory history(3.0, 2.0);
   EXPECT_EQ(history.displacement(0.0, 10.0, 0.2), Eigen::Vector4d::Zero());
   history.add(1.0, {0.1, 0.0, 0.0, 0.0});
   EXPECT_EQ(history.displacement(0.0, 1.2, 0.2), Eigen::Vector4d::Zero());
@@ -21,7 +21,7 @@ TEST(CommandHistory, ExecutesNothingBeforeTheFirstCommand) {
 TEST(CommandHistory, IntegratesWhatIsExecuted) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> u(-1.0, 1.0);
-  CommandHistory history(100.0);
+  CommandHistory history(100.0, 10.0);
   std::vector<std::pair<double, double>> steps;
   for (int k = 0; k < 100; ++k) {
     steps.emplace_back(0.05 * k, u(random));
@@ -47,7 +47,7 @@ TEST(CommandHistory, IntegratesWhatIsExecuted) {
 }
 
 TEST(CommandHistory, KeepsWhatIsStillInForce) {
-  CommandHistory history(0.5);
+  CommandHistory history(0.5, 20.0);
   history.add(0.0, {0.1, 0.0, 0.0, 0.0});
   history.add(10.0, {0.2, 0.0, 0.0, 0.0});
   EXPECT_NEAR(history.displacement(9.0, 10.0, 0.0)[0], 0.1, 1e-15);
@@ -56,12 +56,25 @@ TEST(CommandHistory, KeepsWhatIsStillInForce) {
 }
 
 TEST(CommandHistory, StartsAnewWhenTimeGoesBack) {
-  CommandHistory history(3.0);
+  CommandHistory history(3.0, 2.0);
   history.add(5.0, {0.1, 0.0, 0.0, 0.0});
   history.add(4.0, {0.2, 0.0, 0.0, 0.0});
   EXPECT_NEAR(history.displacement(4.0, 5.0, 0.0)[0], 0.2, 1e-15);
   history.clear();
   EXPECT_EQ(history.displacement(4.0, 5.0, 0.0), Eigen::Vector4d::Zero());
+}
+
+// A robot that hears nothing more stops by itself.
+TEST(CommandHistory, ACommandEndsWithItsLifetime) {
+  CommandHistory history(3.0, 0.2);
+  history.add(1.0, {0.1, 0.0, 0.0, 0.0});
+  EXPECT_NEAR(history.displacement(1.0, 9.0, 0.16)[0], 0.02, 1e-15);
+  EXPECT_EQ(history.velocity(1.35, 0.16)[0], 0.1);
+  EXPECT_EQ(history.velocity(1.37, 0.16)[0], 0.0);
+  history.add(1.5, {0.3, 0.0, 0.0, 0.0});  // after a pause
+  EXPECT_NEAR(history.displacement(1.0, 9.0, 0.16)[0], 0.02 + 0.06, 1e-15);
+  EXPECT_NEAR(history.displacement(1.3, 1.7, 0.16)[0], 0.1 * 0.06 + 0.3 * 0.04, 1e-15);
+  EXPECT_EQ(history.velocity(1.6, 0.16)[0], 0.0);
 }
 
 }  // namespace

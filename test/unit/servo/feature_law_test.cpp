@@ -100,6 +100,15 @@ TEST(FeatureLaw, DoesNotDependOnTheScaleOfTheHomographyOrOnFullTurns) {
   EXPECT_NEAR((law.velocity(turned, loop.scope()).sum().vector() - expected).norm(), 0.0, 1e-12);
 }
 
+TEST(FeatureLaw, ATurnOfAboutHalfARoundIsLeftAsItIs) {
+  for (const double turn : {-3.4, -3.0, 0.0, 0.1, 3.0, 3.2, 3.4}) EXPECT_EQ(shortTurn(turn), turn);
+  for (const double turn : {-6.0, -4.0, 4.0, 6.0, 10.0, 100.0}) {
+    EXPECT_LE(std::abs(shortTurn(turn)), M_PI);
+    EXPECT_NEAR(std::sin(shortTurn(turn)), std::sin(turn), 1e-12);
+    EXPECT_NEAR(std::cos(shortTurn(turn)), std::cos(turn), 1e-12);
+  }
+}
+
 // Random visible planes and starts, d2 and Z* wrong by up to two, straight and oblique optics.
 TEST(FeatureLaw, ConvergesFromRandomVisibleStarts) {
   std::mt19937 random(7);

@@ -1,21 +1,20 @@
 // Manual drive: four velocities instead of a law, the same safety states.
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <limits>
-
-#include "laparoscope_servo/servo/controller.h"
+#include "controller_input.h"
 
 namespace laparoscope_servo::servo {
 namespace {
 
-const double kNan = std::numeric_limits<double>::quiet_NaN();
-const double kInfinity = std::numeric_limits<double>::infinity();
+using test::isZero;
+using test::kInfinity;
+using test::kNan;
 
 // No tracker; whoever drives turns to the right and goes deeper.
 ControllerInput driven(double time) {
   ControllerInput input;
   input.time = time;
+  input.robot = {"", true, 0.1};
   input.depth.problem.clear();
   input.depth.d2 = 0.1;
   input.depth.lateral_offset = 0.001;
@@ -35,10 +34,6 @@ ControllerInput tracked(double time) {
   input.task_error.visible_fraction = 1.0;
   input.task_error.corner_error = 0.1;
   return input;
-}
-
-bool isZero(const ControllerOutput& output) {
-  return output.command.vector() == Eigen::Vector4d::Zero();
 }
 
 // Has been driven since time 0, and steps on.

@@ -1,0 +1,14 @@
+#include "laparoscope_servo/ros/service_callers.h"
+
+#include <algorithm>
+
+#include "laparoscope_servo/ros/command_master.h"
+
+namespace laparoscope_servo::skin {
+
+std::string ServiceCallers::refusal(const std::string& service, const std::string& caller) const {
+  if (names_.empty() || std::find(names_.begin(), names_.end(), caller) != names_.end()) return "";
+  return service + " is refused to " + shownName(caller) + ": the parameter service_callers does not name it";
+}
+
+}  // namespace laparoscope_servo::skin

@@ -1,0 +1,176 @@
+// What stops the scope, and what lets it go on.
+#include "laparoscope_servo/servo/controller.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "controller_input.h"
+#include "laparoscope_servo/geometry/se3.h"
+
+namespace laparoscope_servo::servo {
+namespace {
+
+using namespace test;
+
+TEST(Controller, DoesNotEngageOnAnyFailure) {
+  std::vector<Failure> all = failures();
+  for (const Failure& fault : faults()) all.push_back(fault);
+  for (const Failure& failure : all) {
+    Controller controller{ControllerConfig()};
+    ControllerInput input = good(0.0);
+    failure.apply(input);
+    EXPECT_NE(controller.engage(input), "") << failure.name;
+    EXPECT_FALSE(controller.engaged()) << failure.name;
+    EXPECT_TRUE(isZero(controller.update(good(0.02)))) << failure.name;
+  }
+}
+
+TEST(Controller, StopsAtOnceOnAnyFailure) {
+  for (const Failure& failure : failures()) {
+    Running running;
+    ControllerInput input = good(0.0);
+    failure.apply(input);
+    const ControllerOutput output = running.step(input);
+    EXPECT_EQ(output.state, ControllerState::kHold) << failure.name;
+    EXPECT_FALSE(output.reason.empty()) << failure.name;
+    EXPECT_TRUE(isZero(output)) << failure.name;
+  }
+}
+
+TEST(Controller, OnlyDisengagingClearsAFault) {
+  for (const Failure& fault : faults()) {
+    Running running;
+    ControllerInput input = good(0.0);
+    fault.apply(input);
+    EXPECT_EQ(running.step(input).state, ControllerState::kFault) << fault.name;
+    EXPECT_TRUE(isZero(running.last)) << fault.name;
+    EXPECT_TRUE(isZero(running.step(good(0.0)))) << fault.name;
+    EXPECT_NE(running.controller.engage(good(running.time())), "") << fault.name;
+    running.controller.disengage("not engaged");
+    EXPECT_EQ(running.step(good(0.0)).state, ControllerState::kIdle) << fault.name;
+    EXPECT_EQ(running.controller.engage(good(running.time())), "") << fault.name;
+    running.step(good(0.0));
+    EXPECT_FALSE(isZero(running.step(good(0.0)))) << fault.name;
+  }
+}
+
+TEST(Controller, AVelocityThatIsNotFiniteIsAFaultAndNeverCommanded) {
+  ControllerConfig config = paper();
+  config.gains = {5.0, 5.0, 5.0, 0.5};
+  Running running(config);
+  ControllerInput input = good(0.0);
+  input.task_error.error.e_v.setConstant(1e308);
+  const ControllerOutput output = running.step(input);
+  EXPECT_EQ(output.state, ControllerState::kFault);
+  EXPECT_TRUE(isZero(output));
+}
+
+TEST(Controller, ShaftsThatMissEachOtherAreAFault) {
+  Running running;
+  ControllerInput input = good(0.0);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const auto pose = [&](double spread) {
+    Eigen::Isometry3d tip = Eigen::Isometry3d::Identity();
+    tip.linear() = geometry::so3Exp({M_PI + 0.2 * uniform(random), 0.2 * uniform(random), 0.0});
+    tip.translation() = 0.1 * tip.linear().col(2) + spread * Eigen::Vector3d(uniform(random), uniform(random), 0.0);
+    return tip;
+  };
+  for (int k = 0; k < 200; ++k) {
+    input.depth.insertion_point_T_tip = pose(0.0005);
+    ASSERT_EQ(running.step(input).state, ControllerState::kServo) << running.last.reason;
+  }
+  EXPECT_LT(running.controller.insertionPoint().estimate().point.norm(), 0.001);
+  for (int k = 0; k < 200 && running.last.state == ControllerState::kServo; ++k) {
+    input.depth.insertion_point_T_tip = pose(0.05);
+    running.step(input);
+  }
+  EXPECT_EQ(running.last.state, ControllerState::kFault);
+  EXPECT_TRUE(isZero(running.last));
+}
+
+TEST(Controller, StandsWhileTheDeadManSwitchIsReleased) {
+  ControllerConfig config;
+  config.safety.dead_man_required = true;
+  Controller controller(config);
+  ASSERT_EQ(controller.engage(good(0.0)), "");
+  EXPECT_EQ(controller.update(good(0.02)).state, ControllerState::kArmed);
+  ControllerInput pressed = good(0.04);
+  pressed.dead_man = {true, 0.01};
+  controller.update(pressed);
+  pressed.time = 0.06;
+  EXPECT_FALSE(isZero(controller.update(pressed)));
+  const ControllerOutput released = controller.update(good(0.08));
+  EXPECT_EQ(released.state, ControllerState::kArmed);
+  EXPECT_TRUE(isZero(released));
+  EXPECT_TRUE(released.engaged());
+}
+
+TEST(Controller, ResumesAfterAShortHoldFromRest) {
+  Running running;
+  ControllerInput lost = good(0.0);
+  lost.task_error.valid = false;
+  for (int k = 0; k < 50; ++k) EXPECT_EQ(running.step(lost).state, ControllerState::kHold);  // 1 s
+  const Eigen::Vector4d limit = 0.02 * Limits().acceleration.vector() * (1.0 + 1e-9) + DeadZoneConfig().width.vector();
+  const ControllerOutput output = running.step(good(0.0));
+  EXPECT_EQ(output.state, ControllerState::kServo);
+  EXPECT_TRUE((output.command.vector().cwiseAbs().array() <= limit.array()).all());
+}
+
+TEST(Controller, IsLostAfterALongHold) {
+  Running running;
+  ControllerInput lost = good(0.0);
+  lost.task_error.valid = false;
+  for (int k = 0; k < 110; ++k) running.step(lost);  // 2.2 s
+  EXPECT_EQ(running.last.state, ControllerState::kLost);
+  EXPECT_FALSE(running.controller.engaged());
+  EXPECT_NE(running.last.reason.find("engage again"), std::string::npos) << running.last.reason;
+  EXPECT_TRUE(isZero(running.step(good(0.0))));  // it came back, but too late
+  EXPECT_EQ(running.controller.engage(good(running.time())), "");
+  running.step(good(0.0));
+  EXPECT_FALSE(isZero(running.step(good(0.0))));
+}
+
+TEST(Controller, HoldsThatFollowEachOtherDoNotAddUp) {
+  Running running;
+  ControllerInput lost = good(0.0);
+  lost.task_error.valid = false;
+  for (int n = 0; n < 4; ++n) {
+    for (int k = 0; k < 75; ++k) running.step(lost);  // 1.5 s
+    EXPECT_EQ(running.step(good(0.0)).state, ControllerState::kServo);
+  }
+}
+
+TEST(Controller, WithoutResumeTimeNoHoldResumes) {
+  ControllerConfig config;
+  config.safety.resume_time = 0.0;
+  Running running(config);
+  ControllerInput lost = good(0.0);
+  lost.task_error.valid = false;
+  EXPECT_EQ(running.step(lost).state, ControllerState::kHold);
+  EXPECT_EQ(running.step(good(0.0)).state, ControllerState::kLost);
+}
+
+TEST(Controller, TimeThatJumpsOrIsNotFiniteIsAFault) {
+  for (const double time : {0.5, -1e9, 1e9, 2.1, kNan, kInfinity, -kInfinity}) {
+    Running running;
+    ControllerOutput output = running.controller.update(good(time));
+    EXPECT_EQ(output.state, ControllerState::kFault) << time;
+    EXPECT_TRUE(isZero(output)) << time;
+    output = running.controller.update(good(running.time() + 0.02));
+    EXPECT_TRUE(isZero(output)) << time;
+  }
+}
+
+TEST(Controller, DisengagesAtOnce) {
+  Running running;
+  running.controller.disengage("asked to");
+  const ControllerOutput output = running.step(good(0.0));
+  EXPECT_EQ(output.state, ControllerState::kIdle);
+  EXPECT_EQ(output.reason, "asked to");
+  EXPECT_TRUE(isZero(output));
+}
+
+}  // namespace
+}  // namespace laparoscope_servo::servo
