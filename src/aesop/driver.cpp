@@ -144,6 +144,8 @@ OperatingState Driver::state(double now) const {
 }
 
 void Driver::opened(double now) {
+  // A recording whose beginning is gone is replayed from here on.
+  if (tap_ != nullptr) record(WireEvent::kInsertionPoint, now, payloadOf({insertion_point_.x(), insertion_point_.y(), insertion_point_.z()}));
   record(WireEvent::kOpened, now);
   session_.opened(now);
 }

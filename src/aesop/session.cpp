@@ -131,7 +131,7 @@ void Session::receive(const std::uint8_t* data, std::size_t size, double now) {
 void Session::take(const Status& status) {
   if (disabling_ && compareSequence(status.echo, disable_sequence_) >= 0 && status.state != RobotState::kEnabled &&
       !status.moving) {
-    disabling_ = false;
+    disabling_ = urgent_ = false;
     request_sequence_ = link_.sequence();
   }
   if (isFault(status)) {

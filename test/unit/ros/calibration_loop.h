@@ -49,9 +49,9 @@ class CalibrationTest : public ::testing::Test {
       const aesop::Bytes to_host = wire_.to_host.pop(now_);
       if (!cut_) driver_.receive(to_host.data(), to_host.size(), now_);
       const aesop::Bytes requests = driver_.transmit(now_);
-      if (!cut_) wire_.to_controller.push(requests, wire_.faults, now_);
+      if (!cut_) wire_.to_controller.push(requests, now_);
       const aesop::Bytes arrived = wire_.to_controller.pop(now_);
-      wire_.to_host.push(emulator_.receive(arrived.data(), arrived.size(), now_), wire_.faults, now_);
+      wire_.to_host.push(emulator_.receive(arrived.data(), arrived.size(), now_), now_);
       if (calibration_.stage() == Stage::kFailed && failed_at_ < 0.0) failed_at_ = now_;
     }
   }
