@@ -3,82 +3,18 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
-#include <vector>
 
-#include "plane_loop.h"
+#include "scope_loop.h"
 
 namespace laparoscope_servo::servo {
 namespace {
 
+using test::centre;
+using test::kPeriod;
 using test::kZ;
-using test::PlaneLoop;
+using test::Loop;
 using test::straight;
-
-const double kPeriod = 0.02;
-
-// The loop with an ideal robot that executes after a delay, images every other step.
-class Loop {
- public:
-  Loop(const ControllerConfig& config, double delay) : servo(config), robot_(10.0, 0.2), delay_(delay) { robot_.add(-1.0, ScopeVelocity()); }
-
-  ScopeVelocity step(bool report = false) {
-    if (count_ % 2 == 0) {
-      image_ = loop.error();
-      image_time_ = time_;
-    }
-    if (report) servo.report(time_, ScopeVelocity::fromVector(robot_.velocity(time_, delay_)));
-    const ScopeVelocity command = servo.command(input(), limits);
-    execute(command);
-    return command;
-  }
-
-  void drive(const ScopeVelocity& wanted) { execute(servo.drive(input(), wanted)); }
-  void restart() { servo.restart(time_); }
-
-  ScopeServo servo;
-  PlaneLoop loop{Eigen::Vector3d::UnitZ(), kZ, straight()};
-  ServoLimits limits;
-
- private:
-  ServoInput input() const {
-    ServoInput input;
-    input.time = time_;
-    input.image_time = image_time_;
-    input.error = image_;
-    input.scope = loop.scope();
-    input.period = count_ == 0 ? 0.0 : kPeriod;
-    return input;
-  }
-
-  void execute(const ScopeVelocity& command) {
-    robot_.add(time_, command);
-    for (int k = 0; k < 20; ++k) {
-      const double t = time_ + (k + 0.5) * kPeriod / 20.0;
-      loop.move(ScopeVelocity::fromVector(robot_.velocity(t, delay_)), kPeriod / 20.0);
-    }
-    time_ += kPeriod;
-    ++count_;
-  }
-
-  CommandHistory robot_;
-  double delay_;
-  TaskError image_;
-  double time_ = 0.0, image_time_ = 0.0;
-  int count_ = 0;
-};
-
-ControllerConfig withoutDeadZone() {
-  ControllerConfig config;
-  config.dead_zone.inverse = false;
-  config.dead_zone.width = ScopeVelocity();
-  return config;
-}
-
-double centre(const PlaneLoop& loop) {
-  const TaskError error = loop.error();
-  return std::hypot(error.x - error.desired_x, error.y - error.desired_y);
-}
+using test::withoutDeadZone;
 
 // What the predictor is for: this gain without it swings, with it settles in a second, and without overshooting by more than noise would.
 TEST(ScopeServo, BearsTheDelayByPrediction) {
@@ -230,26 +166,6 @@ TEST(ScopeServo, FollowsFromWhereItWasDriven) {
   EXPECT_LT(overshoot, 0.002);  // 0.02 when it is not
 }
 
-// The image turns, the tissue goes along: a released scope does not spin, with any optics.
-TEST(ScopeServo, ReleasedItNeverSpins) {
-  ControllerConfig config;
-  config.spin = SpinMode::kReleased;
-  ScopeServo servo(config);
-  bool moved_at_all = false;
-  for (int k = 0; k < 300; ++k) {
-    ServoInput input;
-    input.time = input.image_time = 0.04 * k;
-    input.period = 0.04;
-    input.scope = {obliqueOptics(0.5236), 0.1};
-    input.error.x = 0.002 * k;
-    input.error.alpha = 0.004 * k;
-    const ScopeVelocity command = servo.command(input, ServoLimits());
-    ASSERT_EQ(command.spin, 0.0) << k;
-    moved_at_all |= command.pan != 0.0;
-  }
-  EXPECT_TRUE(moved_at_all);
-}
-
 // An arm that is held: what it was told is not taken for the target's motion when it goes on.
 TEST(ScopeServo, KnowsARobotThatDoesNotMove) {
   ScopeServo servo{ControllerConfig()};
@@ -289,62 +205,6 @@ TEST(ScopeServo, AnotherRegionStartsFromRest) {
   input.error.m_star.x() = 0.25;
   const double limit = 0.02 * Limits().acceleration.pan + DeadZoneConfig().width.pan;
   EXPECT_LE(std::abs(servo.command(input, ServoLimits()).pan), limit * (1.0 + 1e-9));
-}
-
-// The picture hangs upside down: noise does not decide in each image which way round it is turned.
-TEST(ScopeServo, HalfATurnIsGoneInOneDirection) {
-  std::mt19937 random(3);
-  std::normal_distribution<double> noise(0.0, 0.05);
-  for (int start = 0; start < 10; ++start) {
-    ScopeServo servo{ControllerConfig()};
-    double alpha = M_PI, last = 0.0;
-    int reversals = 0;
-    for (int k = 0; k < 800; ++k) {
-      ServoInput input;
-      input.time = input.image_time = 0.04 * k;
-      input.period = 0.04;
-      input.scope = straight();
-      input.error.alpha = std::remainder(alpha + noise(random), 2.0 * M_PI);
-      const double spin = servo.command(input, ServoLimits()).spin;
-      const bool far = std::abs(std::remainder(alpha, 2.0 * M_PI)) > 0.3;
-      if (far && spin * last < 0.0) ++reversals;
-      if (spin != 0.0) last = spin;
-      alpha -= 0.04 * spin;
-    }
-    EXPECT_EQ(reversals, 0) << start;
-    EXPECT_LT(std::abs(std::remainder(alpha, 2.0 * M_PI)), 0.1);
-  }
-}
-
-// The angle of a scope that is kept upright, in each step; its images are `lag` [s] older than its poses.
-std::vector<double> keptUpright(double lag) {
-  ControllerConfig config = withoutDeadZone();
-  config.spin = SpinMode::kUpright;
-  config.predictor.delay = 0.0;
-  config.predictor.measure_delay = false;
-  config.rest.enabled = false;
-  config.horizon.up = {0.0, -1.0, 0.0};
-  ScopeServo servo(config);
-  std::vector<double> angles{0.5};
-  for (int k = 0; k < 400; ++k) {
-    ServoInput input;
-    input.time = input.pose_time = kPeriod * k;
-    input.image_time = std::max(0.0, input.time - lag);
-    input.period = kPeriod;
-    input.scope = straight();
-    Eigen::Isometry3d tip = Eigen::Isometry3d::Identity();
-    tip.linear() = geometry::so3Exp({0.0, 0.0, angles.back()});
-    input.insertion_point_T_tip = tip;
-    angles.push_back(angles.back() + kPeriod * servo.command(input, ServoLimits()).spin);
-  }
-  return angles;
-}
-
-// What the scope has turned since the image was taken is not counted twice, by its pose and by what it was told.
-TEST(ScopeServo, TheHorizonIsThatOfTheImage) {
-  const std::vector<double> at_once = keptUpright(0.0), late = keptUpright(0.2);
-  EXPECT_LT(std::abs(at_once.back()), 1e-3);
-  for (std::size_t k = 0; k < late.size(); ++k) EXPECT_NEAR(late[k], at_once[k], 2e-3) << k;
 }
 
 TEST(ScopeServo, WhatIsNotFiniteComesOutSo) {
