@@ -78,7 +78,7 @@ ScopeVelocity CommandGuard::clamp(const ScopeVelocity& velocity) const {
 void CommandGuard::reset(double stamp_now) {
   last_ = ScopeVelocity();
   last_stamp_ = -std::numeric_limits<double>::infinity();
-  not_before_ = stamp_now;
+  not_before_ = last_stamp_now_ = stamp_now;
 }
 
 ScopeVelocity CommandGuard::velocity(double now) const {

@@ -88,6 +88,7 @@ std::string Driver::pause(const std::string& reason) {
 std::string Driver::resume(double stamp_now) {
   if (tap_ != nullptr) record(WireEvent::kResume, payloadOf({stamp_now}));
   guard_.reset(stamp_now);
+  refusal_.clear();
   return session_.resume();
 }
 
@@ -145,7 +146,8 @@ OperatingState Driver::state(double now) const {
 
 void Driver::opened(double now) {
   // A recording whose beginning is gone is replayed from here on.
-  if (tap_ != nullptr) record(WireEvent::kInsertionPoint, now, payloadOf({insertion_point_.x(), insertion_point_.y(), insertion_point_.z()}));
+  const Eigen::Vector3d& point = insertion_point_;
+  if (tap_ != nullptr) record(WireEvent::kInsertionPoint, now, payloadOf({point.x(), point.y(), point.z()}));
   record(WireEvent::kOpened, now);
   session_.opened(now);
 }

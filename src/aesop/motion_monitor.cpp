@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kLeastShare = 0.1;       // of a commanded way, or the joint stands
 constexpr double kLargestShare = 1.5;     // of a commanded way, or the joint runs away
+constexpr double kSettled = 1.8;          // response times without a command: the joint rests
 constexpr double kDifferentShare = 0.25;  // of a way, between positions and velocities
 
 }  // namespace
@@ -42,10 +43,29 @@ std::string MotionMonitor::take(const Status& status, const std::array<double, k
   samples_.push_back(sample);
   while (samples_.front().at < now - 2.0 * config_.response_time) samples_.pop_front();
   for (std::size_t k = 0; k < joints_.size(); ++k) {
-    const std::string reason = judge(k);
+    std::string reason = judge(k);
+    if (reason.empty()) reason = judgeRest(k);
     if (!reason.empty()) return "joint " + std::to_string(joints_[k].number) + reason;
   }
   return "";
+}
+
+// What creeps is too slow for any window.
+std::string MotionMonitor::judgeRest(std::size_t driven) {
+  const Joint& joint = joints_[driven];
+  const bool commanded =
+      std::any_of(samples_.begin(), samples_.end(), [&](const Sample& s) { return s.speed[driven] != 0.0; });
+  if (commanded || samples_.back().at - samples_.front().at < kSettled * config_.response_time) {
+    if (commanded) rest_[driven].reset();
+    return "";
+  }
+  const double position = samples_.back().position[joint.index];
+  if (!rest_[driven]) rest_[driven] = position;
+  const double tolerance = joint.prismatic ? config_.tolerance_distance : config_.tolerance_angle;
+  if (std::abs(position - *rest_[driven]) <= tolerance) return "";
+  std::ostringstream text;
+  text << " has crept by " << position - *rest_[driven] << (joint.prismatic ? " m" : " rad") << ", which nobody has commanded";
+  return text.str();
 }
 
 std::size_t MotionMonitor::windowStart() const {

@@ -8,6 +8,8 @@ namespace laparoscope_servo::aesop {
 
 namespace {
 
+constexpr const char* kUnconfirmed = "the controller does not confirm the disable";
+
 bool isFault(const Status& status) {
   return status.state == RobotState::kFault || status.faults != 0;
 }
@@ -59,6 +61,7 @@ std::string Session::enable(double now) {
   if (link_.status()->state != RobotState::kDisabled) return "still disabling; try again";
   wish_ = Wish::kEnabled;
   confirmed_ = false;
+  stopped_ = false;
   paused_ = false;
   urgent_ = true;
   request_sequence_ = link_.sequence();
@@ -69,8 +72,9 @@ std::string Session::enable(double now) {
 
 std::string Session::disable(double now) {
   drop("disabled on request");
+  stopped_ = false;
   askForDisable();
-  deadline_ = now + config_.request_timeout;
+  disable_deadline_ = now + config_.request_timeout;
   return link_.isUp() ? "" : "not connected: " + link_.reason();
 }
 
@@ -105,7 +109,10 @@ void Session::closed(const std::string& reason) {
 }
 
 void Session::drop(const std::string& reason) {
-  if (wish_ == Wish::kEnabled) askForDisable();
+  if (wish_ == Wish::kEnabled) {
+    askForDisable();
+    stopped_ = true;
+  }
   wish_ = Wish::kDisabled;
   confirmed_ = false;
   paused_ = false;
@@ -126,12 +133,15 @@ void Session::receive(const std::uint8_t* data, std::size_t size, double now) {
   const bool was_up = link_.isUp();
   for (const Status& status : link_.receive(data, size, now)) take(status);
   if (was_up && !link_.isUp()) drop(link_.reason());
+  // The identification has disabled the controller; the numbers go on while nobody answers, for hours perhaps.
+  if (!was_up && link_.isUp()) disable_sequence_ = link_.sequence();
 }
 
 void Session::take(const Status& status) {
   if (disabling_ && compareSequence(status.echo, disable_sequence_) >= 0 && status.state != RobotState::kEnabled &&
       !status.moving) {
     disabling_ = urgent_ = false;
+    if (reason_ == kUnconfirmed) reason_ = "disabled; the controller has confirmed it late";
     request_sequence_ = link_.sequence();
   }
   if (isFault(status)) {
@@ -143,6 +153,7 @@ void Session::take(const Status& status) {
   if (clearing_) drop("fault cleared");
   if (reason_.rfind("fault: ", 0) == 0) reason_ = "the fault has gone by itself";
   if (wish_ != Wish::kEnabled) return;
+  if (!status.homed) return drop("the arm has lost its homing: its joint positions mean nothing");
   if (status.state == RobotState::kEnabled && compareSequence(status.echo, request_sequence_) > 0) {
     if (!confirmed_) reason_.clear();
     confirmed_ = true;
@@ -158,6 +169,11 @@ void Session::watch(double now) {
   link_.watch(now);
   if (was_up && !link_.isUp()) drop(link_.reason());
   if (wish_ == Wish::kEnabled && !confirmed_ && now > deadline_) drop("the controller has not confirmed the enable");
+  if (!disabling_ || !link_.isUp()) disable_deadline_ = now + config_.request_timeout;
+  if (disabling_ && now > disable_deadline_) {
+    reason_ = kUnconfirmed;
+    stopped_ = true;
+  }
   if (clearing_ && now > deadline_) {
     clearing_ = false;
     if (link_.status()) reason_ = faultText(*link_.status()) + "; it could not be cleared";

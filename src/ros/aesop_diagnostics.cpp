@@ -8,7 +8,7 @@ using diagnostic_msgs::DiagnosticStatus;
 void AesopDiagnostics::fill(double now, const aesop::Driver& driver, const AesopReport& report, Status& status) {
   const aesop::OperatingState state = driver.state(now);
   const aesop::Link& link = driver.session().link();
-  summarise(state, link, status);
+  summarise(state, driver.session(), status);
   addMaster(now, report, status);
   status.add("state", aesop::name(state.mode));
   addCommands(now, driver.guard(), status);
@@ -18,13 +18,16 @@ void AesopDiagnostics::fill(double now, const aesop::Driver& driver, const Aesop
   addDelay(driver.delay(), status);
 }
 
-void AesopDiagnostics::summarise(const aesop::OperatingState& state, const aesop::Link& link, Status& status) {
+void AesopDiagnostics::summarise(const aesop::OperatingState& state, const aesop::Session& session, Status& status) {
+  const aesop::Link& link = session.link();
   const aesop::LinkStatistics& statistics = link.statistics();
   const std::uint64_t errors = statistics.decoder.crc_errors + statistics.decoder.malformed + statistics.lost;
   status.summary(DiagnosticStatus::OK,
                  std::string(aesop::name(state.mode)) + (state.reason.empty() ? "" : ": ") + state.reason);
   if (!link.isUp() || state.mode == OperatingMode::kFault) {
     status.level = DiagnosticStatus::ERROR;
+  } else if (session.stopped()) {
+    status.level = DiagnosticStatus::WARN;
   } else if (!line_warning_.empty()) {
     status.mergeSummary(DiagnosticStatus::WARN, line_warning_);
   } else if (errors > errors_reported_) {

@@ -81,6 +81,7 @@ void AesopNode::run(const std::atomic<bool>& stop) {
     while (!stop && ros::ok()) {
       const auto next = std::chrono::steady_clock::now() + kPeriod;
       ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.0));
+      if (thrown_) std::rethrow_exception(thrown_);
       step();
       std::this_thread::sleep_until(next);
     }
@@ -164,10 +165,8 @@ bool AesopNode::stepUntil(const std::function<bool()>& done, double seconds) {
 void AesopNode::shutDown(const std::function<void()>& step) {
   if (!transport_.isOpen()) return;
   driver_.disable(steadyNow());
-  const auto standing = [this] {
-    const auto& status = driver_.session().link().status();
-    return !status || status->state != aesop::RobotState::kEnabled;
-  };
+  // Confirmed by a status that answers it and shows that nothing moves.
+  const auto standing = [this] { return !driver_.session().link().isUp() || !driver_.session().state().is_busy; };
   if (!repeatUntil(standing, kLastWord, step)) {
     ROS_ERROR(
         "the controller has not confirmed the disable; it stops by itself when the last command's time has run out");

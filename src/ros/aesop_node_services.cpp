@@ -2,6 +2,8 @@
 // time.
 #include <ros/ros.h>
 
+#include <exception>
+
 #include "laparoscope_servo/ros/aesop_node.h"
 #include "laparoscope_servo/ros/clocks.h"
 
@@ -27,7 +29,12 @@ void AesopNode::advertise(const std::string& name, Action action, Callers caller
     const std::string caller = event.getCallerName();
     Response& response = event.getResponse();
     const std::string refusal = callers == Callers::kNamed ? callers_.refusal(name, caller) : "";
-    response = refusal.empty() ? (this->*action)() : answer(refusal);
+    try {
+      response = refusal.empty() ? (this->*action)() : answer(refusal);
+    } catch (const std::exception& error) {
+      thrown_ = std::current_exception();  // roscpp would only log it: the loop ends the node
+      response = answer(error.what());
+    }
     ROS_INFO_STREAM(name << ", called by " << shownName(caller) << ": " << (response.success ? "done" : "refused")
                          << (response.message.empty() ? "" : ", ") << response.message);
     return true;
@@ -36,6 +43,7 @@ void AesopNode::advertise(const std::string& name, Action action, Callers caller
 }
 
 Response AesopNode::enable() {
+  if (calibration_.waits()) return answer("a new insertion point waits until the arm stands; try again");
   Response response = answer(driver_.enable(stampNow(), steadyNow()));
   if (!response.success) return response;
   const auto settled = [this] {

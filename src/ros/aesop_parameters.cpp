@@ -166,6 +166,7 @@ void readMonitor(ParameterReader& reader, aesop::MonitorConfig& config) {
 void readCalibration(ParameterReader& reader, CalibrationParameters& calibration) {
   servo::InsertionPointFitConfig& fit = calibration.fit;
   reader.read("calibration/file", calibration.file);
+  reader.read("calibration/pattern_allowed", calibration.pattern_allowed);
   reader.read("calibration/spacing", fit.spacing, -kLarge, kLarge);
   reader.read("calibration/min_poses", fit.min_poses, -kMany, kMany);
   reader.read("calibration/max_poses", fit.max_poses, -kMany, kMany);

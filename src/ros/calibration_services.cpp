@@ -3,9 +3,9 @@
 #include <ros/console.h>
 
 #include <algorithm>
-#include <chrono>
 
 #include "laparoscope_servo/CalibrationState.h"
+#include "laparoscope_servo/ros/clocks.h"
 
 namespace laparoscope_servo::skin {
 
@@ -15,10 +15,6 @@ using Stage = CalibrationStage;
 
 constexpr double kPeriod = 0.5;     // s, between two publications while poses are collected
 constexpr double kWordPause = 2.0;  // s, between two lines of the log
-
-double steadyNow() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 std::string stageName(Stage stage) {
   switch (stage) {

@@ -33,6 +33,8 @@ std::string InsertionPointCalibration::refusal(Method method, double now) const 
   if (method == Method::kHand) {
     return state.mode == OperatingMode::kDisabled ? "" : stateText(state) + "; by hand it has to be DISABLED";
   }
+  if (!parameters_.pattern_allowed)
+    return "calibration/pattern_allowed is false: no dead-man switch is asked; calibrate.launch sets it";
   if (!driver_.session().isEnabled()) return stateText(state) + "; for the pattern it has to be ENABLED";
   if (state.is_busy || !driver_.guard().velocity(now).isZero())
     return "the arm moves; for the pattern it has to be at rest";

@@ -4,7 +4,9 @@
 // Pure: `now` is seconds of a steady clock.
 #pragma once
 
+#include <array>
 #include <deque>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,7 +34,10 @@ class MotionMonitor {
   MotionMonitor(const MonitorConfig& config, const Kinematics& kinematics);
 
   // To be called when the arm is enabled, or is no longer.
-  void reset() { samples_.clear(); }
+  void reset() {
+    samples_.clear();
+    rest_.fill(std::nullopt);
+  }
   // `speed`: of the driven joints, as commanded since the status before. Says what is wrong; empty when nothing is.
   std::string take(const Status& status, const std::array<double, kDrivenJoints>& speed, double now);
 
@@ -51,11 +56,13 @@ class MotionMonitor {
     std::array<double, kDrivenJoints> speed;
   };
   std::string judge(std::size_t driven) const;
+  std::string judgeRest(std::size_t driven);
   std::size_t windowStart() const;
 
   MonitorConfig config_;
   std::vector<Joint> joints_;
   std::deque<Sample> samples_;  // of the last two response times
+  std::array<std::optional<double>, kDrivenJoints> rest_;  // where each joint has to stay until the next command, m or rad
 };
 
 }  // namespace laparoscope_servo::aesop

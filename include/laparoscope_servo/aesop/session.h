@@ -55,6 +55,8 @@ class Session {
   bool isEnabled() const;  // ENABLED and confirmed, and not paused
   // The last request was a velocity.
   bool isMoving() const { return moved_; }
+  // Something else than a request has ended the last ENABLED, or the disable is not confirmed.
+  bool stopped() const { return stopped_; }
   const Link& link() const { return link_; }
   void setSequence(std::uint16_t sequence) { link_.setSequence(sequence); }
 
@@ -78,10 +80,12 @@ class Session {
   bool moved_ = false;                  // the last request was a velocity
   bool stopping_ = false;               // stop not yet confirmed
   bool disabling_ = false;              // disable not yet confirmed
+  bool stopped_ = false;                // see stopped()
   std::uint16_t stop_sequence_ = 0;     // of the first stop after a velocity
   std::uint16_t disable_sequence_ = 0;  // of the first disable
   std::uint16_t request_sequence_ = 0;  // of the last request before the enable
   double deadline_ = 0.0;               // s, for the confirmation under way
+  double disable_deadline_ = 0.0;       // s
   std::string reason_ = "not enabled yet";
   std::string refusal_;  // why the last speed did not reach the wire
 };

@@ -34,7 +34,7 @@ class AesopDiagnostics {
  private:
   using Status = diagnostic_updater::DiagnosticStatusWrapper;
 
-  void summarise(const aesop::OperatingState& state, const aesop::Link& link, Status& status);
+  void summarise(const aesop::OperatingState& state, const aesop::Session& session, Status& status);
   static void addMaster(double now, const AesopReport& report, Status& status);
   static void addCommands(double now, const aesop::CommandGuard& guard, Status& status);
   void addLine(double now, const aesop::Link& link, Status& status);

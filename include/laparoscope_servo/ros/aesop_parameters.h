@@ -16,7 +16,8 @@
 namespace laparoscope_servo::skin {
 
 struct CalibrationParameters {
-  std::string file;  // where a calibrated insertion point is saved; empty: nowhere
+  std::string file;              // where a calibrated insertion point is saved; empty: nowhere
+  bool pattern_allowed = false;  // the arm may be moved by it, though no dead-man switch is asked
   servo::InsertionPointFitConfig fit;
   aesop::PatternConfig pattern;
 };

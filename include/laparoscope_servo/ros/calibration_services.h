@@ -25,6 +25,8 @@ class CalibrationServices {
   bool step(double stamp_now, double now);
   // Whether a command of others has ended here: the arm drives its pattern.
   bool takes(const aesop::ScopeVelocity& command, double now);
+  // A new insertion point has not been taken over yet.
+  bool waits() const { return calibration_.waits(); }
   void describe(diagnostic_updater::DiagnosticStatusWrapper& status) const;
 
  private:

@@ -37,6 +37,9 @@ class InsertionPointCalibration {
   bool drives() const { return pattern_.has_value(); }
   void otherCommand(const aesop::ScopeVelocity& velocity, double now);
 
+  // A new insertion point waits for the arm to be DISABLED and at rest: it must not be enabled with the old one.
+  bool waits() const { return pending_.has_value(); }
+
   CalibrationStage stage() const { return stage_; }
   // Nothing before the first start.
   std::optional<CalibrationMethod> method() const { return method_; }

@@ -28,6 +28,7 @@ class CalibrationBench {
   void startNode(const std::string& insertion_point_file = "") {
     XmlRpc::XmlRpcValue overlay;
     overlay["calibration"]["file"] = file();
+    overlay["calibration"]["pattern_allowed"] = true;
     overlay["calibration"]["pattern_speed"] = 0.15;
     overlay["insertion_point_file"] = insertion_point_file;
     state.reset();

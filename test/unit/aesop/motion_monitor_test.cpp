@@ -75,6 +75,23 @@ TEST_F(MotionMonitorTest, motionNobodyHasCommanded) {
   EXPECT_TRUE(mentions(run({0.01, 0.0, 0.0, 0.0}, {0.04, 0.0, 0.0, 0.0}, 3.0), "joint 1")) << "far too fast";
 }
 
+// Slower than what a window bears.
+TEST_F(MotionMonitorTest, aJointThatCreepsIsNoticed) {
+  const double begin = now_;
+  const std::string reason = run({}, {0.0, 0.005, 0.0, 0.0}, 20.0);
+  EXPECT_TRUE(mentions(reason, "joint 2") && mentions(reason, "crept")) << reason;
+  EXPECT_LT(now_ - begin, 2.0 + 0.01 / 0.005 + 0.1);
+}
+
+TEST_F(MotionMonitorTest, restBeginsAnewWithEachCommand) {
+  const Speed speed{0.0, 0.02, 0.0, 0.0};
+  for (int k = 0; k < 5; ++k) {
+    EXPECT_EQ(run({}, {}, 3.0), "");
+    EXPECT_EQ(run(speed, speed, 1.0), "");
+    EXPECT_EQ(run({}, speed, 0.2), "");
+  }
+}
+
 TEST_F(MotionMonitorTest, aJumpIsNoticedAtOnce) {
   EXPECT_EQ(run({}, {}, 0.1), "");
   status_.position[1] += 0.2;

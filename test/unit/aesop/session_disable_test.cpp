@@ -62,5 +62,49 @@ TEST_F(SessionTest, aDisableIsNotConfirmedByWhatWasSaidBefore) {
   EXPECT_TRUE(sends<Disable>(kMove));
 }
 
+TEST_F(SessionTest, aDisableThatIsNotConfirmedIsReported) {
+  connect();
+  enable();
+  EXPECT_FALSE(session_.stopped());
+  EXPECT_EQ(session_.disable(now_), "");
+  for (int k = 0; k < 30; ++k) EXPECT_TRUE(sends<Disable>()) << "it stays ENABLED";
+  EXPECT_FALSE(session_.stopped());
+  for (int k = 0; k < 30; ++k) EXPECT_TRUE(sends<Disable>());
+  EXPECT_TRUE(session_.stopped());
+  EXPECT_NE(session_.state().reason.find("does not confirm"), std::string::npos) << session_.state().reason;
+  controller_.status.state = RobotState::kDisabled;
+  sends<Disable>();
+  EXPECT_FALSE(session_.state().is_busy);
+  EXPECT_EQ(session_.state().reason.find("does not confirm"), std::string::npos) << session_.state().reason;
+}
+
+// Identification goes on, and its numbers with it, until they look older than the disable.
+TEST_F(SessionTest, anHourWithoutAnAnswerLeavesNothingToConfirm) {
+  connect();
+  enable();
+  session_.closed("a test");
+  session_.opened(now_);
+  for (int k = 0; k < 40000; ++k) {
+    now_ += 0.2;
+    session_.transmit(kStand, now_);
+  }
+  for (int k = 0; k < 20; ++k) exchange(kStand);
+  EXPECT_TRUE(session_.link().isUp());
+  EXPECT_FALSE(session_.state().is_busy);
+  enable();
+}
+
+TEST_F(SessionTest, anArmThatLosesItsHomingIsDisabled) {
+  connect();
+  enable();
+  ASSERT_TRUE(sends<Velocity>(kMove));
+  controller_.status.homed = false;
+  exchange(kMove);
+  EXPECT_EQ(mode(), OperatingMode::kDisabled);
+  EXPECT_TRUE(session_.stopped());
+  EXPECT_NE(session_.state().reason.find("homing"), std::string::npos) << session_.state().reason;
+  EXPECT_TRUE(sends<Disable>(kMove));
+}
+
 }  // namespace
 }  // namespace laparoscope_servo::aesop

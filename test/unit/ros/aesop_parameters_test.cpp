@@ -74,6 +74,7 @@ TEST(AesopParameters, shippedFileIsTheDefaults) {
   EXPECT_EQ(read.driver.monitor.tolerance_distance, defaults.driver.monitor.tolerance_distance);
   EXPECT_EQ(read.insertion_point_file, defaults.insertion_point_file);
   EXPECT_EQ(read.calibration.file, defaults.calibration.file);
+  EXPECT_EQ(read.calibration.pattern_allowed, defaults.calibration.pattern_allowed);
   const servo::InsertionPointFitConfig& fit = read.calibration.fit;
   EXPECT_EQ(fit.spacing, defaults.calibration.fit.spacing);
   EXPECT_EQ(fit.min_poses, defaults.calibration.fit.min_poses);

@@ -38,6 +38,7 @@ class CalibrationTest : public ::testing::Test {
     parameters.file = folder_.file("point.yaml");
     parameters.pattern.speed = 0.1;
     parameters.pattern.angle = pattern_angle_;
+    parameters.pattern_allowed = true;
     return parameters;
   }
 

@@ -104,11 +104,21 @@ TEST_F(CalibrationTest, TheNewPointWaitsForAnArmThatIsDisabledAndAtRest) {
   ASSERT_EQ(calibration_.finish(now_), "");
   run(0.3);
   EXPECT_EQ(driver_.insertionPoint(), kBelieved) << "the scope is in motion";
+  EXPECT_TRUE(calibration_.waits());
   run(1.0);
+  EXPECT_FALSE(calibration_.waits());
   EXPECT_EQ(driver_.insertionPoint(), calibration_.fit().point);
   enable();
   EXPECT_NE(driver_.setInsertionPoint(kBelieved).find("the arm is ENABLED"), std::string::npos);
   EXPECT_EQ(driver_.insertionPoint(), calibration_.fit().point);
+}
+
+TEST_F(CalibrationTest, ThePatternHasToBeAllowed) {
+  enable();
+  InsertionPointCalibration calibration(CalibrationParameters(), driver_);
+  EXPECT_NE(calibration.start(Method::kPattern, now_).find("pattern_allowed"), std::string::npos);
+  run(1.0);
+  EXPECT_TRUE(emulator_.arm().velocity().isZero(0.0));
 }
 
 TEST_F(CalibrationTest, StartIsRefusedInTheWrongState) {
