@@ -68,8 +68,8 @@ void warpThroughLens(State& state, image::Distortion distortion) {
   roofline(state, 4 + 4 + 4, 35 + 9);  // as above; the point with two divisions and the polynomials
 }
 
-// What taking the lens out of the whole image costs: image_proc's way, by fixed-point maps that are made once. Arguments:
-// px.
+// What taking the lens out of the whole image costs: image_proc's way, by fixed-point maps that are made once.
+// Arguments: px.
 void remapImage(State& state) {
   const cv::Size size(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)));
   const cv::Mat image = syntheticTissue(size, 1);

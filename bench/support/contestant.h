@@ -42,8 +42,8 @@ constexpr double kWholeImage = 1e5;
 std::unique_ptr<Contestant> makeVispDefault();
 std::unique_ptr<Contestant> makeVispTuned(unsigned int levels);
 
-// All that this build has, ours first; with `names`, those only, which may also be ours by the channels that ESM tracks:
-// ours_luma, ours_strongest, ours_colour. Throws std::invalid_argument for a name that there is not.
+// All that this build has, ours first; with `names`, those only, which may also be ours by the channels that ESM
+// tracks: ours_luma, ours_strongest, ours_colour. Throws std::invalid_argument for a name that there is not.
 std::vector<std::unique_ptr<Contestant>> makeContestants(const std::vector<std::string>& names);
 
 }  // namespace laparoscope_servo::bench

@@ -64,7 +64,8 @@ std::string MotionMonitor::judgeRest(std::size_t driven) {
   const double tolerance = joint.prismatic ? config_.tolerance_distance : config_.tolerance_angle;
   if (std::abs(position - *rest_[driven]) <= tolerance) return "";
   std::ostringstream text;
-  text << " has crept by " << position - *rest_[driven] << (joint.prismatic ? " m" : " rad") << ", which nobody has commanded";
+  text << " has crept by " << position - *rest_[driven] << (joint.prismatic ? " m" : " rad")
+       << ", which nobody has commanded";
   return text.str();
 }
 

@@ -32,6 +32,8 @@ std::string PinholeCamera::error() const {
   return message.str();
 }
 
-PinholeCamera cameraFromRowMajor(const double* k) { return {k[0], k[4], k[2], k[5]}; }
+PinholeCamera cameraFromRowMajor(const double* k) {
+  return {k[0], k[4], k[2], k[5]};
+}
 
 }  // namespace laparoscope_servo::geometry

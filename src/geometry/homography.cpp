@@ -13,7 +13,9 @@ namespace laparoscope_servo::geometry {
 
 namespace {
 
-double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
 
 // Takes the projective basis (e1, e2, e3, e1 + e2 + e3) to the four corners.
 Eigen::Matrix3d fromBasis(const Quadrilateral& q) {
@@ -22,7 +24,8 @@ Eigen::Matrix3d fromBasis(const Quadrilateral& q) {
   const Eigen::Vector3d weights = p.partialPivLu().solve(Eigen::Vector3d(q[3].homogeneous()));
   const Eigen::Matrix3d basis = p * weights.asDiagonal();
   const double size = p.topRows<2>().cwiseAbs().maxCoeff();
-  if (!weights.allFinite() || weights.cwiseAbs().minCoeff() < 1e-12 || std::abs(p.determinant()) < 1e-12 * size * size) {
+  if (!weights.allFinite() || weights.cwiseAbs().minCoeff() < 1e-12 ||
+      std::abs(p.determinant()) < 1e-12 * size * size) {
     throw std::invalid_argument("quadrilateral has three corners on a line, expected a convex one");
   }
   return basis;
@@ -69,7 +72,9 @@ Eigen::Matrix2d derivative(const Eigen::Matrix3d& g, const Eigen::Vector2d& p) {
   return (g.topLeftCorner<2, 2>() - image * g.bottomLeftCorner<1, 2>()) / q.z();
 }
 
-double signedArea(const Quadrilateral& q) { return 0.5 * cross(q[2] - q[0], q[3] - q[1]); }
+double signedArea(const Quadrilateral& q) {
+  return 0.5 * cross(q[2] - q[0], q[3] - q[1]);
+}
 
 bool isConvex(const Quadrilateral& q) {
   for (int k = 0; k < 4; ++k) {

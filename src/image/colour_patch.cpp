@@ -27,7 +27,8 @@ struct Pixel {
   unsigned char valid;
 };
 
-// (u, v): from the first pixel's upper left corner, so that the conversion to int, towards zero, finds the nearest centre.
+// (u, v): from the first pixel's upper left corner, so that the conversion to int, towards zero, finds the nearest
+// centre.
 [[gnu::always_inline]] inline Pixel pixelAt(const ByteFrame& frame, float u, float v, bool seen) {
   const int inside = static_cast<int>(u > 0.0f) & static_cast<int>(u < frame.right) & static_cast<int>(v > 0.0f) &
                      static_cast<int>(v < frame.bottom) & static_cast<int>(seen);
@@ -51,8 +52,8 @@ void locate(const Row& row, ByteFrame frame, int first, int count, int* __restri
 
 // The same for points that are there already, see locateRaw.
 LAPAROSCOPE_SERVO_CLONES
-void place(const float* __restrict u, const float* __restrict v, ByteFrame frame, int count,
-           int* __restrict offset, unsigned char* __restrict valid) {
+void place(const float* __restrict u, const float* __restrict v, ByteFrame frame, int count, int* __restrict offset,
+           unsigned char* __restrict valid) {
 #pragma omp simd
   for (int i = 0; i < count; ++i) {
     const Pixel pixel = pixelAt(frame, u[i] + 0.5f, v[i] + 0.5f, true);
@@ -62,13 +63,13 @@ void place(const float* __restrict u, const float* __restrict v, ByteFrame frame
 }
 
 LAPAROSCOPE_SERVO_CLONES
-int markBright(const unsigned char* __restrict b, const unsigned char* __restrict g, const unsigned char* __restrict r, int count,
-               int threshold, unsigned char* __restrict mask) {
+int markBright(const unsigned char* __restrict b, const unsigned char* __restrict g, const unsigned char* __restrict r,
+               int count, int threshold, unsigned char* __restrict mask) {
   int any = 0;
 #pragma omp simd reduction(| : any)
   for (int i = 0; i < count; ++i) {
-    const int bright = static_cast<int>(b[i] >= threshold) | static_cast<int>(g[i] >= threshold) |
-                       static_cast<int>(r[i] >= threshold);
+    const int bright =
+        static_cast<int>(b[i] >= threshold) | static_cast<int>(g[i] >= threshold) | static_cast<int>(r[i] >= threshold);
     mask[i] = static_cast<unsigned char>(-bright);
     any |= bright;
   }

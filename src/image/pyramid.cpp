@@ -44,8 +44,8 @@ void smoothAcross(const float* __restrict above, const float* __restrict row, co
 
 // Binomial weights 1 4 6 4 1, across the rows and then along them.
 LAPAROSCOPE_SERVO_CLONES
-void halveAcross(const float* __restrict a, const float* __restrict b, const float* __restrict c, const float* __restrict d,
-                 const float* __restrict e, int count, float* __restrict to) {
+void halveAcross(const float* __restrict a, const float* __restrict b, const float* __restrict c,
+                 const float* __restrict d, const float* __restrict e, int count, float* __restrict to) {
 #pragma omp simd
   for (int u = 0; u < count; ++u) to[u] = (a[u] + e[u] + 4.0f * (b[u] + d[u]) + 6.0f * c[u]) * (1.0f / 256.0f);
 }
@@ -67,7 +67,9 @@ int mirrored(int k, int size) {
   return std::clamp(k, 0, size - 1);
 }
 
-cv::Size halved(const cv::Size& size) { return {(size.width + 1) / 2, (size.height + 1) / 2}; }
+cv::Size halved(const cv::Size& size) {
+  return {(size.width + 1) / 2, (size.height + 1) / 2};
+}
 
 }  // namespace
 
@@ -78,8 +80,8 @@ void RegionPyramid::Plane::resize(const cv::Size& size, const cv::Size& most) {
   view = cv::Mat1f(size.height, size.width, data.data());
 }
 
-// Rows are weighed and smoothed along, three at a time, and then across. Beyond the region they go on linearly, which leaves its
-// border as it is in that direction.
+// Rows are weighed and smoothed along, three at a time, and then across. Beyond the region they go on linearly, which
+// leaves its border as it is in that direction.
 void RegionPyramid::smooth(const cv::Mat& image, const ChannelWeights& weights, cv::Mat1f& level) {
   const int width = level.cols;
   const int height = level.rows;

@@ -67,7 +67,8 @@ sensor_msgs::JointState jointState(const aesop::Status& status, const ros::Time&
 }
 
 geometry_msgs::PoseStamped opticalPose(const aesop::Kinematics& kinematics, const aesop::Status& status,
-                                       const Eigen::Matrix3d& tip_R_optical, const std::string& prefix, const ros::Time& stamp) {
+                                       const Eigen::Matrix3d& tip_R_optical, const std::string& prefix,
+                                       const ros::Time& stamp) {
   const Eigen::Isometry3d base_T_optical = kinematics.optical(status.position);
   geometry_msgs::PoseStamped message;
   message.header.stamp = stamp;

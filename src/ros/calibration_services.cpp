@@ -64,10 +64,11 @@ CalibrationServices::CalibrationServices(const ros::NodeHandle& private_node, co
   publisher_ = node_.advertise<CalibrationState>("state", 10, true);
   using Start = ros::ServiceEvent<StartCalibration::Request, StartCalibration::Response>;
   using Finish = ros::ServiceEvent<std_srvs::Trigger::Request, std_srvs::Trigger::Response>;
-  services_ = {node_.advertiseService("start", boost::function<bool(Start&)>([this](Start& e) { return start(e); })),
-               node_.advertiseService("finish", boost::function<bool(Finish&)>([this](Finish& e) { return finish(e); })),
-               // What makes the arm stand is for everybody.
-               node_.advertiseService("cancel", &CalibrationServices::cancel, this)};
+  services_ = {
+      node_.advertiseService("start", boost::function<bool(Start&)>([this](Start& e) { return start(e); })),
+      node_.advertiseService("finish", boost::function<bool(Finish&)>([this](Finish& e) { return finish(e); })),
+      // What makes the arm stand is for everybody.
+      node_.advertiseService("cancel", &CalibrationServices::cancel, this)};
   ROS_INFO_STREAM("insertion point: " << origin_);
   publisher_.publish(toMessage(calibration_, frame_));
 }

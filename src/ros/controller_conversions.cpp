@@ -61,7 +61,8 @@ servo::TaskErrorInput fromMessage(const TaskError& message) {
   return input;
 }
 
-servo::DepthInput fromTransforms(const geometry_msgs::Transform& camera_T_insertion_point, const geometry_msgs::Transform& camera_T_shaft) {
+servo::DepthInput fromTransforms(const geometry_msgs::Transform& camera_T_insertion_point,
+                                 const geometry_msgs::Transform& camera_T_shaft) {
   servo::DepthInput depth;
   if (!isRotation(camera_T_insertion_point.rotation) || !isRotation(camera_T_shaft.rotation)) {
     depth.problem = "tf has a rotation that is none: a quaternion of length 0, or not finite";

@@ -53,7 +53,8 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
   manual_subscriber_ = private_node.subscribe("manual", 1, &ControllerNode::onManual, this, at_once);
   select_task_service_ = private_node.advertiseService("select_task", &ControllerNode::onSelectTask, this);
   if (config_.control.predictor.measure_delay) {
-    measured_velocity_subscriber_ = node.subscribe("measured_cv", 1, &ControllerNode::onMeasuredVelocity, this, at_once);
+    measured_velocity_subscriber_ =
+        node.subscribe("measured_cv", 1, &ControllerNode::onMeasuredVelocity, this, at_once);
   }
   engage_service_ = private_node.advertiseService("engage", &ControllerNode::onEngage, this);
   tick_timer_ =
@@ -121,7 +122,8 @@ void ControllerNode::onMeasuredVelocity(const geometry_msgs::TwistStamped& messa
   if (message.header.stamp.isZero() || !(age > -kClockCorrection && age < kOldestReport)) return;
   try {
     const auto rotation = tf_.lookupTransform(config_.shaft, message.header.frame_id, ros::Time(0)).transform.rotation;
-    robot_report_.velocity = fromTwist(message.twist, Eigen::Quaterniond(rotation.w, rotation.x, rotation.y, rotation.z).normalized());
+    robot_report_.velocity =
+        fromTwist(message.twist, Eigen::Quaterniond(rotation.w, rotation.x, rotation.y, rotation.z).normalized());
   } catch (const tf2::TransformException&) {
     return;
   }
@@ -204,7 +206,8 @@ servo::DepthInput ControllerNode::depth(double steady_now) {
   servo::DepthInput depth;
   try {
     const auto transform = tf_.lookupTransform(config_.camera, config_.insertion_point, ros::Time(0));
-    depth = fromTransforms(transform.transform, tf_.lookupTransform(config_.camera, config_.shaft, ros::Time(0)).transform);
+    depth =
+        fromTransforms(transform.transform, tf_.lookupTransform(config_.camera, config_.shaft, ros::Time(0)).transform);
     if (!depth.problem.empty()) return depth;
     if (transform.header.stamp.isZero()) {
       // d2 changes when the scope is inserted: a transform that cannot change says nothing about the arm.

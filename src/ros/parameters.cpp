@@ -15,13 +15,20 @@ using XmlRpc::XmlRpcValue;
 
 std::string typeName(const XmlRpcValue& value) {
   switch (value.getType()) {
-    case XmlRpcValue::TypeBoolean: return "a boolean";
-    case XmlRpcValue::TypeInt: return "an integer";
-    case XmlRpcValue::TypeDouble: return "a number";
-    case XmlRpcValue::TypeString: return "a string";
-    case XmlRpcValue::TypeArray: return "a list";
-    case XmlRpcValue::TypeStruct: return "a group of parameters";
-    default: return "of no known type";
+    case XmlRpcValue::TypeBoolean:
+      return "a boolean";
+    case XmlRpcValue::TypeInt:
+      return "an integer";
+    case XmlRpcValue::TypeDouble:
+      return "a number";
+    case XmlRpcValue::TypeString:
+      return "a string";
+    case XmlRpcValue::TypeArray:
+      return "a list";
+    case XmlRpcValue::TypeStruct:
+      return "a group of parameters";
+    default:
+      return "of no known type";
   }
 }
 
@@ -232,7 +239,8 @@ void ParameterReader::refuseUnknown(const std::string& group) {
 
 std::string ParameterReader::report() const {
   if (errors_.empty()) return "";
-  std::string text = std::to_string(errors_.size()) + (errors_.size() == 1 ? " error" : " errors") + " in the parameters:";
+  std::string text =
+      std::to_string(errors_.size()) + (errors_.size() == 1 ? " error" : " errors") + " in the parameters:";
   for (const std::string& error : errors_) text += "\n  " + error;
   return text;
 }

@@ -84,7 +84,8 @@ class Loop {
     if (config_.reports) {
       const Eigen::Vector2d a = noise_.draw(config_.report_noise), b = noise_.draw(config_.report_noise);
       input.robot_report.present = true;
-      input.robot_report.velocity = servo::ScopeVelocity::fromVector(executed_ + Eigen::Vector4d(a.x(), a.y(), b.x(), 0.1 * b.y()));
+      input.robot_report.velocity =
+          servo::ScopeVelocity::fromVector(executed_ + Eigen::Vector4d(a.x(), a.y(), b.x(), 0.1 * b.y()));
       input.robot_report.age = time - reported_;
     }
     if (!engaged_once_) engaged_once_ = controller_.engage(input).empty();
@@ -105,7 +106,8 @@ class Loop {
   }
 
  private:
-  // The tip in the frame of the insertion point as it is believed: off by the factor along the shaft at the reference, z out of the body.
+  // The tip in the frame of the insertion point as it is believed: off by the factor along the shaft at the reference,
+  // z out of the body.
   Eigen::Isometry3d measuredPose() {
     Eigen::Isometry3d world_T_insertion_point = Eigen::Isometry3d::Identity();
     world_T_insertion_point.linear() = shaft_R_camera_.transpose() * geometry::so3Exp({M_PI, 0.0, 0.0});
@@ -124,8 +126,8 @@ class Loop {
     world_T_shaft.linear() = shaft_R_camera_.transpose();
     world_T_shaft.translation() = insertion_point_;
     Eigen::Isometry3d turned = Eigen::Isometry3d::Identity();
-    turned.linear() =
-        geometry::so3Exp({config_.start.tilt, config_.start.pan, 0.0}) * geometry::so3Exp({0.0, 0.0, config_.start.spin});
+    turned.linear() = geometry::so3Exp({config_.start.tilt, config_.start.pan, 0.0}) *
+                      geometry::so3Exp({0.0, 0.0, config_.start.spin});
     return world_T_shaft * turned * Eigen::Translation3d(0.0, 0.0, config_.depth + config_.start.insertion);
   }
 
@@ -136,14 +138,16 @@ class Loop {
     tip_T_camera.linear() = shaft_R_camera_;
     const Eigen::Isometry3d camera_T_world = (body_.pose() * tip_T_camera).inverse();
     // The plane meets the reference camera's axis at tissue_distance.
-    return geometry::fromPlane(camera_T_world * patient_.tissueMotion(time), normal, config_.tissue_distance * normal.z());
+    return geometry::fromPlane(camera_T_world * patient_.tissueMotion(time), normal,
+                               config_.tissue_distance * normal.z());
   }
 
   geometry::Quadrilateral cornersAt(double time) const {
     return geometry::apply(geometry::pixelsFromNormalised(trueHomography(time), config_.camera), config_.roi.corners());
   }
 
-  // px from the corner that is nearest to the image's border; negative when one is outside, or when nothing is to be seen.
+  // px from the corner that is nearest to the image's border; negative when one is outside, or when nothing is to be
+  // seen.
   double nearestToBorder(const geometry::Quadrilateral& corners) const {
     if (!geometry::isConvex(corners)) return -1.0;
     double nearest = std::numeric_limits<double>::infinity();
@@ -180,7 +184,7 @@ class Loop {
     s.d1 = body_.length() - s.d2;
     const auto executed = servo::ScopeVelocity::fromVector(executed_);
     const geometry::Vector6d tip = body_.tipTwist(endEffectorTwist(executed, believedDepth()));
-    s.lateral_speed = servo::twistAtInsertionPoint(tip, s.d2).head<2>().norm();                        // eq. (9)
+    s.lateral_speed = servo::twistAtInsertionPoint(tip, s.d2).head<2>().norm();                       // eq. (9)
     s.commanded_lateral_speed = servo::twistAtInsertionPoint(tip, believedDepth()).head<2>().norm();  // eq. (9)
     s.lateral_offset = body_.lateralOffset();
     s.state = toMessage(output).state;
@@ -204,7 +208,9 @@ class Loop {
 
 }  // namespace
 
-bool startSeesRoi(const SimulationConfig& config) { return Loop(ControllerNodeConfig(), config, 0).seesRoi(0.0); }
+bool startSeesRoi(const SimulationConfig& config) {
+  return Loop(ControllerNodeConfig(), config, 0).seesRoi(0.0);
+}
 
 std::vector<SimulationSample> simulate(const ControllerNodeConfig& controller, const SimulationConfig& config,
                                        unsigned seed, double duration) {

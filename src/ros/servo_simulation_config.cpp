@@ -90,11 +90,13 @@ SimulationConfig simulationConfig(ParameterReader& reader) {
   const double spread = config.start_spread.insertion;
   if (!(config.depth + config.start.insertion - spread > 0.0)) {
     reader.addError(
-        "simulation/start/insertion less start_spread/insertion pulls the camera out, expected more than minus scope/depth");
+        "simulation/start/insertion less start_spread/insertion pulls the camera out, expected more than minus "
+        "scope/depth");
   }
   if (!(config.scope_length > config.depth + config.start.insertion + spread)) {
     reader.addError(
-        "simulation/scope/length is too short, expected more than scope/depth + start/insertion + start_spread/insertion");
+        "simulation/scope/length is too short, expected more than scope/depth + start/insertion + "
+        "start_spread/insertion");
   }
   return config;
 }

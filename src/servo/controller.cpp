@@ -54,13 +54,16 @@ SafetyFacts Controller::facts(const ControllerInput& input) const {
     return facts;
   }
   const TaskErrorInput& task = input.task_error;
-  facts.tracker = {task.problem, task.age, task.image_age, task.valid, task.region, task.visible_fraction, task.corner_error};
+  facts.tracker = {task.problem,          task.age,         task.image_age, task.valid, task.region,
+                   task.visible_fraction, task.corner_error};
   if (task.problem.empty() && task.valid && !isFinite(task.error)) facts.tracker.problem = "task error is not finite";
   return facts;
 }
 
 // What is estimated takes the place of the calibration, which is its prior: where the poses tell nothing, they agree.
-double Controller::d2(const ControllerInput& input) const { return input.depth.d2 + d2_correction_.value(); }
+double Controller::d2(const ControllerInput& input) const {
+  return input.depth.d2 + d2_correction_.value();
+}
 
 void Controller::correctDepth(const ControllerInput& input) {
   const InsertionPointEstimate& estimate = insertion_point_.estimate();

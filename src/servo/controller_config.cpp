@@ -50,7 +50,8 @@ void checkLaws(const ControllerConfig& config, Checker& check) {
   check.range("predictor/min_delay", predictor.min_delay, 0.0, 1.0, "s");
   check.range("predictor/max_delay", predictor.max_delay, 0.0, 1.0, "s");
   check.atLeast("predictor/max_delay", predictor.max_delay, "predictor/min_delay", predictor.min_delay);
-  check.range("predictor/delay", predictor.delay, std::max(0.0, predictor.min_delay), std::min(1.0, predictor.max_delay), "s");
+  check.range("predictor/delay", predictor.delay, std::max(0.0, predictor.min_delay),
+              std::min(1.0, predictor.max_delay), "s");
   check.range("predictor/command_lifetime", predictor.command_lifetime, 0.02, 2.0, "s");
 }
 
@@ -77,7 +78,8 @@ void checkBreathing(const BreathingConfig& config, Checker& check) {
   check.range("breathing/max_rate", config.filter.max_frequency, 0.02, 2.0, "Hz");
   check.atLeast("breathing/max_rate", config.filter.max_frequency, "breathing/min_rate", config.filter.min_frequency);
   if (config.rate != 0.0) {
-    check.range("breathing/rate", config.rate, std::max(0.02, config.filter.min_frequency), std::min(2.0, config.filter.max_frequency), "Hz");
+    check.range("breathing/rate", config.rate, std::max(0.02, config.filter.min_frequency),
+                std::min(2.0, config.filter.max_frequency), "Hz");
   }
   if (check.errors().empty()) {
     for (const std::string& error : validate(config.filter)) check.add("breathing/filter: " + error);
@@ -85,7 +87,8 @@ void checkBreathing(const BreathingConfig& config, Checker& check) {
 }
 
 void checkDirection(const std::string& name, const std::vector<double>& v, Checker& check) {
-  if (v.size() == 3 && Eigen::Vector3d(v[0], v[1], v[2]).norm() > 0.0 && Eigen::Vector3d(v[0], v[1], v[2]).allFinite()) return;
+  if (v.size() == 3 && Eigen::Vector3d(v[0], v[1], v[2]).norm() > 0.0 && Eigen::Vector3d(v[0], v[1], v[2]).allFinite())
+    return;
   check.add(name + " is no direction, expected three finite numbers that are not all zero");
 }
 

@@ -25,7 +25,8 @@ double depthOf(const TaskError& error, double desired_depth) {
 
 LawVelocity FeatureLaw::velocity(const TaskError& error, const ScopeGeometry& scope) const {
   const Eigen::Matrix4d j = featureJacobian(error.x, error.y, depthOf(error, gains_.desired_depth), scope);
-  const Eigen::Vector3d centring(-gains_.centre * (error.x - error.desired_x), -gains_.centre * (error.y - error.desired_y),
+  const Eigen::Vector3d centring(-gains_.centre * (error.x - error.desired_x),
+                                 -gains_.centre * (error.y - error.desired_y),
                                  -gains_.depth * (error.log_depth - error.desired_log_depth));
   LawVelocity velocity;
   if (spin_ == SpinMode::kReleased) {

@@ -8,7 +8,8 @@ namespace laparoscope_servo::servo {
 namespace {
 
 // The largest factor, from 0 to 1, with which `v` added to `base`, which is within the limits, stays within them.
-double scaleWithin(const Eigen::Vector4d& v, const Eigen::Vector4d& limit, const Eigen::Vector4d& base = Eigen::Vector4d::Zero()) {
+double scaleWithin(const Eigen::Vector4d& v, const Eigen::Vector4d& limit,
+                   const Eigen::Vector4d& base = Eigen::Vector4d::Zero()) {
   double scale = 1.0;
   for (int k = 0; k < 4; ++k) {
     if (std::abs(base[k] + v[k]) > limit[k]) {
@@ -27,7 +28,8 @@ ScopeVelocity Limiter::apply(std::initializer_list<ScopeVelocity> parts, double 
   const double common = scaleWithin(sum, limit);
   Eigen::Vector4d target = common * sum;
   for (const ScopeVelocity& part : parts) {
-    if (common < 1.0) target += scaleWithin((1.0 - common) * part.vector(), limit, target) * (1.0 - common) * part.vector();
+    if (common < 1.0)
+      target += scaleWithin((1.0 - common) * part.vector(), limit, target) * (1.0 - common) * part.vector();
     target = target.cwiseMax(-limit).cwiseMin(limit);  // of rounding
   }
   const Eigen::Vector4d change = target - last_.vector();

@@ -22,7 +22,8 @@ bool OscillationGuard::swings(Swing& swing, double time, double error, double th
 
 double OscillationGuard::update(double time, const TaskError& error) {
   if (!config_.enabled) return 1.0;
-  const double errors[] = {error.x - error.desired_x, error.y - error.desired_y, error.log_depth - error.desired_log_depth,
+  const double errors[] = {error.x - error.desired_x, error.y - error.desired_y,
+                           error.log_depth - error.desired_log_depth,
                            std::remainder(error.alpha - error.desired_alpha, 2.0 * M_PI)};
   const double thresholds[] = {config_.centre, config_.centre, config_.depth, config_.orientation};
   bool swinging = false;

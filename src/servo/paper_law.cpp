@@ -11,9 +11,10 @@ LawVelocity PaperLaw::velocity(const TaskError& error, const ScopeGeometry& scop
   const Eigen::Vector3d v = shaft_R_camera * error.e_v;
   const Eigen::Vector3d w = shaft_R_camera * error.e_w;
   geometry::Vector6d centring, turning;
-  centring << gains_.pan * scope.d2 * v.x(), gains_.tilt * scope.d2 * v.y(), gains_.insertion * v.z(), 0.0, 0.0, 0.0;  // eq. (7)
-  turning << 0.0, 0.0, 0.0, 0.0, 0.0, gains_.spin * w.z();                                                             // eq. (7)
-  return {aboutInsertionPoint(turning, scope.d2), aboutInsertionPoint(centring, scope.d2)};                            // eq. (11)
+  centring << gains_.pan * scope.d2 * v.x(), gains_.tilt * scope.d2 * v.y(), gains_.insertion * v.z(), 0.0, 0.0,
+      0.0;                                                                                   // eq. (7)
+  turning << 0.0, 0.0, 0.0, 0.0, 0.0, gains_.spin * w.z();                                   // eq. (7)
+  return {aboutInsertionPoint(turning, scope.d2), aboutInsertionPoint(centring, scope.d2)};  // eq. (11)
 }
 
 }  // namespace laparoscope_servo::servo

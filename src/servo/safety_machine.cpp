@@ -36,7 +36,8 @@ std::string text(const Parts&... parts) {
 
 bool isOfTracker(Condition condition) {
   return condition == Condition::kTrackerUnusable || condition == Condition::kTrackerSilent ||
-         condition == Condition::kImageOld || condition == Condition::kTrackerInvalid || condition == Condition::kOccluded;
+         condition == Condition::kImageOld || condition == Condition::kTrackerInvalid ||
+         condition == Condition::kOccluded;
 }
 
 std::string when(bool holds, const std::string& reason) {

@@ -22,7 +22,8 @@ double turnOf(const Eigen::Vector3d& d, const Eigen::Vector3d& p, double angle) 
 
 }  // namespace
 
-TaskError moved(const TaskError& error, const Eigen::Vector4d& displacement, const ScopeGeometry& scope, double desired_depth) {
+TaskError moved(const TaskError& error, const Eigen::Vector4d& displacement, const ScopeGeometry& scope,
+                double desired_depth) {
   const double depth = depthOf(error, desired_depth);
   const Eigen::Matrix3d& camera_R_shaft = scope.camera_R_shaft;
   const Eigen::Vector3d rotation = angularVelocity(ScopeVelocity::fromVector(displacement));
@@ -61,7 +62,8 @@ Eigen::Vector4d displacementToTarget(const TaskError& error, const ScopeGeometry
     ScopeGeometry scope_there = scope;
     scope_there.d2 += displacement[3];
     const Eigen::Matrix4d j = featureJacobian(there.x, there.y, depthOf(there, desired_depth), scope_there);
-    const Eigen::Vector4d off(there.x - there.desired_x, there.y - there.desired_y, there.log_depth - there.desired_log_depth,
+    const Eigen::Vector4d off(there.x - there.desired_x, there.y - there.desired_y,
+                              there.log_depth - there.desired_log_depth,
                               std::remainder(there.alpha - there.desired_alpha, 2.0 * M_PI));
     const Eigen::Vector4d change = -(j.inverse() * off);
     if (!change.allFinite()) break;

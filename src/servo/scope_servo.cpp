@@ -38,7 +38,9 @@ DelayConfig delayConfig(const PredictorConfig& predictor) {
   return config;
 }
 
-ScopeVelocity scaled(const ScopeVelocity& velocity, double scale) { return ScopeVelocity::fromVector(scale * velocity.vector()); }
+ScopeVelocity scaled(const ScopeVelocity& velocity, double scale) {
+  return ScopeVelocity::fromVector(scale * velocity.vector());
+}
 
 }  // namespace
 
@@ -128,15 +130,17 @@ ScopeVelocity ScopeServo::following(const Features& velocity) const {
 
 void ScopeServo::observe(const ServoInput& input) {
   const Eigen::Vector2d desired(input.error.desired_x, input.error.desired_y);
-  if (has_image_ && (desired != desired_ || input.error.m_star != m_star_)) restart(input.time);  // another region was selected
+  if (has_image_ && (desired != desired_ || input.error.m_star != m_star_))
+    restart(input.time);  // another region was selected
   desired_ = desired;
   m_star_ = input.error.m_star;
   error_ = oriented(input);
   if (!has_image_) {
-    jacobian_ = featureJacobian(input.error.desired_x, input.error.desired_y, config_.features.desired_depth, input.scope);
+    jacobian_ =
+        featureJacobian(input.error.desired_x, input.error.desired_y, config_.features.desired_depth, input.scope);
   }
-  const Eigen::Vector4d executed =
-      has_image_ ? history_.displacement(image_time_, input.image_time, delay()) : Eigen::Vector4d(Eigen::Vector4d::Zero());
+  const Eigen::Vector4d executed = has_image_ ? history_.displacement(image_time_, input.image_time, delay())
+                                              : Eigen::Vector4d(Eigen::Vector4d::Zero());
   displacement_ += executed;
   to_target_ = displacementToTarget(error_, input.scope, config_.features.desired_depth);
   image_time_ = input.image_time;
@@ -159,13 +163,16 @@ ScopeVelocity ScopeServo::command(const ServoInput& input, const ServoLimits& li
     const TargetPrediction breath = breathing_.predict(executed_at);
     const TargetPrediction target = target_.predict(executed_at);
     const Eigen::Matrix4d inverse = jacobian_.inverse();
-    error = moved(error, to_target_ - (inverse * (target.place + breath.place) - then), input.scope, config_.features.desired_depth);
-    // A loop that has swung may have been driven by what it took for the target's motion, and was its own. A breath is not.
+    error = moved(error, to_target_ - (inverse * (target.place + breath.place) - then), input.scope,
+                  config_.features.desired_depth);
+    // A loop that has swung may have been driven by what it took for the target's motion, and was its own. A breath is
+    // not.
     Features velocity = breath.velocity;
     if (!(gainFactor() < 1.0)) velocity += target.velocity;
     if (config_.predictor.feed_forward) follow = following(velocity);
   } else if (config_.predictor.enabled) {  // how far it is to the target is not known, but what is under way is
-    error = moved(error, history_.displacement(image_time_, input.time + delay(), delay()), input.scope, config_.features.desired_depth);
+    error = moved(error, history_.displacement(image_time_, input.time + delay(), delay()), input.scope,
+                  config_.features.desired_depth);
   }
   if (!follow.vector().allFinite()) return follow;
   // Half a turn away both ways are as long: the one that was begun is gone on with.
@@ -177,8 +184,9 @@ ScopeVelocity ScopeServo::command(const ServoInput& input, const ServoLimits& li
   const LawVelocity wanted = law_->velocity(follows ? error : band_.apply(error, input.time), input.scope);
   if (!wanted.sum().vector().allFinite()) return wanted.sum();
   const double gain = limits.scale * gainFactor();
-  ScopeVelocity velocity = limiter_.apply({scaled(follow, limits.scale), scaled(wanted.turning, gain), scaled(wanted.centring, gain)},
-                                          input.period, limits.scale);
+  ScopeVelocity velocity =
+      limiter_.apply({scaled(follow, limits.scale), scaled(wanted.turning, gain), scaled(wanted.centring, gain)},
+                     input.period, limits.scale);
   if (!limits.insertion_allowed) velocity.insertion = std::min(0.0, velocity.insertion);
   return send(input, velocity);
 }
@@ -194,7 +202,8 @@ ScopeVelocity ScopeServo::send(const ServoInput& input, ScopeVelocity velocity) 
                                          : within(config_.range, velocity, d2);
   at_bound_ = velocity.vector() != free;
   limiter_.applied(velocity);
-  const ScopeVelocity command = config_.dead_zone.inverse ? throughDeadZone(velocity, config_.dead_zone.width) : velocity;
+  const ScopeVelocity command =
+      config_.dead_zone.inverse ? throughDeadZone(velocity, config_.dead_zone.width) : velocity;
   remember(input.time, afterDeadZone(command, config_.dead_zone.width));
   return command;
 }

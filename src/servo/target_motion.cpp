@@ -10,15 +10,18 @@ void TargetMotion::observe(double time, const Features& place, const Features& m
   const double dt = time - time_;
   time_ = time;
   if (!initialised_ || !(dt > 0.0)) {
-    for (int k = 0; k < 4; ++k) axes_[k] = {Eigen::Vector2d(place[k], 0.0), Eigen::Vector2d(noise[k], 0.0).asDiagonal(), false};
+    for (int k = 0; k < 4; ++k)
+      axes_[k] = {Eigen::Vector2d(place[k], 0.0), Eigen::Vector2d(noise[k], 0.0).asDiagonal(), false};
     initialised_ = true;
     return;
   }
   const Features wander =
-      dt * Features(config_.centre_wander, config_.centre_wander, config_.depth_wander, config_.orientation_wander).cwiseAbs2() +
+      dt * Features(config_.centre_wander, config_.centre_wander, config_.depth_wander, config_.orientation_wander)
+               .cwiseAbs2() +
       (config_.calibration * moved).cwiseAbs2();
-  const Features acceleration = dt * Features(config_.centre_acceleration, config_.centre_acceleration, config_.depth_acceleration,
-                                              config_.orientation_acceleration).cwiseAbs2();
+  const Features acceleration = dt * Features(config_.centre_acceleration, config_.centre_acceleration,
+                                              config_.depth_acceleration, config_.orientation_acceleration)
+                                         .cwiseAbs2();
   Eigen::Matrix2d transition;
   transition << 1.0, dt, 0.0, std::exp(-config_.damping * dt);
   for (int k = 0; k < 4; ++k) {
@@ -31,7 +34,8 @@ void TargetMotion::observe(double time, const Features& place, const Features& m
     double innovation = place[k] - axis.state[0];
     if (k == 3) innovation = std::remainder(innovation, 2.0 * M_PI);  // a turn more is the same orientation
     const double expected = axis.covariance(0, 0) + noise[k];
-    if (!(innovation * innovation < config_.jump * config_.jump * expected)) {  // another target: it stands until it is seen to move
+    if (!(innovation * innovation <
+          config_.jump * config_.jump * expected)) {  // another target: it stands until it is seen to move
       axis = {Eigen::Vector2d(place[k], 0.0), Eigen::Vector2d(noise[k], 0.0).asDiagonal(), false};
       continue;
     }

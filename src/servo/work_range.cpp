@@ -22,12 +22,15 @@ ScopeVelocity within(const WorkRange& range, const ScopeVelocity& velocity, doub
   return result;
 }
 
-ScopeVelocity within(const WorkRange& range, const ScopeVelocity& velocity, double d2, const Eigen::Matrix3d& insertion_point_R_shaft) {
+ScopeVelocity within(const WorkRange& range, const ScopeVelocity& velocity, double d2,
+                     const Eigen::Matrix3d& insertion_point_R_shaft) {
   ScopeVelocity result = within(range, velocity, d2);
   const Eigen::Vector3d axis = Eigen::Vector3d(range.axis[0], range.axis[1], range.axis[2]).normalized();
-  const Eigen::Vector3d there = insertion_point_R_shaft.transpose() * axis;  // in the shaft's axes, where the shaft is z
+  const Eigen::Vector3d there =
+      insertion_point_R_shaft.transpose() * axis;  // in the shaft's axes, where the shaft is z
   const double angle = std::acos(std::clamp(there.z(), -1.0, 1.0));
-  // z moves by (pan, -tilt) in x and y. Outwards is away from the cone's axis; on the axis everything is, and there is room.
+  // z moves by (pan, -tilt) in x and y. Outwards is away from the cone's axis; on the axis everything is, and there is
+  // room.
   const Eigen::Vector2d outwards = -there.head<2>();
   if (!(outwards.norm() > 1e-9)) {
     if (!(there.z() > 0.0)) result.pan = result.tilt = 0.0;  // it looks out of the body, or nobody knows where

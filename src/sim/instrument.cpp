@@ -64,9 +64,9 @@ std::vector<Capsule> instrumentAt(const InstrumentConfig& config, const Eigen::V
   const Eigen::Vector3d back = (config.trocar - tip).normalized();
   const double r = config.radius;
   const Eigen::Vector3d wrist = tip + 5.0 * r * back;
-  return {{tip, wrist, 0.6 * r, {112.0F, 112.0F, 108.0F}},                          // steel jaws
+  return {{tip, wrist, 0.6 * r, {112.0F, 112.0F, 108.0F}},                       // steel jaws
           {wrist + r * back, wrist + 3.0 * r * back, r, {90.0F, 90.0F, 86.0F}},  // steel collar
-          {wrist + 3.0 * r * back, config.trocar, r, {24.0F, 21.0F, 20.0F}}};       // insulated shaft
+          {wrist + 3.0 * r * back, config.trocar, r, {24.0F, 21.0F, 20.0F}}};    // insulated shaft
 }
 
 void drawCapsules(const std::vector<Capsule>& capsules, const geometry::PinholeCamera& camera, const Lamp& lamp,

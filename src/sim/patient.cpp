@@ -10,7 +10,9 @@ namespace laparoscope_servo::sim {
 
 namespace {
 
-Eigen::Vector3d vector(const std::vector<double>& v) { return {v[0], v[1], v[2]}; }
+Eigen::Vector3d vector(const std::vector<double>& v) {
+  return {v[0], v[1], v[2]};
+}
 
 void checkVector(const std::string& name, const std::vector<double>& v, double limit, const std::string& unit,
                  validation::RangeChecker& check) {
@@ -50,7 +52,8 @@ double Patient::breath(double time) const {
 }
 
 Eigen::Isometry3d Patient::tissueMotion(double time) const {
-  Eigen::Vector3d moved = breath(time) * vector(config_.breathing.tissue) + std::min(time, config_.drift_end) * vector(config_.drift);
+  Eigen::Vector3d moved =
+      breath(time) * vector(config_.breathing.tissue) + std::min(time, config_.drift_end) * vector(config_.drift);
   if (time >= config_.jump_time) moved += vector(config_.jump);
   const double angle = config_.tilt * std::sin(2.0 * M_PI * config_.tilt_frequency * time);
   Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
@@ -59,6 +62,8 @@ Eigen::Isometry3d Patient::tissueMotion(double time) const {
   return motion;
 }
 
-Eigen::Vector3d Patient::trocarOffset(double time) const { return breath(time) * vector(config_.breathing.trocar); }
+Eigen::Vector3d Patient::trocarOffset(double time) const {
+  return breath(time) * vector(config_.breathing.trocar);
+}
 
 }  // namespace laparoscope_servo::sim

@@ -20,16 +20,19 @@ constexpr float kNormalisedHigh = 3.0f;
 // Eq. (4) and (5); inline, for the loop over pixels below.
 inline float feature(float r, float g, float b) {
   const float s0 = std::max(r, std::max(g, b)) - std::min(r, std::min(g, b));  // S0 of (4)
-  const float d = (r - g) * (r - g) + (r - b) * (g - b);       // the root's argument in (5)
-  // cos H of (5) is (2 R - G - B) / (2 sqrt(D)). D is 0 only for grey pixels, where S0 is 0 as well; else it is 1 or more.
+  const float d = (r - g) * (r - g) + (r - b) * (g - b);                       // the root's argument in (5)
+  // cos H of (5) is (2 R - G - B) / (2 sqrt(D)). D is 0 only for grey pixels, where S0 is 0 as well; else it is 1 or
+  // more.
   return s0 * 0.5f * (2.0f * r - g - b) / std::sqrt(d > 0.0f ? d : 1.0f);  // eq. (4), (5)
 }
 
-inline float intensity(float r, float g, float b) { return (r + g + b) / 3.0f + kDark; }
+inline float intensity(float r, float g, float b) {
+  return (r + g + b) / 3.0f + kDark;
+}
 
 LAPAROSCOPE_SERVO_CLONES
-void binsOfRow(const unsigned char* __restrict b, const unsigned char* __restrict g, const unsigned char* __restrict r, int count,
-               bool normalised, float low, float scale, int last, int* __restrict bin) {
+void binsOfRow(const unsigned char* __restrict b, const unsigned char* __restrict g, const unsigned char* __restrict r,
+               int count, bool normalised, float low, float scale, int last, int* __restrict bin) {
   const float by_intensity = normalised ? 1.0f : 0.0f;
 #pragma omp simd
   for (int i = 0; i < count; ++i) {
@@ -44,9 +47,13 @@ void binsOfRow(const unsigned char* __restrict b, const unsigned char* __restric
 
 }  // namespace
 
-float hueSaturationFeature(float r, float g, float b) { return feature(r, g, b); }
+float hueSaturationFeature(float r, float g, float b) {
+  return feature(r, g, b);
+}
 
-float normalisedFeature(float r, float g, float b) { return feature(r, g, b) / intensity(r, g, b); }
+float normalisedFeature(float r, float g, float b) {
+  return feature(r, g, b) / intensity(r, g, b);
+}
 
 int normalisedBin(float feature, int bins) {
   const float scale = static_cast<float>(bins) / (kNormalisedHigh - kNormalisedLow);
@@ -69,8 +76,8 @@ void ColourHistograms::compute(const image::ColourPatch& patch, const image::Are
   const float high = normalised ? kNormalisedHigh : 255.0f;
   const float scale = static_cast<float>(bins_) / (high - low);
   for (int j = 0; j < grid.height(); ++j) {
-    binsOfRow(patch.blue.ptr<unsigned char>(j), patch.green.ptr<unsigned char>(j), patch.red.ptr<unsigned char>(j), grid.width(),
-              normalised, low, scale, bins_ - 1, bin_of_.data());
+    binsOfRow(patch.blue.ptr<unsigned char>(j), patch.green.ptr<unsigned char>(j), patch.red.ptr<unsigned char>(j),
+              grid.width(), normalised, low, scale, bins_ - 1, bin_of_.data());
     const unsigned char* valid = patch.valid.ptr<unsigned char>(j);
     for (int column = 0; column < grid.columns(); ++column) {
       const int area = grid.rowOf(j) * grid.columns() + column;
@@ -86,8 +93,8 @@ void ColourHistograms::compute(const image::ColourPatch& patch, const image::Are
   }
 }
 
-void areaDistances(const ColourHistograms& reference, const ColourHistograms& current, const image::AreaGrid& grid, int bins,
-                   std::vector<float>& distances) {
+void areaDistances(const ColourHistograms& reference, const ColourHistograms& current, const image::AreaGrid& grid,
+                   int bins, std::vector<float>& distances) {
   distances.resize(grid.count());
   for (int area = 0; area < grid.count(); ++area) {
     const int needed = (grid.pixelsIn(area) + 1) / 2;

@@ -21,14 +21,16 @@ constexpr double kTukey = 4.6851;  // 95 % efficiency for normal noise (Marchand
 constexpr double kContraction = 0.3;
 constexpr double kSlowest = 0.9;         // steps that shrink by less do not converge
 constexpr double kCoarseAccuracy = 0.1;  // px of the level, enough for the next finer one
-constexpr int kPatience = 10;            // iterations on levels that are reached from a coarser one, for the steps to become short
-constexpr double kFar = 0.5;             // px of the level, a step after which the region may still be elsewhere
-constexpr int kHurry = 2;                // iterations on the first level for the steps to become short, or the region is far
-constexpr int kShifts = 4;               // first steps on a coarse level, if far
-constexpr double kSameLight = 0.5;       // of the residual's scale, for its mean
-constexpr int kTrials = 8;               // iterations with the light of the start, if far
+constexpr int kPatience =
+    10;                       // iterations on levels that are reached from a coarser one, for the steps to become short
+constexpr double kFar = 0.5;  // px of the level, a step after which the region may still be elsewhere
+constexpr int kHurry = 2;     // iterations on the first level for the steps to become short, or the region is far
+constexpr int kShifts = 4;    // first steps on a coarse level, if far
+constexpr double kSameLight = 0.5;  // of the residual's scale, for its mean
+constexpr int kTrials = 8;          // iterations with the light of the start, if far
 
-// Surprise, chi squared with 8 degrees of freedom, at which a prior begins to count less: Student's t with as many of its own.
+// Surprise, chi squared with 8 degrees of freedom, at which a prior begins to count less: Student's t with as many of
+// its own.
 constexpr double kFreedom = 8.0;
 
 Eigen::Matrix3d scaling(double s, double x, double y) {
@@ -72,7 +74,8 @@ void Esm::warp(const image::RegionPyramid& current, EsmLevel& level, int l, cons
   const Eigen::Matrix3d level_T_image = scaling(1.0 / size, -current.origin().x / size, -current.origin().y / size);
   const Eigen::Matrix3d level_T_patch = level_T_image * g * level.image_T_patch;
   for (std::size_t c = 0; c < level.planes.size(); ++c) {
-    const int channel = std::min(static_cast<int>(c), current.channels() - 1);  // an image without colour stands for all
+    const int channel =
+        std::min(static_cast<int>(c), current.channels() - 1);  // an image without colour stands for all
     image::Patch& warped = level.planes[c].warped;
     level.all_valid = lens_ ? image::warpBilinear(current.level(l, channel), g * level.image_T_patch, *lens_,
                                                   {current.origin(), size}, warped, level.valid)
@@ -82,9 +85,12 @@ void Esm::warp(const image::RegionPyramid& current, EsmLevel& level, int l, cons
   if (!level.all_valid) level.useValid();
 }
 
-void Esm::forgetLight() { light_known_ = false; }
+void Esm::forgetLight() {
+  light_known_ = false;
+}
 
-// That of the last image, where it is known. Else one bias for all, so that what the blocks differ by still pulls at the motion.
+// That of the last image, where it is known. Else one bias for all, so that what the blocks differ by still pulls at
+// the motion.
 void Esm::startLight(EsmLevel& level, const EsmState& state) {
   for (EsmPlane& plane : level.planes) {
     if (light_known_ && config_.light == Light::kLocal) {
@@ -97,7 +103,9 @@ void Esm::startLight(EsmLevel& level, const EsmState& state) {
   }
 }
 
-double Esm::rejection(double sigma) const { return config_.robust ? kTukey * sigma : 0.0; }
+double Esm::rejection(double sigma) const {
+  return config_.robust ? kTukey * sigma : 0.0;
+}
 
 bool Esm::solve(EsmLevel& level, const MotionPrior* prior, bool shift_only, EsmState& state, double& step) {
   Matrix10d a = equations_.matrix();
@@ -172,7 +180,8 @@ double Esm::referenceCornerError(double sigma) {
   return cornerError(Eigen::Matrix3d::Identity(), roi_, *covariance);
 }
 
-EsmStatus Esm::iterate(const image::RegionPyramid& current, int l, const MotionPrior* prior, const Iteration& how, EsmResult& result) {
+EsmStatus Esm::iterate(const image::RegionPyramid& current, int l, const MotionPrior* prior, const Iteration& how,
+                       EsmResult& result) {
   EsmLevel& level = levels_[l];
   if (!geometry::isConvex(geometry::apply(result.state.g, roi_.corners()))) return EsmStatus::kOutOfView;
   warp(current, level, l, result.state.g);
@@ -185,9 +194,10 @@ EsmStatus Esm::iterate(const image::RegionPyramid& current, int l, const MotionP
   return EsmStatus::kMaxIterations;
 }
 
-// Far from where the region belongs, the image says little of the light: a fit to what does not correspond would lower the gain, and
-// blocks with a bias each would take up the very differences that pull at the motion. So the light is that of the start, and the first
-// steps on a coarse level are shifts. If that leads nowhere, once more with the mean matched at each step.
+// Far from where the region belongs, the image says little of the light: a fit to what does not correspond would lower
+// the gain, and blocks with a bias each would take up the very differences that pull at the motion. So the light is
+// that of the start, and the first steps on a coarse level are shifts. If that leads nowhere, once more with the mean
+// matched at each step.
 EsmStatus Esm::approach(const image::RegionPyramid& current, int l, const MotionPrior* prior, EsmResult& result) {
   EsmLevel& level = levels_[l];
   const EsmState start = result.state;
@@ -214,7 +224,8 @@ EsmStatus Esm::approach(const image::RegionPyramid& current, int l, const Motion
 }
 
 // From the second step on the ratio of two steps tells how fast they shrink, and how far there is still to go.
-EsmStatus Esm::settle(const image::RegionPyramid& current, int l, int patience, const MotionPrior* prior, EsmResult& result) {
+EsmStatus Esm::settle(const image::RegionPyramid& current, int l, int patience, const MotionPrior* prior,
+                      EsmResult& result) {
   const double scale = levels_[l].scale;
   const double accuracy = l == 0 ? config_.min_step : std::max(config_.min_step, kCoarseAccuracy * scale);
   double contraction = kContraction;
@@ -230,7 +241,8 @@ EsmStatus Esm::settle(const image::RegionPyramid& current, int l, int patience, 
 }
 
 // Whether the way is far, where the light is not known, a first iteration with one gain and one bias tells.
-EsmStatus Esm::alignLevel(const image::RegionPyramid& current, int l, bool first, const MotionPrior* prior, EsmResult& result) {
+EsmStatus Esm::alignLevel(const image::RegionPyramid& current, int l, bool first, const MotionPrior* prior,
+                          EsmResult& result) {
   if (!(light_known_ && config_.light == Light::kLocal)) startLight(levels_[l], result.state);
   const bool may_be_far = first && l + 1 == levels() && config_.light != Light::kConstant;
   if (!may_be_far) return settle(current, l, kPatience, prior, result);
@@ -250,7 +262,8 @@ EsmStatus Esm::alignLevel(const image::RegionPyramid& current, int l, bool first
   return status == EsmStatus::kConverged ? settle(current, l, config_.max_iterations, prior, result) : status;
 }
 
-EsmResult Esm::align(const image::RegionPyramid& current, const EsmState& start, const MotionPrior* prior, int coarsest) {
+EsmResult Esm::align(const image::RegionPyramid& current, const EsmState& start, const MotionPrior* prior,
+                     int coarsest) {
   EsmResult result;
   result.state = start;
   result.corner_error = std::numeric_limits<double>::infinity();

@@ -23,7 +23,8 @@ enum Sum { kXX, kXY, kYY, kXR, kYR, kX, kY, kXM, kYM, kW, kR, kM, kMM, kMR, kSum
 // What is added up, lane by lane. The lanes are summed when the cell is complete.
 using Lanes = float[kSums][kLanes];
 
-// The first `cells` lanes of each sum become those of the cells: halves of each cell's lanes are added until one is left.
+// The first `cells` lanes of each sum become those of the cells: halves of each cell's lanes are added until one is
+// left.
 inline void fold(int cells, Lanes& s) {
   for (int width = kLanes / cells; width > 1; width /= 2) {
     const int half = width / 2;
@@ -50,8 +51,10 @@ void sumCell(const Rows* rows, int count, float gain, float bias, float inverse_
       const float tukey = t > 0.0f ? t : 0.0f;
       const float w = row.weight[i] * tukey * tukey;
       // Image and reference alike, which makes the step second-order.
-      const float gx = 0.5f * (gain * (row.image[i + 1] - row.image[i - 1]) + (row.reference[i + 1] - row.reference[i - 1]));
-      const float gy = 0.5f * (gain * (row.image_below[i] - row.image_above[i]) + (row.reference_below[i] - row.reference_above[i]));
+      const float gx =
+          0.5f * (gain * (row.image[i + 1] - row.image[i - 1]) + (row.reference[i + 1] - row.reference[i - 1]));
+      const float gy =
+          0.5f * (gain * (row.image_below[i] - row.image_above[i]) + (row.reference_below[i] - row.reference_above[i]));
       const float m = 0.5f * (image + reference);
       const float wx = w * gx;
       const float wy = w * gy;
@@ -98,9 +101,9 @@ void sumCells(const CellInput& input, int first_row, int rows, int per_strip, co
     const int column = strip * kLanes;
     for (int j = 0; j < rows; ++j) {
       const int row = first_row + j;
-      cell[j] = {input.image->row(row - 1) + column,     input.image->row(row) + column,
-                 input.image->row(row + 1) + column,     input.reference->row(row - 1) + column,
-                 input.reference->row(row) + column,     input.reference->row(row + 1) + column,
+      cell[j] = {input.image->row(row - 1) + column, input.image->row(row) + column,
+                 input.image->row(row + 1) + column, input.reference->row(row - 1) + column,
+                 input.reference->row(row) + column, input.reference->row(row + 1) + column,
                  input.weight->row(row) + column};
     }
     sumCell(cell, rows, input.gain, bias[strip], input.inverse_rejection, per_strip, sums + strip * per_strip);

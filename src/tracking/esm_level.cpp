@@ -12,11 +12,12 @@ namespace {
 
 constexpr int kMinSide = 8;  // px
 
-// Blocks of light are about a twelfth of the ROI, to follow its shading, and at least a strip, to leave the texture's own contrast
-// to the motion.
+// Blocks of light are about a twelfth of the ROI, to follow its shading, and at least a strip, to leave the texture's
+// own contrast to the motion.
 constexpr int kLightBlocksAlong = 12;
 
-// Begins of about equal parts of `size`, each a multiple of `unit` but for the last, as many as fit with at least `least` each.
+// Begins of about equal parts of `size`, each a multiple of `unit` but for the last, as many as fit with at least
+// `least` each.
 std::vector<int> split(int size, int unit, int least) {
   const int parts = std::clamp((size + least / 2) / least, 1, kLightBlocksAlong);
   std::vector<int> begins;
@@ -47,7 +48,8 @@ void keepInside(const float* __restrict weight, const float* __restrict above, c
 
 }  // namespace
 
-EsmLevel::EsmLevel(const image::RegionPyramid& reference, const geometry::Rectangle& roi, int l, const image::Lens* lens) {
+EsmLevel::EsmLevel(const image::RegionPyramid& reference, const geometry::Rectangle& roi, int l,
+                   const image::Lens* lens) {
   const int size = 1 << l;
   // Without a lens the level's pixels are taken as they are; with one they are sampled anyway, from the ROI's first on.
   const int x = lens != nullptr ? 0 : static_cast<int>(roi.x) - reference.origin().x;

@@ -8,12 +8,12 @@ namespace laparoscope_servo::tracking {
 
 namespace {
 
-constexpr double kRate = 0.05;  // share of a new image in what is learned: it follows within a second of video
-constexpr int kImagesOfDoubt = 5;  // as many images as the first guess of the innovations counts
+constexpr double kRate = 0.05;          // share of a new image in what is learned: it follows within a second of video
+constexpr int kImagesOfDoubt = 5;       // as many images as the first guess of the innovations counts
 constexpr double kMaxIntervals = 10.0;  // images that were missed, for which the innovation still grows
 
-// px, standard deviations by which shift, affine motion and perspective move the ROI's border unexpectedly: the first guess, and what
-// even a target that has stood still may do in the next image.
+// px, standard deviations by which shift, affine motion and perspective move the ROI's border unexpectedly: the first
+// guess, and what even a target that has stood still may do in the next image.
 struct Spread {
   double shift, affine, perspective;
 };

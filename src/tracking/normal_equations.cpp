@@ -1,7 +1,6 @@
 #include "laparoscope_servo/tracking/normal_equations.h"
 
 #include <algorithm>
-
 #include <array>
 
 namespace laparoscope_servo::tracking {
@@ -16,11 +15,15 @@ struct Monomial {
 };
 
 // J_k = gx P_k(u, v) + gy Q_k(u, v)
-constexpr std::array<Monomial, 8> kP = {{{1, 0, 0}, {0, 0, 0}, {1, 0, 1}, {0, 0, 0}, {1, 1, 0}, {-1, 1, 0}, {-1, 2, 0}, {-1, 1, 1}}};
-constexpr std::array<Monomial, 8> kQ = {{{0, 0, 0}, {1, 0, 0}, {0, 0, 0}, {1, 1, 0}, {-1, 0, 1}, {-2, 0, 1}, {-1, 1, 1}, {-1, 0, 2}}};
+constexpr std::array<Monomial, 8> kP = {
+    {{1, 0, 0}, {0, 0, 0}, {1, 0, 1}, {0, 0, 0}, {1, 1, 0}, {-1, 1, 0}, {-1, 2, 0}, {-1, 1, 1}}};
+constexpr std::array<Monomial, 8> kQ = {
+    {{0, 0, 0}, {1, 0, 0}, {0, 0, 0}, {1, 1, 0}, {-1, 0, 1}, {-2, 0, 1}, {-1, 1, 1}, {-1, 0, 2}}};
 
 // Where the moment of u^a v^b is kept; monomials are ordered by a, then by b.
-constexpr int indexOfDegree4(int a, int b) { return a * 5 - a * (a - 1) / 2 + b; }
+constexpr int indexOfDegree4(int a, int b) {
+  return a * 5 - a * (a - 1) / 2 + b;
+}
 
 double product(const Monomial& s, const Monomial& t, const double* moments) {
   const double c = s.c * t.c;
@@ -42,7 +45,9 @@ inline void addRow(double gx, double gy, double u, double v, Vector10d& sum) {
 
 }  // namespace
 
-double halfSize(const geometry::Rectangle& roi) { return std::max(roi.width, roi.height) / 2.0; }
+double halfSize(const geometry::Rectangle& roi) {
+  return std::max(roi.width, roi.height) / 2.0;
+}
 
 Eigen::Matrix3d templateFromPixels(const geometry::Rectangle& roi) {
   const double unit = halfSize(roi);
@@ -107,7 +112,8 @@ void NormalEquations::endBlock() {
     matrix_(9, 9) += block_weight_;
     vector_[9] += block_residual_;
   } else if (light_ == Light::kLocal && block_weight_ > 0.0) {
-    matrix_.topLeftCorner<9, 9>() -= block_jacobian_.head<9>() * (block_jacobian_.head<9>() / block_weight_).transpose();
+    matrix_.topLeftCorner<9, 9>() -=
+        block_jacobian_.head<9>() * (block_jacobian_.head<9>() / block_weight_).transpose();
     vector_.head<9>() -= block_jacobian_.head<9>() * (block_residual_ / block_weight_);
   }
 }
@@ -117,8 +123,8 @@ Matrix10d NormalEquations::matrix() const {
   m.col(8).head<8>() += gain_column_.head<8>();
   for (int k = 0; k < 8; ++k) {
     for (int l = k; l < 8; ++l) {
-      m(k, l) += product(kP[k], kP[l], moments_.xx) + product(kP[k], kQ[l], moments_.xy) + product(kQ[k], kP[l], moments_.xy) +
-                 product(kQ[k], kQ[l], moments_.yy);
+      m(k, l) += product(kP[k], kP[l], moments_.xx) + product(kP[k], kQ[l], moments_.xy) +
+                 product(kQ[k], kP[l], moments_.xy) + product(kQ[k], kQ[l], moments_.yy);
     }
   }
   if (light_ == Light::kConstant) m(8, 8) = 1.0;

@@ -11,22 +11,23 @@ namespace {
 // px: an alignment that still moves by less than this after all its iterations is as good as converged.
 constexpr double kNearlyConverged = 1.0;
 
-// Of the part of the ROI that is in the image. Where more than the rest is taken for occluded, it is as likely that the estimate is wrong:
-// the areas that are left are those that agree with it.
+// Of the part of the ROI that is in the image. Where more than the rest is taken for occluded, it is as likely that the
+// estimate is wrong: the areas that are left are those that agree with it.
 constexpr double kMinOfImage = 0.15;
 
-constexpr double kRecordRate = 0.05;    // share of a new image in the record: it follows within a second of video
+constexpr double kRecordRate = 0.05;  // share of a new image in the record: it follows within a second of video
 
-// How much worse than the record an estimate may be: factor and constant on the unexplained share 1 - zncc, and on sigma [grey
-// levels]. A search starts anywhere, and picks the areas that agree; false fits have 1.5 to 4 times the residual.
+// How much worse than the record an estimate may be: factor and constant on the unexplained share 1 - zncc, and on
+// sigma [grey levels]. A search starts anywhere, and picks the areas that agree; false fits have 1.5 to 4 times the
+// residual.
 struct Tolerance {
   double unexplained_factor, unexplained, sigma_factor, sigma;
 };
 constexpr Tolerance kTracking = {2.0, 0.10, 2.0, 1.0};
 constexpr Tolerance kSearching = {1.5, 0.05, 1.5, 0.3};
 
-// By which factor the light may have changed between the last estimate that was believed and one that a search has found: at once, and
-// more for each second that has passed.
+// By which factor the light may have changed between the last estimate that was believed and one that a search has
+// found: at once, and more for each second that has passed.
 constexpr double kMaxGainChange = 1.5;
 constexpr double kGainChangeRate = 0.5;  // 1/s
 
@@ -48,8 +49,8 @@ void TrackRecord::add(double zncc, double sigma, double innovation, double visib
   sigma_ += rate * (sigma - sigma_);
 }
 
-double allowedJump(const TrackRecord& record, const QualityConfig& config, const geometry::Rectangle& roi, double visible_fraction,
-                   double corner_error) {
+double allowedJump(const TrackRecord& record, const QualityConfig& config, const geometry::Rectangle& roi,
+                   double visible_fraction, double corner_error) {
   const double expected = 3.0 + 4.0 * record.innovation() + 3.0 * corner_error;
   const double trust = std::clamp((visible_fraction - 0.25) / 0.25, 0.0, 1.0);
   return std::max(expected, trust * config.max_jump * std::hypot(roi.width, roi.height));
@@ -59,9 +60,11 @@ std::string doubt(const Evidence& e, const QualityConfig& q) {
   if (e.esm.status == EsmStatus::kOutOfView) return "the ROI's image crosses infinity";
   if (e.esm.status == EsmStatus::kIllConditioned) return "the pixels kept do not determine the motion";
   const double min_visible = e.from_track ? q.min_visible_fraction : q.min_return_fraction;
-  if (!(e.visible_fraction >= min_visible)) return text("visible fraction", e.visible_fraction, "at least", min_visible);
+  if (!(e.visible_fraction >= min_visible))
+    return text("visible fraction", e.visible_fraction, "at least", min_visible);
   const double of_image = e.visible_fraction / std::max(e.in_image, 1e-9);
-  if (!(of_image >= kMinOfImage)) return text("visible fraction of what is in the image", of_image, "at least", kMinOfImage);
+  if (!(of_image >= kMinOfImage))
+    return text("visible fraction of what is in the image", of_image, "at least", kMinOfImage);
   if (e.esm.status == EsmStatus::kMaxIterations && !(e.esm.last_step <= kNearlyConverged)) {
     return text("still moving by [px]", e.esm.last_step, "at most", kNearlyConverged);
   }
@@ -83,7 +86,8 @@ std::string doubt(const Evidence& e, const QualityConfig& q) {
   if (!e.from_track) {
     const double change = e.esm.state.gain / e.last_gain;
     const double allowed = kMaxGainChange + kGainChangeRate * std::max(0.0, e.unseen);
-    if (!(std::max(change, 1.0 / change) <= allowed)) return text("change of gain", change, "within a factor of", allowed);
+    if (!(std::max(change, 1.0 / change) <= allowed))
+      return text("change of gain", change, "within a factor of", allowed);
   }
   const geometry::Quadrilateral predicted = geometry::apply(e.predicted, e.roi.corners());
   double jump = 0.0;

@@ -16,8 +16,8 @@ constexpr int kMaxStructureRounds = 3;
 constexpr double kGateShift = 2.0;  // px: masks drawn further from the estimate than this are drawn again
 constexpr double kBorder = 4.0;     // px of the coarsest level, of what smoothing takes in from beyond the ROI
 
-// The combination of the channels whose gradient is strongest for its noise: the principal axis of sum grad_c grad_d. Scaled
-// so that the weights' magnitudes sum to one, which keeps the range of grey levels.
+// The combination of the channels whose gradient is strongest for its noise: the principal axis of sum grad_c grad_d.
+// Scaled so that the weights' magnitudes sum to one, which keeps the range of grey levels.
 image::ChannelWeights strongestChannel(const cv::Mat& patch) {
   cv::Mat3f gx, gy, smooth;
   patch.convertTo(smooth, CV_32FC3);

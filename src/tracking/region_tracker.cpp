@@ -26,10 +26,14 @@ constexpr double kSearchReach = 0.25;  // of the ROI's larger side, when it has 
 
 const char* stateName(State state) {
   switch (state) {
-    case State::kIdle: return "IDLE";
-    case State::kTracking: return "TRACKING";
-    case State::kSearching: return "SEARCHING";
-    case State::kLost: return "LOST";
+    case State::kIdle:
+      return "IDLE";
+    case State::kTracking:
+      return "TRACKING";
+    case State::kSearching:
+      return "SEARCHING";
+    case State::kLost:
+      return "LOST";
   }
   return "unknown";
 }
@@ -211,9 +215,8 @@ Attempt RegionTracker::Implementation::attempt(const cv::Mat& image, double stam
 }
 
 Attempt RegionTracker::Implementation::search(const cv::Mat& image, double stamp) {
-  RegionSearch::Found found = search_.search(image, aligner_, last_, carried_, [&](const EsmState& start) {
-    return attempt(image, stamp, start, nullptr);
-  });
+  RegionSearch::Found found = search_.search(
+      image, aligner_, last_, carried_, [&](const EsmState& start) { return attempt(image, stamp, start, nullptr); });
   if (!found.where_carried) carried_.reset();
   return std::move(found.attempt);
 }
@@ -285,7 +288,9 @@ const TrackResult& RegionTracker::Implementation::idle(double stamp, const std::
   return result_;
 }
 
-void RegionTracker::Implementation::reset() { *this = Implementation(config_, lens_); }
+void RegionTracker::Implementation::reset() {
+  *this = Implementation(config_, lens_);
+}
 
 cv::Mat RegionTracker::Implementation::occlusionMask() const {
   return state_ == State::kIdle ? cv::Mat() : aligner_.occlusionMask(shown(), image_size_);
@@ -305,7 +310,9 @@ RegionTracker::~RegionTracker() = default;
 RegionTracker::RegionTracker(RegionTracker&&) noexcept = default;
 RegionTracker& RegionTracker::operator=(RegionTracker&&) noexcept = default;
 
-void RegionTracker::setLens(const std::optional<image::Lens>& lens) { implementation_->setLens(lens); }
+void RegionTracker::setLens(const std::optional<image::Lens>& lens) {
+  implementation_->setLens(lens);
+}
 
 TrackResult RegionTracker::select(const cv::Mat& image, double stamp, const geometry::Rectangle& roi) {
   return implementation_->select(image, stamp, roi);
@@ -318,9 +325,17 @@ const TrackResult& RegionTracker::track(const cv::Mat& image, double stamp,
                                         const std::optional<Eigen::Matrix3d>& motion) {
   return implementation_->track(image, stamp, motion);
 }
-void RegionTracker::reset() { implementation_->reset(); }
-cv::Mat RegionTracker::occlusionMask() const { return implementation_->occlusionMask(); }
-bool RegionTracker::hasRoi() const { return implementation_->hasRoi(); }
-const TrackerConfig& RegionTracker::config() const { return implementation_->config(); }
+void RegionTracker::reset() {
+  implementation_->reset();
+}
+cv::Mat RegionTracker::occlusionMask() const {
+  return implementation_->occlusionMask();
+}
+bool RegionTracker::hasRoi() const {
+  return implementation_->hasRoi();
+}
+const TrackerConfig& RegionTracker::config() const {
+  return implementation_->config();
+}
 
 }  // namespace laparoscope_servo::tracking

@@ -33,7 +33,8 @@ std::vector<Candidate> searchByCorrelation(const cv::Mat1f& reference, const Eig
   const int width = static_cast<int>(std::ceil((high.x() - low.x()) / scale)) + 1;
   const int height = static_cast<int>(std::ceil((high.y() - low.y()) / scale)) + 1;
   std::vector<Candidate> candidates;
-  if (!geometry::isConvex(corners) || width < 4 || height < 4 || width > image.cols || height > image.rows) return candidates;
+  if (!geometry::isConvex(corners) || width < 4 || height < 4 || width > image.cols || height > image.rows)
+    return candidates;
   Eigen::Matrix3d image_T_box = Eigen::Matrix3d::Identity();
   image_T_box.topLeftCorner<2, 2>() *= scale;
   image_T_box.topRightCorner<2, 1>() = low;

@@ -34,12 +34,14 @@ void addRow(const float* __restrict image, const float* __restrict reference, co
 
 }  // namespace
 
-void StructureStatistics::compute(const PatchPair* channels, int count, const image::Patch& weight, const image::AreaGrid& grid) {
+void StructureStatistics::compute(const PatchPair* channels, int count, const image::Patch& weight,
+                                  const image::AreaGrid& grid) {
   areas_.assign(grid.count(), {});
   for (int c = 0; c < count; ++c) add(channels[c], 1.0 / count, weight, grid);
 }
 
-void StructureStatistics::add(const PatchPair& channel, double part, const image::Patch& weight, const image::AreaGrid& grid) {
+void StructureStatistics::add(const PatchPair& channel, double part, const image::Patch& weight,
+                              const image::AreaGrid& grid) {
   const image::Patch& image = *channel.image;
   const image::Patch& reference = *channel.reference;
   const int width = grid.width();

@@ -62,7 +62,8 @@ class MotionMonitor {
   MonitorConfig config_;
   std::vector<Joint> joints_;
   std::deque<Sample> samples_;  // of the last two response times
-  std::array<std::optional<double>, kDrivenJoints> rest_;  // where each joint has to stay until the next command, m or rad
+  std::array<std::optional<double>, kDrivenJoints>
+      rest_;  // where each joint has to stay until the next command, m or rad
 };
 
 }  // namespace laparoscope_servo::aesop

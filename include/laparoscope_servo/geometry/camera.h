@@ -23,8 +23,8 @@ struct PinholeCamera {
   std::string error() const;
 };
 
-// From a row-major 3x3 camera matrix as in sensor_msgs/CameraInfo.K. Does not judge: see error(). A skew is not represented,
-// since camera calibration of ROS reports none.
+// From a row-major 3x3 camera matrix as in sensor_msgs/CameraInfo.K. Does not judge: see error(). A skew is not
+// represented, since camera calibration of ROS reports none.
 PinholeCamera cameraFromRowMajor(const double* k);
 
 }  // namespace laparoscope_servo::geometry

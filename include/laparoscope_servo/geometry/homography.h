@@ -1,7 +1,8 @@
 // Homographies between two images of a plane.
 //
-// G takes homogeneous pixels of the reference image to pixels of the current one, H does the same for normalised points:
-// H = K^-1 G K (Bourger et al. 2007, section III). Defined up to scale; each function says which scale it gives.
+// G takes homogeneous pixels of the reference image to pixels of the current one, H does the same for normalised
+// points: H = K^-1 G K (Bourger et al. 2007, section III). Defined up to scale; each function says which scale it
+// gives.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -33,8 +34,8 @@ Eigen::Matrix3d pixelsFromNormalised(const Eigen::Matrix3d& h, const PinholeCame
 
 // The point that the homography takes `p` to. Not finite where p goes to infinity.
 Eigen::Vector2d apply(const Eigen::Matrix3d& g, const Eigen::Vector2d& p);
-// All four corners. Their denominators have one sign, or a NaN is put into every corner: a quadrilateral through infinity
-// is no image of the rectangle.
+// All four corners. Their denominators have one sign, or a NaN is put into every corner: a quadrilateral through
+// infinity is no image of the rectangle.
 Quadrilateral apply(const Eigen::Matrix3d& g, const Quadrilateral& q);
 // The derivative of apply(g, p) by p: how far the image of the point moves when the point does.
 Eigen::Matrix2d derivative(const Eigen::Matrix3d& g, const Eigen::Vector2d& p);
@@ -49,8 +50,8 @@ bool isConvex(const Quadrilateral& q);
 // std::invalid_argument when three corners of either are on a line.
 Eigen::Matrix3d fromCorners(const Quadrilateral& from, const Quadrilateral& to);
 
-// The Euclidean homography R + t n'/d of the plane n'X = d, for the motion current_T_reference. `n` is a unit vector in the
-// reference camera's frame, d > 0 the distance [m] of the plane from its centre. Its median singular value is 1.
+// The Euclidean homography R + t n'/d of the plane n'X = d, for the motion current_T_reference. `n` is a unit vector in
+// the reference camera's frame, d > 0 the distance [m] of the plane from its centre. Its median singular value is 1.
 Eigen::Matrix3d fromPlane(const Eigen::Isometry3d& current_T_reference, const Eigen::Vector3d& n, double d);
 
 // G = K (R + t n'/d) K^-1, determinant 1: where the pixels of that plane go between the two images of `camera`. Throws

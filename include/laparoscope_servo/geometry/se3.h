@@ -1,7 +1,7 @@
 // Rigid motions and their velocities.
 //
-// Transforms are named a_T_b: they take coordinates in b to coordinates in a. A twist is (v, w): the velocity of the frame's
-// origin [m/s] and the angular velocity [rad/s], both expressed in the frame that the comment names.
+// Transforms are named a_T_b: they take coordinates in b to coordinates in a. A twist is (v, w): the velocity of the
+// frame's origin [m/s] and the angular velocity [rad/s], both expressed in the frame that the comment names.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -27,8 +27,8 @@ Eigen::Vector3d so3Log(const Eigen::Matrix3d& r);
 // a_T_b * se3Exp(twist * dt).
 Eigen::Isometry3d se3Exp(const Vector6d& twist);
 
-// For one rigid body and a fixed transform a_T_b between two frames on it: takes the twist of frame b expressed in b to the
-// twist of frame a expressed in a.
+// For one rigid body and a fixed transform a_T_b between two frames on it: takes the twist of frame b expressed in b to
+// the twist of frame a expressed in a.
 Matrix6d twistTransform(const Eigen::Isometry3d& a_T_b);
 
 }  // namespace laparoscope_servo::geometry

@@ -1,4 +1,5 @@
-// Splits a region of interest (ROI) into a grid of rectangular areas, row by row (Bourger et al. 2007, section II: 14 x 14).
+// Splits a region of interest (ROI) into a grid of rectangular areas, row by row (Bourger et al. 2007, section II: 14 x
+// 14).
 #pragma once
 
 #include <vector>

@@ -1,4 +1,5 @@
-// The colours of a region of interest (ROI) as seen in an image, for what is decided per pixel rather than interpolated.
+// The colours of a region of interest (ROI) as seen in an image, for what is decided per pixel rather than
+// interpolated.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,8 +9,8 @@
 
 namespace laparoscope_servo::image {
 
-// One plane a channel; an image without colour has `blue` alone. 255 in `valid` where the pixel lies in the image, else 0, and the
-// planes are black. Buffers are kept from one use to the next.
+// One plane a channel; an image without colour has `blue` alone. 255 in `valid` where the pixel lies in the image, else
+// 0, and the planes are black. Buffers are kept from one use to the next.
 struct ColourPatch {
   cv::Mat1b blue, green, red, valid;
   bool has_colour = false;
@@ -18,8 +19,8 @@ struct ColourPatch {
   ColourPatch clone() const { return {blue.clone(), green.clone(), red.clone(), valid.clone(), has_colour}; }
 };
 
-// patch(j, i) = the image's pixel nearest to the point that `g` takes (i, j, 1) to. `image` is CV_8UC1 or CV_8UC3, blue first; another
-// type throws std::invalid_argument. Where the denominator of g is not positive, nothing is valid.
+// patch(j, i) = the image's pixel nearest to the point that `g` takes (i, j, 1) to. `image` is CV_8UC1 or CV_8UC3, blue
+// first; another type throws std::invalid_argument. Where the denominator of g is not positive, nothing is valid.
 void warpNearest(const cv::Mat& image, const Eigen::Matrix3d& g, const cv::Size& size, ColourPatch& patch);
 
 // The same through a lens: `g` takes (i, j, 1) to rectified pixels, `image` is the whole raw image. What lies outside
@@ -27,9 +28,9 @@ void warpNearest(const cv::Mat& image, const Eigen::Matrix3d& g, const cv::Size&
 void warpNearest(const cv::Mat& image, const Eigen::Matrix3d& g, const Lens& lens, const cv::Size& size,
                  ColourPatch& patch);
 
-// 255 where any channel is at least `threshold` (grey levels), grown by `grow` px (0 to 64, else std::invalid_argument) in every direction; 0
-// elsewhere. Highlights move
-// with the lamp rather than with the tissue, and their rims are bleached.
+// 255 where any channel is at least `threshold` (grey levels), grown by `grow` px (0 to 64, else std::invalid_argument)
+// in every direction; 0 elsewhere. Highlights move with the lamp rather than with the tissue, and their rims are
+// bleached.
 void saturatedPixels(const ColourPatch& patch, int threshold, int grow, cv::Mat1b& mask);
 
 }  // namespace laparoscope_servo::image

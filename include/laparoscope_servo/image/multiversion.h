@@ -1,9 +1,10 @@
-// Function multiversioning: a kernel marked LAPAROSCOPE_SERVO_CLONES is compiled for several instruction sets, and the loader
-// picks the best one that the processor has. Nobody needs -march=native, and a binary runs on any x86-64.
+// Function multiversioning: a kernel marked LAPAROSCOPE_SERVO_CLONES is compiled for several instruction sets, and the
+// loader picks the best one that the processor has. Nobody needs -march=native, and a binary runs on any x86-64.
 //
-// Versions differ in the order of additions and in fused multiply-adds only. So sums agree to 1e-5 of the largest sum over the same
-// pixels, points that a homography takes to the image to 3e-7 of the image's width, and what is decided pixel by pixel (its bin, its
-// nearest neighbour, whether it lies in the image) for all but one pixel in a thousand. test/unit/kernels compares them.
+// Versions differ in the order of additions and in fused multiply-adds only. So sums agree to 1e-5 of the largest sum
+// over the same pixels, points that a homography takes to the image to 3e-7 of the image's width, and what is decided
+// pixel by pixel (its bin, its nearest neighbour, whether it lies in the image) for all but one pixel in a thousand.
+// test/unit/kernels compares them.
 #pragma once
 
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \

@@ -1,5 +1,5 @@
-// A patch of one channel with a margin around it, so that kernels read neighbours and whole strips of columns without asking
-// where the patch ends.
+// A patch of one channel with a margin around it, so that kernels read neighbours and whole strips of columns without
+// asking where the patch ends.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -37,7 +37,8 @@ class Patch {
     return cv::Mat1f(height_, width_, const_cast<float*>(row(0)), stride_ * sizeof(float));
   }
 
-  // Continues the patch linearly by one pixel on each side, so that a central difference at its border is the one-sided one.
+  // Continues the patch linearly by one pixel on each side, so that a central difference at its border is the one-sided
+  // one.
   void extrapolate();
 
  private:

@@ -1,10 +1,10 @@
 // A pyramid around a region of an image, of one channel or several.
 //
-// Level l is 2^l times as coarse as the image. The centre of its pixel (0, 0) lies on the image's pixel origin(), so a point
-// (u, v) of the image is ((u - origin.x) / 2^l, (v - origin.y) / 2^l) at level l.
+// Level l is 2^l times as coarse as the image. The centre of its pixel (0, 0) lies on the image's pixel origin(), so a
+// point (u, v) of the image is ((u - origin.x) / 2^l, (v - origin.y) / 2^l) at level l.
 //
-// Level 0 is smoothed a little (sigma 0.65 px): between the pixels of what is smooth, bilinear interpolation hardly errs, and
-// gradients are of the tissue rather than of the noise.
+// Level 0 is smoothed a little (sigma 0.65 px): between the pixels of what is smooth, bilinear interpolation hardly
+// errs, and gradients are of the tissue rather than of the noise.
 #pragma once
 
 #include <array>
@@ -33,8 +33,9 @@ class RegionPyramid {
   RegionPyramid(RegionPyramid&&) noexcept = default;
   RegionPyramid& operator=(RegionPyramid&&) noexcept = default;
 
-  // `image` is CV_8UC1 (there is then one channel, and weights are ignored) or CV_8UC3, blue first. `region` is cut to the image; it
-  // must then hold at least one pixel, else std::invalid_argument. Buffers are kept from one call to the next.
+  // `image` is CV_8UC1 (there is then one channel, and weights are ignored) or CV_8UC3, blue first. `region` is cut to
+  // the image; it must then hold at least one pixel, else std::invalid_argument. Buffers are kept from one call to the
+  // next.
   void build(const cv::Mat& image, const cv::Rect& region, int levels, const Channels& channels);
 
   int levels() const { return levels_; }
@@ -44,8 +45,8 @@ class RegionPyramid {
   const cv::Rect& region() const { return region_; }
 
  private:
-  // Regions change in size from image to image; the memory stays. Enough is asked for to hold the whole image, and what is not used
-  // of it is not touched either.
+  // Regions change in size from image to image; the memory stays. Enough is asked for to hold the whole image, and what
+  // is not used of it is not touched either.
   struct Plane {
     cv::Mat1f view;
     std::vector<float> data;

@@ -21,7 +21,8 @@ OperatingState toMessage(const aesop::OperatingState& state, const ros::Time& st
 sensor_msgs::JointState jointState(const aesop::Status& status, const ros::Time& stamp);
 // Of laparoscope_optical in aesop_base. `tip_R_optical`: the optics, identity for 0 degrees.
 geometry_msgs::PoseStamped opticalPose(const aesop::Kinematics& kinematics, const aesop::Status& status,
-                                       const Eigen::Matrix3d& tip_R_optical, const std::string& prefix, const ros::Time& stamp);
+                                       const Eigen::Matrix3d& tip_R_optical, const std::string& prefix,
+                                       const ros::Time& stamp);
 // Velocity of the origin of laparoscope_optical and its angular velocity, expressed in aesop_base.
 geometry_msgs::TwistStamped opticalTwist(const aesop::Kinematics& kinematics, const aesop::Status& status,
                                          const std::string& prefix, const ros::Time& stamp);

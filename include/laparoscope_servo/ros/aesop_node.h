@@ -84,7 +84,7 @@ class AesopNode {
   double next_report_ = 0.0;       // s, steady: of a refused command
   double next_stranger_ = 0.0;     // s, steady: of a publisher that is not the master
   std::string last_loss_;
-  std::exception_ptr thrown_;  // in a service
+  std::exception_ptr thrown_;    // in a service
   std::uint64_t published_ = 0;  // statuses received when the last one was published
   aesop::OperatingState last_state_;
   bool state_published_ = false;

@@ -25,13 +25,13 @@ struct CalibrationParameters {
 struct AesopParameters {
   aesop::DriverConfig driver;
   aesop::ReconnectConfig reconnect;
-  std::string port;           // required
-  int baud_rate = 38400;      // 1200 to 1000000
-  int realtime_priority = 0;  // of the loop, 0 (none) to 99
+  std::string port;                    // required
+  int baud_rate = 38400;               // 1200 to 1000000
+  int realtime_priority = 0;           // of the loop, 0 (none) to 99
   std::string insertion_point_file;    // a calibration that takes the place of insertion_point; empty: none
   std::string insertion_point_origin;  // where driver.insertion_point is from, in words
   CalibrationParameters calibration;
-  std::string frame_prefix;   // in front of every frame's name
+  std::string frame_prefix;  // in front of every frame's name
   // Node whose velocity commands count; a name without a leading slash is one of the node's namespace.
   std::string publisher = "controller";
   // Nodes that may call what lets the arm move: enable, resume, clear_fault, the calibration; none: every node.

@@ -17,7 +17,8 @@ namespace laparoscope_servo::skin {
 
 class CalibrationServices {
  public:
-  // `driver` has to outlive this. `callers`: who may start a calibration, which may move the arm, or end it with a result.
+  // `driver` has to outlive this. `callers`: who may start a calibration, which may move the arm, or end it with a
+  // result.
   CalibrationServices(const ros::NodeHandle& private_node, const AesopParameters& parameters,
                       const ServiceCallers& callers, aesop::Driver& driver);
 

@@ -21,11 +21,13 @@ servo::ScopeVelocity servoVelocity(const ScopeVelocity& message);
 servo::TaskErrorInput fromMessage(const TaskError& message);
 servo::RobotFacts fromMessage(const OperatingState& message);
 
-// From the insertion point in the camera's frame, and the shaft's frame in the camera's, whose axes count: d2, the lateral offset, the optics,
-// and the pose of the tip. `problem` and `age` are left to the caller.
-servo::DepthInput fromTransforms(const geometry_msgs::Transform& camera_T_insertion_point, const geometry_msgs::Transform& camera_T_shaft);
+// From the insertion point in the camera's frame, and the shaft's frame in the camera's, whose axes count: d2, the
+// lateral offset, the optics, and the pose of the tip. `problem` and `age` are left to the caller.
+servo::DepthInput fromTransforms(const geometry_msgs::Transform& camera_T_insertion_point,
+                                 const geometry_msgs::Transform& camera_T_shaft);
 
-// The scope's velocity from the camera's, both expressed in the frame from which `shaft_R_frame` leads to the shaft's axes.
+// The scope's velocity from the camera's, both expressed in the frame from which `shaft_R_frame` leads to the shaft's
+// axes.
 servo::ScopeVelocity fromTwist(const geometry_msgs::Twist& twist, const Eigen::Quaterniond& shaft_R_frame);
 
 // The header is left to the caller.

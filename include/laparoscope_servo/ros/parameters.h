@@ -1,7 +1,8 @@
 // Reads a tree of parameters, from the parameter server or from a YAML file, with the same checks for both.
 //
-// A parameter that is absent keeps the value that the configuration struct gives it; one that is there must have the right
-// type and lie in its range. Every error is kept, so that a user sees all of them at once; the node then refuses to start.
+// A parameter that is absent keeps the value that the configuration struct gives it; one that is there must have the
+// right type and lie in its range. Every error is kept, so that a user sees all of them at once; the node then refuses
+// to start.
 #pragma once
 
 #include <XmlRpcValue.h>
@@ -19,10 +20,12 @@ namespace laparoscope_servo::skin {
 
 class ParameterReader {
  public:
-  // `tree` is a struct of parameters or invalid (none are set); `name` is what its root is called in errors, e.g. "/tracker".
+  // `tree` is a struct of parameters or invalid (none are set); `name` is what its root is called in errors, e.g.
+  // "/tracker".
   explicit ParameterReader(const XmlRpc::XmlRpcValue& tree, const std::string& name);
 
-  // Paths are relative to the root, with slashes: "tracking/levels". Bounds are inclusive. An integer is taken for a double.
+  // Paths are relative to the root, with slashes: "tracking/levels". Bounds are inclusive. An integer is taken for a
+  // double.
   void read(const std::string& path, double& value, double minimum, double maximum);
   void read(const std::string& path, int& value, int minimum, int maximum);
   void read(const std::string& path, bool& value);
@@ -38,11 +41,13 @@ class ParameterReader {
   bool has(const std::string& path) const;
   // Adds an error when the parameter is absent.
   void require(const std::string& path, const std::string& what);
-  // Adds an error for each parameter under `group` that nobody has read: a typing error in a file must not go unnoticed.
-  // An empty `group` stands for the root.
+  // Adds an error for each parameter under `group` that nobody has read: a typing error in a file must not go
+  // unnoticed. An empty `group` stands for the root.
   void refuseUnknown(const std::string& group);
   void addError(const std::string& error) { errors_.push_back(error); }
-  void addErrors(const std::vector<std::string>& errors) { errors_.insert(errors_.end(), errors.begin(), errors.end()); }
+  void addErrors(const std::vector<std::string>& errors) {
+    errors_.insert(errors_.end(), errors.begin(), errors.end());
+  }
 
   const std::vector<std::string>& errors() const { return errors_; }
   // All errors, one a line, with a heading; empty when there are none.
@@ -65,8 +70,8 @@ class ParameterReader {
 // All parameters under the handle's namespace, as a struct; invalid when there are none.
 XmlRpc::XmlRpcValue parametersOf(const ros::NodeHandle& node);
 
-// The parameters of a YAML file, as rosparam would load them. Throws std::runtime_error that names the file, and the line
-// where it cannot be parsed.
+// The parameters of a YAML file, as rosparam would load them. Throws std::runtime_error that names the file, and the
+// line where it cannot be parsed.
 XmlRpc::XmlRpcValue parametersFromYaml(const std::string& file);
 
 // `overlay` laid over `base`: structs are merged key by key, everything else is replaced.

@@ -16,7 +16,8 @@ namespace laparoscope_servo::skin {
 // While no ROI is selected: g and h are the identity, the corners 0. Without usable intrinsics h is the identity.
 Homography homographyMessage(const Processed& processed);
 
-// Invalid, with zeros but for the stamps, unless the state is TRACKING, there are usable intrinsics and every number is finite.
+// Invalid, with zeros but for the stamps, unless the state is TRACKING, there are usable intrinsics and every number is
+// finite.
 TaskError taskErrorMessage(const Processed& processed);
 
 AreaSelection areaSelectionMessage(const Processed& processed);

@@ -2,9 +2,10 @@
 // tissue.
 //
 // The camera sees the exact homography of the plane, its ROI's corners with noise; the robot executes what the
-// controller commands after a delay and with a dead zone, as the end-effector's velocity of eq. (12). Tissue and insertion point may move,
-// the optics may be oblique, and what the controller believes of depths and delay may be wrong. Deterministic:
-// the same configuration and seed give the same numbers. World frame: the camera's at the reference pose.
+// controller commands after a delay and with a dead zone, as the end-effector's velocity of eq. (12). Tissue and
+// insertion point may move, the optics may be oblique, and what the controller believes of depths and delay may be
+// wrong. Deterministic: the same configuration and seed give the same numbers. World frame: the camera's at the
+// reference pose.
 #pragma once
 
 #include <iosfwd>
@@ -38,15 +39,16 @@ struct SimulationConfig {
   sim::Wrist wrist = sim::Wrist::kStiff;
   // Where the loop starts, from the reference pose: turned about the insertion point [rad], then pushed in [m].
   servo::ScopeVelocity start{0.1511, 0.0873, 0.1745, 0.02};
-  servo::ScopeVelocity start_spread{0.0, 0.0, 0.0, 0.0};  // the same units: drawStart() draws from `start` plus or minus this
-  double duration = 20.0;   // s, of simulated time
-  double rest_from = 0.75;  // of the duration: figures of rest are of what follows
+  servo::ScopeVelocity start_spread{0.0, 0.0, 0.0,
+                                    0.0};  // the same units: drawStart() draws from `start` plus or minus this
+  double duration = 20.0;                  // s, of simulated time
+  double rest_from = 0.75;                 // of the duration: figures of rest are of what follows
   sim::ScopeActuatorConfig robot;
-  bool reports = true;          // the robot says how fast it moves
-  double report_noise = 0.002;  // rad/s, and a tenth of it in m/s
-  bool poses = false;           // the controller is told the shaft's pose, and may estimate the insertion point
-  double pose_noise = 0.0005;        // m, standard deviation per axis
-  double direction_noise = 0.0035;   // rad, of the shaft's direction, per axis
+  bool reports = true;              // the robot says how fast it moves
+  double report_noise = 0.002;      // rad/s, and a tenth of it in m/s
+  bool poses = false;               // the controller is told the shaft's pose, and may estimate the insertion point
+  double pose_noise = 0.0005;       // m, standard deviation per axis
+  double direction_noise = 0.0035;  // rad, of the shaft's direction, per axis
   sim::PatientConfig patient;
 };
 
@@ -63,7 +65,8 @@ struct SimulationSample {
   double alpha = 0.0;            // rad, orientation of the ROI
   double d1 = 0.0;               // m
   double d2 = 0.0;               // m
-  // m/s, of the scope across the shaft, eq. (9) of what is executed: at the insertion point, and where the controller believes it to be
+  // m/s, of the scope across the shaft, eq. (9) of what is executed: at the insertion point, and where the controller
+  // believes it to be
   double lateral_speed = 0.0;
   double commanded_lateral_speed = 0.0;
   double lateral_offset = 0.0;  // m, from the insertion point to the shaft

@@ -54,7 +54,7 @@ class TrackerDiagnostics {
   std::string recall_ = "none";
   mutable std::mutex recall_mutex_;
   std::string recall_refusal_;  // of the newest request, empty when it was fine
-  std::string refusal_;  // of the newest image, empty when it was fine
+  std::string refusal_;         // of the newest image, empty when it was fine
   std::string last_refusal_;
   std::string last_reset_;
   tracking::TrackResult result_;

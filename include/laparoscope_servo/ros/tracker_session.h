@@ -102,8 +102,8 @@ class TrackerSession {
   LensSource lens_source_;
   std::shared_ptr<const image::Lens> lens_;  // in force
   std::string lens_error_;                   // why the newest camera_info gives none, and nothing can be selected
-  bool start_roi_pending_ = false;   // the parameters' ROI waits for its image
-  bool start_roi_in_force_ = false;  // nobody has chosen another one
+  bool start_roi_pending_ = false;           // the parameters' ROI waits for its image
+  bool start_roi_in_force_ = false;          // nobody has chosen another one
   std::optional<ros::Time> last_stamp_;
   cv::Size image_size_;
   ros::Time reference_stamp_;

@@ -12,10 +12,12 @@ class Breathing {
   // The configuration must be valid. `target`: of its noise.
   Breathing(const BreathingConfig& config, const TargetMotionConfig& target);
 
-  // A place measured at `time` [s]. True when the breath has been found or lost with it: what was made of places before does not hold.
+  // A place measured at `time` [s]. True when the breath has been found or lost with it: what was made of places before
+  // does not hold.
   bool observe(double time, const Features& place);
 
-  // Of the target's place and velocity, the part that breathing makes, at most a second ahead; zero while there is none. alpha is left alone.
+  // Of the target's place and velocity, the part that breathing makes, at most a second ahead; zero while there is
+  // none. alpha is left alone.
   TargetPrediction predict(double time) const;
 
   // Hz; 0 while there is none.

@@ -1,4 +1,5 @@
-// What the robot has been told, and what it therefore has done and still will do, when it executes each command after a delay.
+// What the robot has been told, and what it therefore has done and still will do, when it executes each command after a
+// delay.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,15 +11,16 @@ namespace laparoscope_servo::servo {
 
 class CommandHistory {
  public:
-  // Keeps the commands of the last `span` [s] > 0. The robot takes each for `lifetime` [s] > 0, then it stops by itself.
+  // Keeps the commands of the last `span` [s] > 0. The robot takes each for `lifetime` [s] > 0, then it stops by
+  // itself.
   CommandHistory(double span, double lifetime) : span_(span), lifetime_(lifetime) {}
 
-  // From `time` [s] on, the robot is told to move by `velocity`: that of the shaft, after the robot's dead zone. Times must not
-  // decrease; an earlier one clears the history.
+  // From `time` [s] on, the robot is told to move by `velocity`: that of the shaft, after the robot's dead zone. Times
+  // must not decrease; an earlier one clears the history.
   void add(double time, const ScopeVelocity& velocity);
 
-  // (pan, tilt, spin [rad], insertion [m]) that the robot executes from `begin` to `end` [s] when it does each thing `delay` [s] after
-  // it is told. Before the first command, or the oldest that is kept, nothing is executed.
+  // (pan, tilt, spin [rad], insertion [m]) that the robot executes from `begin` to `end` [s] when it does each thing
+  // `delay` [s] after it is told. Before the first command, or the oldest that is kept, nothing is executed.
   Eigen::Vector4d displacement(double begin, double end, double delay) const;
 
   // What it executes at `time`.

@@ -8,11 +8,11 @@
 
 namespace laparoscope_servo::servo {
 
-// What a law asks for, in two parts that add up. They are limited apart, since a long way to turn need not slow down the centring; each
-// keeps its direction.
+// What a law asks for, in two parts that add up. They are limited apart, since a long way to turn need not slow down
+// the centring; each keeps its direction.
 struct LawVelocity {
-  ScopeVelocity turning;    // for the ROI's orientation
-  ScopeVelocity centring;   // for its place in the image, and its depth
+  ScopeVelocity turning;   // for the ROI's orientation
+  ScopeVelocity centring;  // for its place in the image, and its depth
   ScopeVelocity sum() const { return ScopeVelocity::fromVector(turning.vector() + centring.vector()); }
 };
 

@@ -1,5 +1,5 @@
-// The controller: from a task error and a depth, or from a manual command, to a command for the scope, or to zero with a
-// reason.
+// The controller: from a task error and a depth, or from a manual command, to a command for the scope, or to zero with
+// a reason.
 //
 // The scope moves in the state SERVO only, see safety_machine.h; whatever is not SERVO commands exactly zero, at once.
 #pragma once
@@ -27,10 +27,10 @@ struct TaskErrorInput {
   bool valid = false;                                  // the tracker's own word
   double region = 0.0;                                 // another number is another region of interest
   TaskError error;
-  double age = std::numeric_limits<double>::infinity();           // s, since the message came
-  double image_age = std::numeric_limits<double>::infinity();     // s, since the image was taken
-  std::optional<double> image_time;                               // s, when that was, on the clock of ControllerInput::time
-  double visible_fraction = 0.0;                                  // 0 to 1, of the region of interest
+  double age = std::numeric_limits<double>::infinity();        // s, since the message came
+  double image_age = std::numeric_limits<double>::infinity();  // s, since the image was taken
+  std::optional<double> image_time;  // s, when that was, on the clock of ControllerInput::time
+  double visible_fraction = 0.0;     // 0 to 1, of the region of interest
   double corner_error = std::numeric_limits<double>::infinity();  // px, expected of the worst corner
 };
 
@@ -40,9 +40,9 @@ struct DepthInput {
   Eigen::Matrix3d camera_R_shaft = Eigen::Matrix3d::Identity();  // the optics, see scope_geometry.h
   // Where the shaft's tip is in the insertion point's frame, with the shaft's axes; nothing: not known.
   std::optional<Eigen::Isometry3d> insertion_point_T_tip;
-  bool pose_is_new = true;  // not the one of the last step again
-  double lateral_offset = 0.0;                  // m, of the insertion point from the shaft
-  double age = 0.0;                             // s
+  bool pose_is_new = true;      // not the one of the last step again
+  double lateral_offset = 0.0;  // m, of the insertion point from the shaft
+  double age = 0.0;             // s
 };
 
 // What the robot says of its own motion.
@@ -92,13 +92,14 @@ class Controller {
   // Back to IDLE, from every state; `reason` is kept for the output.
   void disengage(const std::string& reason);
 
-  // Another task: the next command is zero, and the task starts from rest. Engages nothing, clears nothing; what the new
-  // task misses ends the motion as ever. The same task again has no effect.
+  // Another task: the next command is zero, and the task starts from rest. Engages nothing, clears nothing; what the
+  // new task misses ends the motion as ever. The same task again has no effect.
   void select(Task task);
 
   ControllerOutput update(const ControllerInput& input);
 
-  // Where the shafts of the last poses meet, in the insertion point's frame: where it is not at the origin, the calibration is off.
+  // Where the shafts of the last poses meet, in the insertion point's frame: where it is not at the origin, the
+  // calibration is off.
   const InsertionPointEstimator& insertionPoint() const { return insertion_point_; }
   const ScopeServo& servo() const { return servo_; }
 

@@ -22,12 +22,12 @@ enum class LawKind { kFeatures, kPaper };
 
 // What is known of the time from now to the execution of a command.
 struct PredictorConfig {
-  bool enabled = true;       // false: the law sees the task error of the last image as it is
-  double delay = 0.16;       // s, from a command to its execution, until it is measured
-  bool measure_delay = true; // from the velocities that the robot reports
-  double min_delay = 0.0;    // s, nothing less is measured
-  double max_delay = 0.4;    // s, nor more
-  bool feed_forward = true;  // the target's own velocity is added to the law's
+  bool enabled = true;            // false: the law sees the task error of the last image as it is
+  double delay = 0.16;            // s, from a command to its execution, until it is measured
+  bool measure_delay = true;      // from the velocities that the robot reports
+  double min_delay = 0.0;         // s, nothing less is measured
+  double max_delay = 0.4;         // s, nor more
+  bool feed_forward = true;       // the target's own velocity is added to the law's
   double command_lifetime = 0.2;  // s, for which the robot does what it was told last, before it stops by itself
 };
 
@@ -41,8 +41,8 @@ struct BreathingConfig {
 
 // How what the poses of the shaft tell of the insertion point is used.
 struct InsertionPointUse {
-  bool use = true;             // false: the calibration is taken for true, and nothing watches it
-  double prior_stddev = 0.01;  // m, of the calibration, per axis; 0: it counts for nothing
+  bool use = true;                 // false: the calibration is taken for true, and nothing watches it
+  double prior_stddev = 0.01;      // m, of the calibration, per axis; 0: it counts for nothing
   double correction_rate = 0.005;  // m/s, at which the d2 that is used goes from the calibration's to the estimate's
   InsertionPointConfig estimator;
 };
@@ -54,8 +54,8 @@ struct HorizonConfig {
 
 struct ControllerConfig {
   LawKind law = LawKind::kFeatures;
-  PaperGains gains;        // of kPaper
-  FeatureGains features;   // of kFeatures; desired_depth for the predictor of both
+  PaperGains gains;                  // of kPaper
+  FeatureGains features;             // of kFeatures; desired_depth for the predictor of both
   SpinMode spin = SpinMode::kServo;  // of kFeatures
   PredictorConfig predictor;
   TargetMotionConfig target;

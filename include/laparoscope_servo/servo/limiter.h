@@ -1,10 +1,11 @@
 // Limits on velocity and acceleration that keep the direction of the motion.
 //
-// All four components of a part are scaled together, so that the ROI takes the same path in the image, only slower. What has to be limited
-// comes in parts: all of it is scaled until it fits, and then each part, the first ones first, grows into the room that is left. A change beyond the acceleration's limit
-// scales the whole change, so that the command goes straight from the last one to the wanted one: while it is on the way there, the direction
-// is neither's. Both limits hold for each component, whatever is asked for, unless the limits on velocity fall: the new ones are reached as fast
-// as the acceleration allows.
+// All four components of a part are scaled together, so that the ROI takes the same path in the image, only slower.
+// What has to be limited comes in parts: all of it is scaled until it fits, and then each part, the first ones first,
+// grows into the room that is left. A change beyond the acceleration's limit scales the whole change, so that the
+// command goes straight from the last one to the wanted one: while it is on the way there, the direction is neither's.
+// Both limits hold for each component, whatever is asked for, unless the limits on velocity fall: the new ones are
+// reached as fast as the acceleration allows.
 #pragma once
 
 #include <initializer_list>
@@ -22,8 +23,8 @@ class Limiter {
  public:
   explicit Limiter(const Limits& limits) : limits_(limits) {}
 
-  // The velocity for a time `dt` [s] >= 0 after the last one. `parts` must be finite; they add up to what is wanted. `scale`, 0 to 1: of the
-  // limits on velocity.
+  // The velocity for a time `dt` [s] >= 0 after the last one. `parts` must be finite; they add up to what is wanted.
+  // `scale`, 0 to 1: of the limits on velocity.
   ScopeVelocity apply(std::initializer_list<ScopeVelocity> parts, double dt, double scale = 1.0);
   ScopeVelocity apply(const ScopeVelocity& wanted, double dt) { return apply({wanted}, dt); }
 

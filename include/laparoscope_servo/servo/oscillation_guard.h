@@ -1,8 +1,9 @@
 // Notices that the loop swings, and takes its gain back.
 //
-// What is believed of delay and depths sets how fast the loop may be; where it is wrong, the loop swings about the target with a period of a few
-// delays, which no tissue does by itself: a breath is slower. Feature errors that change their sign quickly, several times in a row and by
-// more than noise, lower the gain by a step. It stays lowered until the loop starts anew.
+// What is believed of delay and depths sets how fast the loop may be; where it is wrong, the loop swings about the
+// target with a period of a few delays, which no tissue does by itself: a breath is slower. Feature errors that change
+// their sign quickly, several times in a row and by more than noise, lower the gain by a step. It stays lowered until
+// the loop starts anew.
 #pragma once
 
 #include <array>

@@ -1,15 +1,16 @@
 // From task errors to velocities of the scope: law, predictor, target motion, rest band, limits, dead zone.
 //
-// The task error of an image is rolled forward to the time when the command that is given now will be executed: by what the robot has been
-// told and not done yet, and by the target's own motion. The law sees that error. No safety here: see controller.h.
+// The task error of an image is rolled forward to the time when the command that is given now will be executed: by what
+// the robot has been told and not done yet, and by the target's own motion. The law sees that error. No safety here:
+// see controller.h.
 #pragma once
 
 #include <memory>
 #include <optional>
 
+#include "laparoscope_servo/servo/breathing.h"
 #include "laparoscope_servo/servo/command_history.h"
 #include "laparoscope_servo/servo/control_law.h"
-#include "laparoscope_servo/servo/breathing.h"
 #include "laparoscope_servo/servo/controller_config.h"
 #include "laparoscope_servo/servo/delay_estimator.h"
 #include "laparoscope_servo/servo/target_motion.h"
@@ -22,9 +23,9 @@ struct ServoInput {
   TaskError error;
   ScopeGeometry scope;
   std::optional<Eigen::Isometry3d> insertion_point_T_tip;  // with the shaft's axes; without it, no cone and no horizon
-  double d2_doubt = 0.0;   // m, by which d2 may be less or more
-  double pose_time = 0.0;  // s, of the scope's pose, on the same clock
-  double period = 0.0;     // s, since the last command, 0 for the first
+  double d2_doubt = 0.0;                                   // m, by which d2 may be less or more
+  double pose_time = 0.0;                                  // s, of the scope's pose, on the same clock
+  double period = 0.0;                                     // s, since the last command, 0 for the first
 };
 
 struct ServoLimits {
@@ -93,7 +94,7 @@ class ScopeServo {
   bool has_image_ = false;
   bool at_bound_ = false;
   bool blocked_ = false;
-  double blocked_since_ = 0.0;  // s
+  double blocked_since_ = 0.0;                         // s
   Eigen::Vector2d desired_ = Eigen::Vector2d::Zero();  // of the region that is servoed, and below
   Eigen::Vector3d m_star_ = Eigen::Vector3d::Zero();
   Eigen::Matrix4d jacobian_ = Eigen::Matrix4d::Identity();  // of the features at the reference, see target_motion.h

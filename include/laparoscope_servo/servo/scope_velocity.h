@@ -5,7 +5,8 @@
 
 namespace laparoscope_servo::servo {
 
-// In the shaft's axes, z along the shaft into the body; with 0° optics the camera's (optical: x right, y down, z forward).
+// In the shaft's axes, z along the shaft into the body; with 0° optics the camera's (optical: x right, y down, z
+// forward).
 struct ScopeVelocity {
   double pan = 0.0;        // rad/s, Omega_y
   double tilt = 0.0;       // rad/s, Omega_x

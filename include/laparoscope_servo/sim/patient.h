@@ -1,6 +1,7 @@
 // How tissue and trocar move: with the breath, slowly by themselves, and when somebody pulls.
 //
-// World frame: the camera's at the reference pose (optical: x right, y down, z forward). Deterministic: time is an argument.
+// World frame: the camera's at the reference pose (optical: x right, y down, z forward). Deterministic: time is an
+// argument.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -25,8 +26,8 @@ struct PatientConfig {
   double drift_end = 1e9;                    // s: it stands from then on
   std::vector<double> jump{0.0, 0.0, 0.0};   // m: the tissue is pulled so far
   double jump_time = 1e9;                    // s
-  double tilt = 0.0;                         // rad: the tissue turns to and fro about the world's x axis, through the target
-  double tilt_frequency = 0.1;               // Hz
+  double tilt = 0.0;            // rad: the tissue turns to and fro about the world's x axis, through the target
+  double tilt_frequency = 0.1;  // Hz
 };
 
 // Every error, each naming the field, its value and what was expected.

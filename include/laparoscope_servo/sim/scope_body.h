@@ -1,8 +1,9 @@
 // A rigid scope in space, driven by the velocity of its end-effector, and where it passes an insertion point.
 //
-// Frames (parallel axes, z along the shaft into the body): end-effector O_7, and the tip of the shaft, where the camera's centre O_C
-// is, a length l ahead of it. A stiff wrist holds the scope's direction: nothing keeps it at the insertion point, whether it stays there is
-// for who drives it, and is measured here. A passive wrist leaves the direction to the insertion point.
+// Frames (parallel axes, z along the shaft into the body): end-effector O_7, and the tip of the shaft, where the
+// camera's centre O_C is, a length l ahead of it. A stiff wrist holds the scope's direction: nothing keeps it at the
+// insertion point, whether it stays there is for who drives it, and is measured here. A passive wrist leaves the
+// direction to the insertion point.
 #pragma once
 
 #include "laparoscope_servo/geometry/se3.h"
@@ -14,11 +15,12 @@ enum class Wrist { kStiff, kPassive };
 class ScopeBody {
  public:
   // `insertion_point` in world coordinates [m], `length` l > 0 [m].
-  ScopeBody(const Eigen::Isometry3d& world_T_tip, const Eigen::Vector3d& insertion_point, double length, Wrist wrist = Wrist::kStiff)
+  ScopeBody(const Eigen::Isometry3d& world_T_tip, const Eigen::Vector3d& insertion_point, double length,
+            Wrist wrist = Wrist::kStiff)
       : world_T_tip_(world_T_tip), insertion_point_(insertion_point), length_(length), wrist_(wrist) {}
 
-  // Moves for `dt` [s] with a constant twist of the end-effector, expressed in its frame. A passive wrist takes no part of the twist but
-  // the end-effector's translation and the spin.
+  // Moves for `dt` [s] with a constant twist of the end-effector, expressed in its frame. A passive wrist takes no part
+  // of the twist but the end-effector's translation and the spin.
   void move(const geometry::Vector6d& end_effector_twist, double dt);
 
   // The insertion point has moved, to world coordinates [m]; a passive wrist follows it.

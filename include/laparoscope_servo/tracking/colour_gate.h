@@ -1,8 +1,8 @@
 // Which areas of the region of interest (ROI) are occluded, by their colour: section II of Bourger et al. (2007).
 //
-// Each area's histogram (1) of a colour feature is compared with that of the reference by the Bhattacharyya distance (2); an
-// area at a distance above tau_b is taken for occluded. Works on the ROI's patch, warped by the predicted homography, before
-// ESM.
+// Each area's histogram (1) of a colour feature is compared with that of the reference by the Bhattacharyya distance
+// (2); an area at a distance above tau_b is taken for occluded. Works on the ROI's patch, warped by the predicted
+// homography, before ESM.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -17,8 +17,8 @@ namespace laparoscope_servo::tracking {
 // Eq. (4) with (5): S0 cos H, in [-255, 255] for components in [0, 255]; 0 for grey pixels, where H is not defined.
 float hueSaturationFeature(float r, float g, float b);
 
-// The same over the mean of r, g and b, which a change of the lamp's brightness scales alike; in [-1.5, 3]. Dark pixels, whose
-// colour is noise, go towards 0.
+// The same over the mean of r, g and b, which a change of the lamp's brightness scales alike; in [-1.5, 3]. Dark
+// pixels, whose colour is noise, go towards 0.
 float normalisedFeature(float r, float g, float b);
 
 // The bin of a value of normalisedFeature among `bins` over its range, from 0.
@@ -49,7 +49,7 @@ class ColourHistograms {
 };
 
 // Distance (2) per area; NaN for an area of which less than half is valid in either.
-void areaDistances(const ColourHistograms& reference, const ColourHistograms& current, const image::AreaGrid& grid, int bins,
-                   std::vector<float>& distances);
+void areaDistances(const ColourHistograms& reference, const ColourHistograms& current, const image::AreaGrid& grid,
+                   int bins, std::vector<float>& distances);
 
 }  // namespace laparoscope_servo::tracking

@@ -16,9 +16,10 @@ namespace laparoscope_servo::tracking {
 // Of one channel.
 struct EsmPlane {
   image::Patch value;
-  image::Patch warped;       // the image at the last iteration
-  // Of the light, per block, row by row [grey levels]. With Light::kLocal each block's bias is kept for intensities about the block's
-  // own mean in the reference: it then stays when the gain changes, from level to level and from image to image.
+  image::Patch warped;  // the image at the last iteration
+  // Of the light, per block, row by row [grey levels]. With Light::kLocal each block's bias is kept for intensities
+  // about the block's own mean in the reference: it then stays when the gain changes, from level to level and from
+  // image to image.
   std::vector<double> mean;
   std::vector<double> bias;    // from the last alignment
   std::vector<double> before;  // from the one before
@@ -28,9 +29,10 @@ struct EsmPlane {
 };
 
 struct EsmLevel {
-  // Of the pyramid's level `l`; `roi` in whole pixels. No planes when the ROI's smaller side has fewer than 8 px there. With a lens
-  // (null: none) the pyramid is of a raw image, and the ROI in rectified pixels.
-  EsmLevel(const image::RegionPyramid& reference, const geometry::Rectangle& roi, int l, const image::Lens* lens = nullptr);
+  // Of the pyramid's level `l`; `roi` in whole pixels. No planes when the ROI's smaller side has fewer than 8 px there.
+  // With a lens (null: none) the pyramid is of a raw image, and the ROI in rectified pixels.
+  EsmLevel(const image::RegionPyramid& reference, const geometry::Rectangle& roi, int l,
+           const image::Lens* lens = nullptr);
 
   // Fills in the blocks' means, which are 0 without.
   void centreLight();

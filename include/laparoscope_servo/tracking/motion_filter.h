@@ -1,9 +1,10 @@
 // What the past tells of the homography in the next image: a Kalman filter on SL(3) whose measurement is ESM.
 //
-// State: G and its velocity. G is predicted by the last motion, damped, and believed with the covariance of the last estimate plus that of
-// the innovations, which is learned: how far well-seen estimates were from their predictions, and which way. Corners of an ROI mostly
-// move together; so when one half is covered, what is seen of the other half moves it along, and what nobody sees stays uncertain.
-// Deviations x of G from an expected G are those of MotionPrior, in normalised template units.
+// State: G and its velocity. G is predicted by the last motion, damped, and believed with the covariance of the last
+// estimate plus that of the innovations, which is learned: how far well-seen estimates were from their predictions, and
+// which way. Corners of an ROI mostly move together; so when one half is covered, what is seen of the other half moves
+// it along, and what nobody sees stays uncertain. Deviations x of G from an expected G are those of MotionPrior, in
+// normalised template units.
 #pragma once
 
 #include <Eigen/Core>
@@ -23,12 +24,12 @@ class MotionFilter {
   // The reference: G is the identity, exactly. `normalisation`: N of Esm, which must be that of `roi`.
   void start(const geometry::Rectangle& roi, const Eigen::Matrix3d& normalisation, double stamp);
 
-  // G at `stamp` [s], and how sure that is. `carried`: the last estimate, moved by what somebody else knows of the motion since; what
-  // remained beside that then goes on, instead of the whole motion.
+  // G at `stamp` [s], and how sure that is. `carried`: the last estimate, moved by what somebody else knows of the
+  // motion since; what remained beside that then goes on, instead of the whole motion.
   MotionPrior predict(double stamp, const std::optional<Eigen::Matrix3d>& carried = std::nullopt) const;
 
-  // An estimate that is believed, of the image at `stamp`, found from `prior`. `learn`: so much is seen of the ROI that its deviation
-  // tells how the target moves. `carried`: as it was given for the prediction.
+  // An estimate that is believed, of the image at `stamp`, found from `prior`. `learn`: so much is seen of the ROI that
+  // its deviation tells how the target moves. `carried`: as it was given for the prediction.
   void update(const MotionPrior& prior, const EsmResult& estimate, double stamp, bool learn,
               const std::optional<Eigen::Matrix3d>& carried = std::nullopt);
   // The ROI has been found again: G is known afresh, its velocity is not.

@@ -1,12 +1,12 @@
 // ESM's normal equations from sums over cells of a few pixels.
 //
-// A row of ESM's Jacobian is linear in the image gradient, with coefficients that are polynomials in the normalised template
-// coordinates (u, v):
+// A row of ESM's Jacobian is linear in the image gradient, with coefficients that are polynomials in the normalised
+// template coordinates (u, v):
 //   J = [gx, gy, gx v, gy u, gx u - gy v, g3 - gy v, g3 u, g3 v],  g3 = -(u gx + v gy)
-// so J'WJ and J'Wr are sums of {gx^2, gx gy, gy^2} and {gx, gy} r times monomials in u and v. The gradient changes from pixel to
-// pixel, the monomials hardly do: pixels are summed over cells of up to 16 x 8, and the monomials taken at the cell's centre. J'WJ and J'Wr
-// are then those of one and the same slightly different Jacobian, so that what the iteration converges to has no bias; with cells of
-// one pixel they are exact.
+// so J'WJ and J'Wr are sums of {gx^2, gx gy, gy^2} and {gx, gy} r times monomials in u and v. The gradient changes from
+// pixel to pixel, the monomials hardly do: pixels are summed over cells of up to 16 x 8, and the monomials taken at the
+// cell's centre. J'WJ and J'Wr are then those of one and the same slightly different Jacobian, so that what the
+// iteration converges to has no bias; with cells of one pixel they are exact.
 #pragma once
 
 #include <Eigen/Core>
@@ -41,19 +41,20 @@ struct CellSums {
 
 class NormalEquations {
  public:
-  // Starts a sum. Blocks follow: cells, then endBlock(). Gradients in cells count `gradient_scale` times, which brings them to
-  // normalised units.
+  // Starts a sum. Blocks follow: cells, then endBlock(). Gradients in cells count `gradient_scale` times, which brings
+  // them to normalised units.
   void reset(Light light, double gradient_scale);
   // (u, v): normalised template coordinates of the cell's centre.
   void addCell(const CellSums& cell, double u, double v);
-  // Ends the cells since the last call. With Light::kLocal the block's own bias is eliminated: what remains are the equations of the
-  // other unknowns at the bias that is best for them.
+  // Ends the cells since the last call. With Light::kLocal the block's own bias is eliminated: what remains are the
+  // equations of the other unknowns at the bias that is best for them.
   void endBlock();
 
   // J'WJ and J'Wr of all blocks. Unknowns that `light` does not have get a row of the identity, and 0.
   Matrix10d matrix() const;
   const Vector10d& vector() const { return vector_; }
-  // Of the last block that ended: sum w, sum w r, and sum w J. The bias of the block after a step x changes by -(sum w r + sum w J x) / sum w.
+  // Of the last block that ended: sum w, sum w r, and sum w J. The bias of the block after a step x changes by -(sum w
+  // r + sum w J x) / sum w.
   double blockWeight() const { return block_weight_; }
   double blockResidual() const { return block_residual_; }
   const Vector10d& blockJacobian() const { return block_jacobian_; }

@@ -1,5 +1,5 @@
-// Aligns a region of interest (ROI) of the reference with one image: which pixels to use, ESM on them, and what the result shows of the
-// pixels that should not have been used, until both agree.
+// Aligns a region of interest (ROI) of the reference with one image: which pixels to use, ESM on them, and what the
+// result shows of the pixels that should not have been used, until both agree.
 #pragma once
 
 #include <Eigen/Core>
@@ -29,10 +29,12 @@ class RegionAligner {
   // With a lens images are raw; the ROI and homographies are in rectified pixels.
   explicit RegionAligner(const TrackerConfig& config, std::shared_ptr<const image::Lens> lens = nullptr);
 
-  // `roi`: whole pixels, shown by the image (CV_8UC1 or CV_8UC3). Everything is visible in the reference but its highlights.
+  // `roi`: whole pixels, shown by the image (CV_8UC1 or CV_8UC3). Everything is visible in the reference but its
+  // highlights.
   void setReference(const cv::Mat& image, const geometry::Rectangle& roi);
 
-  // Starts at `start`. `reach` [px]: by how much a corner may have moved from there without the image's crop being left.
+  // Starts at `start`. `reach` [px]: by how much a corner may have moved from there without the image's crop being
+  // left.
   Alignment align(const cv::Mat& image, const EsmState& start, const MotionPrior* prior, double reach);
 
   // The next start has nothing to do with the last one: what is occluded and how the light is are not known.
@@ -72,7 +74,8 @@ class RegionAligner {
   Eigen::Matrix3d shown_ = Eigen::Matrix3d::Identity();  // where the gates last looked
 };
 
-// px, how far the worst of the ROI's corners moves from one homography to the other; infinite where one of both has no image of it.
+// px, how far the worst of the ROI's corners moves from one homography to the other; infinite where one of both has no
+// image of it.
 double farthestCorner(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b, const geometry::Rectangle& roi);
 
 // Pixels of a patch of the ROI's size to those of the image that the ROI is taken from.

@@ -1,8 +1,8 @@
-// Tracks a region of interest (ROI) of tissue, taken for a plane, through a sequence of images: ESM on SL(3) with detection
-// of occlusions. The whole of section II of Bourger et al. (2007), with states that say what may be believed.
+// Tracks a region of interest (ROI) of tissue, taken for a plane, through a sequence of images: ESM on SL(3) with
+// detection of occlusions. The whole of section II of Bourger et al. (2007), with states that say what may be believed.
 //
-// Images are 8 bit, grey (CV_8UC1) or blue-green-red (CV_8UC3); times are seconds, from the images' stamps. The tracker keeps
-// no clock and no global state: the same images give the same results. It is not thread-safe.
+// Images are 8 bit, grey (CV_8UC1) or blue-green-red (CV_8UC3); times are seconds, from the images' stamps. The tracker
+// keeps no clock and no global state: the same images give the same results. It is not thread-safe.
 #pragma once
 
 #include <Eigen/Core>
@@ -40,14 +40,14 @@ struct TrackResult {
   double visible_fraction = 0.0;                    // 0 to 1, share of the ROI's pixels that the estimate used
   double zncc = 0.0;                                // -1 to 1, over those pixels, the mean of each area taken out
   int iterations = 0;                               // of ESM, all levels
-  double corner_error = 0.0;                        // px, standard deviation expected of the worst corner, by residuals and motion
-  double sigma = 0.0;                               // grey levels, robust standard deviation of the residual
-  double gain = 1.0;                                // gain * image + bias has the light of the reference
-  double bias = 0.0;                                // grey levels
-  bool colour_used = false;                         // false: the image has no colour, the colour gate stands aside
+  double corner_error = 0.0;  // px, standard deviation expected of the worst corner, by residuals and motion
+  double sigma = 0.0;         // grey levels, robust standard deviation of the residual
+  double gain = 1.0;          // gain * image + bias has the light of the reference
+  double bias = 0.0;          // grey levels
+  bool colour_used = false;   // false: the image has no colour, the colour gate stands aside
   AreaReport areas;
-  bool selected_now = false;                        // this image is the reference
-  bool motion_used = false;                         // the motion that was given led to this estimate
+  bool selected_now = false;  // this image is the reference
+  bool motion_used = false;   // the motion that was given led to this estimate
 };
 
 class RegionTracker {
@@ -63,8 +63,8 @@ class RegionTracker {
   // pinhole camera sees. A lens that differs from the one before resets to IDLE, and the next image says so.
   void setLens(const std::optional<image::Lens>& lens);
 
-  // Takes `image` for the reference. Throws std::invalid_argument, with the ROI and what was expected, when the ROI is empty,
-  // too small, mostly outside the image or without texture; the tracker then goes on as before.
+  // Takes `image` for the reference. Throws std::invalid_argument, with the ROI and what was expected, when the ROI is
+  // empty, too small, mostly outside the image or without texture; the tracker then goes on as before.
   TrackResult select(const cv::Mat& image, double stamp, const geometry::Rectangle& roi);
 
   // Takes an older image for the reference, whose ROI is then to be found in the images that come: SEARCHING, as after
@@ -77,9 +77,11 @@ class RegionTracker {
   // the tracker then goes on as if the image had not come. `motion`: where something else than the images, a robot,
   // says that the tissue has gone: takes pixels of the last image in which the state was TRACKING to pixels of this
   // one, any scale. It gives a place to start from, beside which only what remains is expected to go on; one that is no
-  // homography, or that leads nowhere, does no harm. Asks for no memory while it tracks, but for a view that it stores now and then. The result
-  // is the tracker's own: it lasts until the next call of select(), track() or reset(), or until the tracker is moved from.
-  const TrackResult& track(const cv::Mat& image, double stamp, const std::optional<Eigen::Matrix3d>& motion = std::nullopt);
+  // homography, or that leads nowhere, does no harm. Asks for no memory while it tracks, but for a view that it stores
+  // now and then. The result is the tracker's own: it lasts until the next call of select(), track() or reset(), or
+  // until the tracker is moved from.
+  const TrackResult& track(const cv::Mat& image, double stamp,
+                           const std::optional<Eigen::Matrix3d>& motion = std::nullopt);
 
   // Forgets the ROI.
   void reset();

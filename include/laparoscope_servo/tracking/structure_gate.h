@@ -1,7 +1,8 @@
-// Which areas of the aligned region do not look like the reference, whatever their colour: an occluder of tissue, smoke, blood; and
-// how alike the rest is.
+// Which areas of the aligned region do not look like the reference, whatever their colour: an occluder of tissue,
+// smoke, blood; and how alike the rest is.
 //
-// Works after ESM on the warped patch, area by area, with each area's mean taken out: shading tells nothing of where the tissue is.
+// Works after ESM on the warped patch, area by area, with each area's mean taken out: shading tells nothing of where
+// the tissue is.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -12,7 +13,8 @@
 
 namespace laparoscope_servo::tracking {
 
-// Of the pixels of an area that are used: their share, and the second moments about their means, per pixel [grey levels squared].
+// Of the pixels of an area that are used: their share, and the second moments about their means, per pixel [grey levels
+// squared].
 struct AreaMoments {
   float share = 0.0f;  // 0 to 1, of the area's pixels
   float image = 0.0f;
@@ -28,16 +30,16 @@ struct PatchPair {
 
 class StructureStatistics {
  public:
-  // Of one patch, or of as many channels of it, whose moments are then their mean over the channels. `weight`: 1 for pixels that are
-  // used, 0 for the others. Sizes must agree with the grid's.
+  // Of one patch, or of as many channels of it, whose moments are then their mean over the channels. `weight`: 1 for
+  // pixels that are used, 0 for the others. Sizes must agree with the grid's.
   void compute(const PatchPair* channels, int count, const image::Patch& weight, const image::AreaGrid& grid);
 
   const AreaMoments& area(int k) const { return areas_[k]; }
   int count() const { return static_cast<int>(areas_.size()); }
 
-  // The variance of gain * image - reference over the mean variance of both plus that of the noise, whose standard deviation per pixel
-  // of the difference is `sigma` [grey levels]. 0 for equal patches, about 2 for unrelated ones, about 2/3 where there is nothing but
-  // noise. NaN where less than half of the area is used.
+  // The variance of gain * image - reference over the mean variance of both plus that of the noise, whose standard
+  // deviation per pixel of the difference is `sigma` [grey levels]. 0 for equal patches, about 2 for unrelated ones,
+  // about 2/3 where there is nothing but noise. NaN where less than half of the area is used.
   float dissimilarity(int k, double gain, double sigma) const;
 
  private:

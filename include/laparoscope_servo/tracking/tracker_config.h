@@ -38,38 +38,40 @@ struct OcclusionConfig {
 };
 
 struct EsmConfig {
-  int levels = 3;            // 1 to 6, of the pyramid; a level twice as coarse each
-  int max_iterations = 50;   // 1 to 100, per level
-  double min_step = 0.02;    // px, 0.0001 to 1: converged when no corner of the ROI is expected to move by more
+  int levels = 3;           // 1 to 6, of the pyramid; a level twice as coarse each
+  int max_iterations = 50;  // 1 to 100, per level
+  double min_step = 0.02;   // px, 0.0001 to 1: converged when no corner of the ROI is expected to move by more
   Light light = Light::kLocal;
-  bool robust = true;        // Tukey's weights on the residuals
-  int saturation = 250;      // 1 to 256 grey levels: pixels as bright as this in any channel weigh nothing; 256 turns it off
+  bool robust = true;  // Tukey's weights on the residuals
+  int saturation =
+      250;  // 1 to 256 grey levels: pixels as bright as this in any channel weigh nothing; 256 turns it off
   TrackedChannels channels = TrackedChannels::kStrongest;
 };
 
 // When an estimate is believed.
 struct QualityConfig {
-  double min_zncc = 0.5;              // 0 to 1, over the pixels used; the tracker asks for more of a ROI that was better
+  double min_zncc = 0.5;  // 0 to 1, over the pixels used; the tracker asks for more of a ROI that was better
   double min_visible_fraction = 0.1;  // 0 to 1, share of the ROI's pixels used
   double min_return_fraction = 0.3;   // 0 to 1, the same to be believed again after a loss
-  double max_corner_error = 1.5;      // px, 0.01 to 100: standard deviation expected of the worst corner, by residuals and motion
-  double max_area_ratio = 6.0;        // 1.01 to 1000: area of the ROI in the image over that in the reference, or its inverse
-  double max_jump = 0.35;             // 0.01 to 10 of the ROI's diagonal: how far a corner may be from its prediction; less when
-                                      // little of the ROI is visible
-  double max_search_time = 2.0;       // s, 0 to 3600: SEARCHING for longer is LOST
-  int confirmations = 3;              // 1 to 100 images in a row that pass every test, before TRACKING is said again
+  double max_corner_error =
+      1.5;  // px, 0.01 to 100: standard deviation expected of the worst corner, by residuals and motion
+  double max_area_ratio = 6.0;  // 1.01 to 1000: area of the ROI in the image over that in the reference, or its inverse
+  double max_jump = 0.35;  // 0.01 to 10 of the ROI's diagonal: how far a corner may be from its prediction; less when
+                           // little of the ROI is visible
+  double max_search_time = 2.0;  // s, 0 to 3600: SEARCHING for longer is LOST
+  int confirmations = 3;         // 1 to 100 images in a row that pass every test, before TRACKING is said again
 };
 
 // Where to look for the ROI when it was lost. After the place where it was seen last, which is always tried.
 struct SearchConfig {
-  bool features = true;         // by points matched with stored views
-  bool correlation = true;      // by sliding the ROI over a coarse image
-  int max_features = 600;       // 50 to 5000, points drawn from an image; half of it from a stored view
-  int max_pixels = 150000;      // 10000 to 10000000: an image with more is scaled down before points are drawn
-  double max_ratio = 0.85;      // 0.1 to 1: distance of a point's best match over that of its second best
-  int min_inliers = 8;          // 4 to 1000 matches that agree
-  int keyframes = 8;            // 0 to 64 views stored beside the reference
-  double min_detail = 0.7;            // 0 to 1, correlation of the fine structure, where it was found
+  bool features = true;     // by points matched with stored views
+  bool correlation = true;  // by sliding the ROI over a coarse image
+  int max_features = 600;   // 50 to 5000, points drawn from an image; half of it from a stored view
+  int max_pixels = 150000;  // 10000 to 10000000: an image with more is scaled down before points are drawn
+  double max_ratio = 0.85;  // 0.1 to 1: distance of a point's best match over that of its second best
+  int min_inliers = 8;      // 4 to 1000 matches that agree
+  int keyframes = 8;        // 0 to 64 views stored beside the reference
+  double min_detail = 0.7;  // 0 to 1, correlation of the fine structure, where it was found
 };
 
 struct TrackerConfig {

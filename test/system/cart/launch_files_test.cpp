@@ -62,11 +62,13 @@ TEST(LaunchFiles, ControllerOfACartAsksForTheRobotAndForADeadManThatIsGiven) {
 TEST(LaunchFiles, CalibrationIsWrittenWhereTheCartReadsIt) {
   const std::string calibrate = parametersOf("calibrate.launch port:=/dev/ttyX file:=/x.yaml");
   EXPECT_NE(calibrate.find("/aesop/calibration/file: /x.yaml"), std::string::npos) << calibrate;
-  EXPECT_NE(calibrate.find("/aesop/insertion_point_file: ''"), std::string::npos) << "need not be there yet: " << calibrate;
+  EXPECT_NE(calibrate.find("/aesop/insertion_point_file: ''"), std::string::npos)
+      << "need not be there yet: " << calibrate;
   const std::string cart = parametersOf("cart.launch port:=/dev/ttyX rviz:=false insertion_point_file:=/x.yaml");
   EXPECT_NE(cart.find("/aesop/insertion_point_file: /x.yaml"), std::string::npos) << cart;
   EXPECT_NE(cart.find("/aesop/calibration/file: /x.yaml"), std::string::npos) << cart;
-  EXPECT_NE(outputOf("roslaunch --nodes laparoscope_servo calibrate.launch port:=/dev/ttyX").find("file"), std::string::npos);
+  EXPECT_NE(outputOf("roslaunch --nodes laparoscope_servo calibrate.launch port:=/dev/ttyX").find("file"),
+            std::string::npos);
 }
 
 TEST(LaunchFiles, CartNeedsItsPort) {

@@ -10,8 +10,8 @@ namespace laparoscope_servo::image {
 namespace {
 
 TEST(AreaGrid, CoversEveryPixelOnceWithAreasOfNearlyEqualSize) {
-  for (const auto& [width, height, rows, columns] :
-       std::vector<std::array<int, 4>>{{196, 196, 14, 14}, {100, 37, 14, 14}, {14, 14, 14, 14}, {15, 200, 1, 7}, {1, 1, 1, 1}}) {
+  for (const auto& [width, height, rows, columns] : std::vector<std::array<int, 4>>{
+           {196, 196, 14, 14}, {100, 37, 14, 14}, {14, 14, 14, 14}, {15, 200, 1, 7}, {1, 1, 1, 1}}) {
     const AreaGrid grid(width, height, rows, columns);
     std::vector<int> counted(grid.count(), 0);
     for (int j = 0; j < height; ++j) {

@@ -27,7 +27,9 @@ TEST(AesopConversions, framesChainFromTheBaseToTheCamera) {
   const aesop::Status status = someStatus();
   std::vector<geometry_msgs::TransformStamped> all =
       linkTransforms(kKinematics, status.position, "left/", ros::Time(5.0));
-  for (const auto& t : fixedTransforms(kKinematics, {0.5, 0.1, -0.2}, Eigen::Matrix3d::Identity(), "left/", ros::Time(5.0))) all.push_back(t);
+  for (const auto& t :
+       fixedTransforms(kKinematics, {0.5, 0.1, -0.2}, Eigen::Matrix3d::Identity(), "left/", ros::Time(5.0)))
+    all.push_back(t);
   std::map<std::string, geometry_msgs::TransformStamped> parent;
   for (const auto& t : all) {
     EXPECT_EQ(t.header.stamp, ros::Time(5.0));
@@ -72,9 +74,11 @@ TEST(AesopConversions, twistIsTheDerivativeOfThePose) {
   aesop::Status status = someStatus();
   const double dt = 1e-6;
   const geometry_msgs::TwistStamped twist = opticalTwist(kKinematics, status, "", ros::Time(5.0));
-  const geometry_msgs::Point before = opticalPose(kKinematics, status, Eigen::Matrix3d::Identity(), "", ros::Time(5.0)).pose.position;
+  const geometry_msgs::Point before =
+      opticalPose(kKinematics, status, Eigen::Matrix3d::Identity(), "", ros::Time(5.0)).pose.position;
   status.position += dt * status.velocity;
-  const geometry_msgs::Point after = opticalPose(kKinematics, status, Eigen::Matrix3d::Identity(), "", ros::Time(5.0)).pose.position;
+  const geometry_msgs::Point after =
+      opticalPose(kKinematics, status, Eigen::Matrix3d::Identity(), "", ros::Time(5.0)).pose.position;
   EXPECT_EQ(twist.header.frame_id, "aesop_base");
   EXPECT_NEAR(twist.twist.linear.x, (after.x - before.x) / dt, 1e-6);
   EXPECT_NEAR(twist.twist.linear.y, (after.y - before.y) / dt, 1e-6);

@@ -107,12 +107,16 @@ TEST(ControllerConversions, DepthIsAlongTheShaft) {
   EXPECT_NEAR(depth.lateral_offset, 0.002, 1e-12);
   EXPECT_TRUE(depth.camera_R_shaft.isApprox(camera_R_shaft, 1e-12));
   EXPECT_TRUE(depth.insertion_point_T_tip->linear().isApprox(insertion_point_R_shaft, 1e-12));
-  EXPECT_NEAR((depth.insertion_point_T_tip->translation() - insertion_point_R_shaft * Eigen::Vector3d(-0.002, 0.0, 0.12)).norm(), 0.0, 1e-12);
+  EXPECT_NEAR(
+      (depth.insertion_point_T_tip->translation() - insertion_point_R_shaft * Eigen::Vector3d(-0.002, 0.0, 0.12))
+          .norm(),
+      0.0, 1e-12);
 }
 
 TEST(ControllerConversions, ATwistIsTurnedIntoTheShaftsAxes) {
   const Eigen::Matrix3d base_R_shaft = geometry::so3Exp({3.0, 0.2, -0.4});
-  const Eigen::Vector3d w = base_R_shaft * Eigen::Vector3d(0.2, 0.1, 0.3), v = base_R_shaft * Eigen::Vector3d(0.0, 0.0, 0.01);
+  const Eigen::Vector3d w = base_R_shaft * Eigen::Vector3d(0.2, 0.1, 0.3),
+                        v = base_R_shaft * Eigen::Vector3d(0.0, 0.0, 0.01);
   geometry_msgs::Twist twist;
   twist.angular.x = w.x();
   twist.angular.y = w.y();

@@ -17,10 +17,18 @@ std::vector<double> numbers(const servo::ScopeVelocity& v) {
 std::vector<double> numbers(const ControllerNodeConfig& config) {
   const servo::ControllerConfig& c = config.control;
   const servo::SafetyConfig& s = c.safety;
-  std::vector<double> all{config.rate,          c.gains.pan,          c.gains.tilt,
-                          c.gains.spin,         c.gains.insertion,    c.dead_zone.inverse ? 1.0 : 0.0,
-                          s.max_task_error_age, s.max_depth_age,      s.min_depth,
-                          s.max_depth,          s.max_lateral_offset, s.resume_time,
+  std::vector<double> all{config.rate,
+                          c.gains.pan,
+                          c.gains.tilt,
+                          c.gains.spin,
+                          c.gains.insertion,
+                          c.dead_zone.inverse ? 1.0 : 0.0,
+                          s.max_task_error_age,
+                          s.max_depth_age,
+                          s.min_depth,
+                          s.max_depth,
+                          s.max_lateral_offset,
+                          s.resume_time,
                           s.max_period,
                           static_cast<double>(c.law),
                           static_cast<double>(c.spin),
@@ -93,8 +101,7 @@ std::vector<double> numbers(const ControllerNodeConfig& config) {
                           s.max_corner_error_for_insertion,
                           s.dead_man_required ? 1.0 : 0.0,
                           s.robot_required ? 1.0 : 0.0};
-  for (const servo::ScopeVelocity& v :
-       {c.dead_zone.width, c.limits.velocity, c.limits.acceleration}) {
+  for (const servo::ScopeVelocity& v : {c.dead_zone.width, c.limits.velocity, c.limits.acceleration}) {
     for (const double number : numbers(v)) all.push_back(number);
   }
   for (const std::vector<double>& v : {c.range.axis, c.horizon.up}) all.insert(all.end(), v.begin(), v.end());
@@ -150,7 +157,8 @@ std::vector<double> numbers(const SimulationConfig& c) {
                           c.patient.tilt,
                           c.patient.tilt_frequency};
   for (const double width : c.robot.dead_zone) all.push_back(width);
-  for (const std::vector<double>& v : {c.patient.breathing.tissue, c.patient.breathing.trocar, c.patient.drift, c.patient.jump}) {
+  for (const std::vector<double>& v :
+       {c.patient.breathing.tissue, c.patient.breathing.trocar, c.patient.drift, c.patient.jump}) {
     all.insert(all.end(), v.begin(), v.end());
   }
   return all;

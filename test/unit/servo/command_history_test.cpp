@@ -41,7 +41,9 @@ TEST(CommandHistory, IntegratesWhatIsExecuted) {
     }
     EXPECT_NEAR(history.displacement(begin, end, delay)[1], sum, 1e-3);
   }
-  EXPECT_NEAR((history.displacement(1.0, 2.0, delay) + history.displacement(2.0, 3.0, delay) - history.displacement(1.0, 3.0, delay)).norm(),
+  EXPECT_NEAR((history.displacement(1.0, 2.0, delay) + history.displacement(2.0, 3.0, delay) -
+               history.displacement(1.0, 3.0, delay))
+                  .norm(),
               0.0, 1e-12);
   EXPECT_EQ(history.displacement(2.0, 2.0, delay), Eigen::Vector4d::Zero());
 }

@@ -1,12 +1,11 @@
 // What stops the scope, and what lets it go on.
-#include "laparoscope_servo/servo/controller.h"
-
 #include <gtest/gtest.h>
 
 #include <random>
 
 #include "controller_input.h"
 #include "laparoscope_servo/geometry/se3.h"
+#include "laparoscope_servo/servo/controller.h"
 
 namespace laparoscope_servo::servo {
 namespace {

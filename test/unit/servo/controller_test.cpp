@@ -182,7 +182,8 @@ TEST(Controller, LimitsHoldForAnyInput) {
     } else {
       const double step = std::min(dt, config.safety.max_period);
       // The dead zone's inverse may go from one side of it to the other, which the arm does not execute.
-      const Eigen::Vector4d limit = step * config.limits.acceleration.vector() * (1.0 + 1e-9) + 2.0 * config.dead_zone.width.vector();
+      const Eigen::Vector4d limit =
+          step * config.limits.acceleration.vector() * (1.0 + 1e-9) + 2.0 * config.dead_zone.width.vector();
       Eigen::Vector4d change = (command - last).cwiseAbs();
       if (command[3] == 0.0) change[3] = 0.0;  // not deeper: that is at once
       ASSERT_TRUE((change.array() <= limit.array() + 1e-12).all());

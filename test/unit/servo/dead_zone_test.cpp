@@ -9,7 +9,9 @@ namespace {
 
 const ScopeVelocity kWidth{0.004, 0.003, 0.002, 0.0004};
 
-ScopeVelocity all(double angular, double linear) { return {angular, angular, angular, linear}; }
+ScopeVelocity all(double angular, double linear) {
+  return {angular, angular, angular, linear};
+}
 
 TEST(DeadZone, NothingWantedIsNothingCommanded) {
   EXPECT_EQ(throughDeadZone(ScopeVelocity(), kWidth).vector(), Eigen::Vector4d::Zero());

@@ -17,7 +17,9 @@ using test::straight;
 
 const Eigen::Matrix3d kOblique = obliqueOptics(30.0 * M_PI / 180.0, 0.4);
 
-Eigen::Vector4d features(const TaskError& error) { return {error.x, error.y, error.log_depth, error.alpha}; }
+Eigen::Vector4d features(const TaskError& error) {
+  return {error.x, error.y, error.log_depth, error.alpha};
+}
 
 // The interaction matrix against the loop's own numeric derivative, for both optics and places all over the image.
 TEST(FeatureJacobian, IsTheDerivativeOfTheFeatures) {
@@ -34,7 +36,8 @@ TEST(FeatureJacobian, IsTheDerivativeOfTheFeatures) {
       ahead.move(ScopeVelocity::fromVector(direction), 1e-4);
       behind.move(ScopeVelocity::fromVector(direction), -1e-4);
       const Eigen::Vector4d numeric = (features(ahead.error()) - features(behind.error())) / 2e-4;
-      EXPECT_LT((numeric - j * direction).norm(), 0.02 * numeric.norm()) << numeric.transpose() << "\n" << (j * direction).transpose();
+      EXPECT_LT((numeric - j * direction).norm(), 0.02 * numeric.norm()) << numeric.transpose() << "\n"
+                                                                         << (j * direction).transpose();
     }
   }
 }
@@ -128,7 +131,8 @@ TEST(FeatureLaw, ConvergesFromRandomVisibleStarts) {
         const ScopeGeometry believed{optics, wrong * loop.scope().d2};
         loop.move(law.velocity(loop.error(), believed).sum(), 0.01);
       }
-      EXPECT_LT(sizeOf(loop.error()), 1e-3) << "start " << start << ", d2 " << wrong << ", Z* " << gains.desired_depth / kZ;
+      EXPECT_LT(sizeOf(loop.error()), 1e-3)
+          << "start " << start << ", d2 " << wrong << ", Z* " << gains.desired_depth / kZ;
     }
   }
 }

@@ -42,7 +42,8 @@ TEST(Limiter, NeverExceedsTheLimits) {
                                0.2 * size * normal(random)};
     const double dt = k % 10 == 0 ? 0.0 : 0.05 * uniform(random);
     const ScopeVelocity other{normal(random), -size * normal(random), 0.1 * normal(random), 0.01 * normal(random)};
-    const Eigen::Vector4d command = (k % 2 == 0 ? limiter.apply(wanted, dt) : limiter.apply({wanted, other}, dt)).vector();
+    const Eigen::Vector4d command =
+        (k % 2 == 0 ? limiter.apply(wanted, dt) : limiter.apply({wanted, other}, dt)).vector();
     for (int i = 0; i < 4; ++i) {
       EXPECT_LE(std::abs(command[i]), velocity[i] * kRounding);
       EXPECT_LE(std::abs(command[i] - last[i]), dt * acceleration[i] * kRounding + 1e-15);
@@ -92,14 +93,16 @@ TEST(Limiter, PartsKeepTheirDirectionsAndShareTheRoom) {
   EXPECT_NEAR(command[3] / command[0], 0.02, 1e-12);
   // Both want the same axis: neither gets nothing.
   limiter.reset();
-  const Eigen::Vector4d both = limiter.apply({ScopeVelocity{0.0, 0.0, 1.0, 0.0}, ScopeVelocity{0.05, 0.0, 1.0, 0.0}}, 10.0).vector();
+  const Eigen::Vector4d both =
+      limiter.apply({ScopeVelocity{0.0, 0.0, 1.0, 0.0}, ScopeVelocity{0.05, 0.0, 1.0, 0.0}}, 10.0).vector();
   EXPECT_NEAR(both[2], 0.2, 1e-12);
   EXPECT_GT(both[0], 0.004);
 }
 
 TEST(Limiter, PartsWithinTheLimitsAddUp) {
   Limiter limiter(limits());
-  const Eigen::Vector4d command = limiter.apply({ScopeVelocity{0.05, 0, 0, 0}, ScopeVelocity{-0.02, 0.01, 0, 0}}, 10.0).vector();
+  const Eigen::Vector4d command =
+      limiter.apply({ScopeVelocity{0.05, 0, 0, 0}, ScopeVelocity{-0.02, 0.01, 0, 0}}, 10.0).vector();
   EXPECT_NEAR((command - Eigen::Vector4d(0.03, 0.01, 0.0, 0.0)).norm(), 0.0, 1e-15);
 }
 

@@ -10,7 +10,8 @@ namespace laparoscope_servo::servo {
 namespace {
 
 // The factor after `duration` [s] at 25 Hz of this error of x.
-double after(double duration, const std::function<double(double)>& x, const OscillationConfig& config = OscillationConfig()) {
+double after(double duration, const std::function<double(double)>& x,
+             const OscillationConfig& config = OscillationConfig()) {
   OscillationGuard guard(config);
   double factor = 1.0;
   for (double t = 0.0; t < duration; t += 0.04) {
@@ -70,7 +71,9 @@ TEST(OscillationGuard, SeesEachFeature) {
 TEST(OscillationGuard, CanBeSwitchedOffAndBearsNotANumber) {
   OscillationConfig config;
   config.enabled = false;
-  EXPECT_EQ(after(5.0, [](double t) { return 0.02 * std::sin(2.0 * M_PI * t / 0.6); }, config), 1.0);
+  EXPECT_EQ(after(
+                5.0, [](double t) { return 0.02 * std::sin(2.0 * M_PI * t / 0.6); }, config),
+            1.0);
   EXPECT_EQ(after(5.0, [](double) { return std::nan(""); }), 1.0);
 }
 

@@ -55,7 +55,8 @@ TEST(PaperLaw, DoesNotDependOnD2) {
   loop.offset({0.1, -0.1, 0.2, 0.01});
   const Eigen::Vector4d expected = PaperLaw(PaperGains()).velocity(loop.error(), straight(0.1)).sum().vector();
   for (const double d2 : {0.02, 0.05, 0.2}) {
-    EXPECT_NEAR((PaperLaw(PaperGains()).velocity(loop.error(), straight(d2)).sum().vector() - expected).norm(), 0.0, 1e-15);
+    EXPECT_NEAR((PaperLaw(PaperGains()).velocity(loop.error(), straight(d2)).sum().vector() - expected).norm(), 0.0,
+                1e-15);
   }
 }
 

@@ -17,12 +17,14 @@ const double kZ = 0.08;
 // The scope stands where it is after moving from the reference pose.
 class PlaneLoop {
  public:
-  PlaneLoop(const Eigen::Vector3d& normal, double depth, const ScopeGeometry& scope) : normal_(normal), depth_(depth), scope_(scope) {}
+  PlaneLoop(const Eigen::Vector3d& normal, double depth, const ScopeGeometry& scope)
+      : normal_(normal), depth_(depth), scope_(scope) {}
 
   void move(const ScopeVelocity& velocity, double dt) {
     ScopeGeometry middle = scope_;
     middle.d2 += 0.5 * dt * velocity.insertion;
-    reference_T_camera_ = reference_T_camera_ * geometry::se3Exp(dt * (insertionPointMotions(middle) * velocity.vector()));
+    reference_T_camera_ =
+        reference_T_camera_ * geometry::se3Exp(dt * (insertionPointMotions(middle) * velocity.vector()));
     scope_.d2 += dt * velocity.insertion;
   }
 
@@ -57,6 +59,8 @@ inline double sizeOf(const TaskError& error) {
                    std::abs(error.alpha)});
 }
 
-inline ScopeGeometry straight(double d2 = kD2) { return {Eigen::Matrix3d::Identity(), d2}; }
+inline ScopeGeometry straight(double d2 = kD2) {
+  return {Eigen::Matrix3d::Identity(), d2};
+}
 
 }  // namespace laparoscope_servo::servo::test

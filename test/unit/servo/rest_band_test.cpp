@@ -19,7 +19,9 @@ TaskError off(double x, double y, double log_depth, double alpha) {
   return error;
 }
 
-bool centreMoves(const TaskError& error) { return error.x != error.desired_x || error.y != error.desired_y; }
+bool centreMoves(const TaskError& error) {
+  return error.x != error.desired_x || error.y != error.desired_y;
+}
 
 TEST(RestBand, StartsAtOneBoundAndStopsAtALowerOne) {
   const RestConfig config;

@@ -1,12 +1,11 @@
 // The table of the safety states: each row, their order, and all of them under random facts.
-#include "laparoscope_servo/servo/safety_machine.h"
-
 #include <gtest/gtest.h>
 
 #include <map>
 #include <set>
 #include <utility>
 
+#include "laparoscope_servo/servo/safety_machine.h"
 #include "safety_facts.h"
 
 namespace laparoscope_servo::servo {
@@ -86,7 +85,8 @@ std::map<Condition, Fact> conditions() {
       {Condition::kResidualStop, {"", [](SafetyFacts& f) { f.residual = ResidualLevel::kStop; }, "do not agree"}},
       {Condition::kShaftOffInsertionPoint, {"", [](SafetyFacts& f) { f.pose.lateral_offset = 0.1; }, "shaft"}},
       {Condition::kDisengaged, {"", [](SafetyFacts& f) { f.request = EngageRequest::kOff; }, "not engaged"}},
-      {Condition::kHeldTooLong, {"", [](SafetyFacts& f) { f.time += 0.6; }, "held for 0.5 s: the robot is not enabled"}},
+      {Condition::kHeldTooLong,
+       {"", [](SafetyFacts& f) { f.time += 0.6; }, "held for 0.5 s: the robot is not enabled"}},
       {Condition::kRegionChanged, {"", [](SafetyFacts& f) { f.tracker.region = 2.0; }, "another region"}},
       {Condition::kRobotSilent, {"", [](SafetyFacts& f) { f.robot.age = 9.0; }, "operating state"}},
       {Condition::kRobotNotEnabled, {"", [](SafetyFacts& f) { f.robot.enabled = false; }, "not enabled"}},

@@ -19,7 +19,8 @@ TEST(InsertionPointMotions, AreEquation10ForStraightOptics) {
   for (int k = 0; k < 50; ++k) {
     const ScopeVelocity velocity = any(random);
     const ScopeGeometry scope{Eigen::Matrix3d::Identity(), 0.03 + 0.001 * k};
-    EXPECT_NEAR((insertionPointMotions(scope) * velocity.vector() - cameraTwist(velocity, scope.d2)).norm(), 0.0, 1e-15);
+    EXPECT_NEAR((insertionPointMotions(scope) * velocity.vector() - cameraTwist(velocity, scope.d2)).norm(), 0.0,
+                1e-15);
   }
 }
 

@@ -13,7 +13,9 @@ constexpr double kPeriod = 0.02;  // s
 // The loop with an ideal robot that executes after a delay, images every other step.
 class Loop {
  public:
-  Loop(const ControllerConfig& config, double delay) : servo(config), robot_(10.0, 0.2), delay_(delay) { robot_.add(-1.0, ScopeVelocity()); }
+  Loop(const ControllerConfig& config, double delay) : servo(config), robot_(10.0, 0.2), delay_(delay) {
+    robot_.add(-1.0, ScopeVelocity());
+  }
 
   ScopeVelocity step(bool report = false) {
     if (count_ % 2 == 0) {

@@ -16,7 +16,8 @@ using test::Loop;
 using test::straight;
 using test::withoutDeadZone;
 
-// What the predictor is for: this gain without it swings, with it settles in a second, and without overshooting by more than noise would.
+// What the predictor is for: this gain without it swings, with it settles in a second, and without overshooting by more
+// than noise would.
 TEST(ScopeServo, BearsTheDelayByPrediction) {
   for (const bool predicts : {true, false}) {
     ControllerConfig config = withoutDeadZone();

@@ -12,14 +12,15 @@ namespace {
 const double kPeriod = 0.04;
 
 // Noisy measurements of x = place(t) for `duration` [s].
-TargetMotion observed(double duration, const std::function<double(double)>& place, double moved = 0.0, unsigned seed = 1) {
+TargetMotion observed(double duration, const std::function<double(double)>& place, double moved = 0.0,
+                      unsigned seed = 1) {
   const TargetMotionConfig config;
   TargetMotion motion(config);
   std::mt19937 random(seed);
   std::normal_distribution<double> normal;
   for (double t = 0.0; t < duration; t += kPeriod) {
-    const Features noise(config.centre_noise * normal(random), config.centre_noise * normal(random), config.depth_noise * normal(random),
-                         config.orientation_noise * normal(random));
+    const Features noise(config.centre_noise * normal(random), config.centre_noise * normal(random),
+                         config.depth_noise * normal(random), config.orientation_noise * normal(random));
     motion.observe(t, Features(place(t), 0.0, 0.0, 0.0) + noise, Features::Constant(moved));
   }
   return motion;
@@ -29,7 +30,9 @@ TEST(TargetMotion, AveragesWhatStandsStillAndTakesNoNoiseForMotion) {
   int believed = 0;
   double squares = 0.0;
   for (unsigned seed = 1; seed <= 200; ++seed) {
-    const TargetPrediction prediction = observed(4.0, [](double) { return 0.2; }, 0.0, seed).predict(4.1);
+    const TargetPrediction prediction = observed(
+                                            4.0, [](double) { return 0.2; }, 0.0, seed)
+                                            .predict(4.1);
     believed += prediction.velocity != Features::Zero();
     squares += (prediction.place[0] - 0.2) * (prediction.place[0] - 0.2);
   }
@@ -46,7 +49,8 @@ TEST(TargetMotion, FollowsASteadyMotionAheadOfTime) {
   }
 }
 
-// While the scope moves, what the target seems to do may be what is not known of the scope: its velocity is believed later.
+// While the scope moves, what the target seems to do may be what is not known of the scope: its velocity is believed
+// later.
 TEST(TargetMotion, IsCarefulWhileTheScopeMoves) {
   const auto drift = [](double t) { return 0.06 * t; };
   EXPECT_NE(observed(1.0, drift).predict(1.1).velocity[0], 0.0);

@@ -11,7 +11,9 @@ namespace laparoscope_servo::servo {
 namespace {
 
 // The shaft along the cone's axis, turned by tilt and pan.
-Eigen::Matrix3d shaft(double tilt, double pan) { return geometry::so3Exp({M_PI, 0.0, 0.0}) * geometry::so3Exp({tilt, pan, 0.0}); }
+Eigen::Matrix3d shaft(double tilt, double pan) {
+  return geometry::so3Exp({M_PI, 0.0, 0.0}) * geometry::so3Exp({tilt, pan, 0.0});
+}
 
 double angleOf(const WorkRange& range, const Eigen::Matrix3d& r) {
   return std::acos(std::min(1.0, r.col(2).dot(Eigen::Vector3d(range.axis[0], range.axis[1], range.axis[2]))));

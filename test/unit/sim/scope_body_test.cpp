@@ -62,7 +62,8 @@ TEST(ScopeBody, APassiveWristFollowsTheInsertionPoint) {
   for (int k = 0; k < 200; ++k) {
     scope.moveInsertionPoint({0.01 * uniform(random), 0.01 * uniform(random), -kDepth + 0.01 * uniform(random)});
     EXPECT_LT(scope.lateralOffset(), 1e-12);
-    scope.move(twist(0.05 * uniform(random), 0.05 * uniform(random), 0.02 * uniform(random), uniform(random), uniform(random), uniform(random)),
+    scope.move(twist(0.05 * uniform(random), 0.05 * uniform(random), 0.02 * uniform(random), uniform(random),
+                     uniform(random), uniform(random)),
                0.02);
     EXPECT_LT(scope.lateralOffset(), 1e-12);
     EXPECT_TRUE((scope.pose().linear() * scope.pose().linear().transpose()).isIdentity(1e-12));

@@ -39,8 +39,10 @@ class SumCellsTest : public ::testing::Test {
         const double r = input_.gain * image_(j, i) + bias_[cell / per_strip] - reference_(j, i);
         const double tukey = std::max(0.0, 1.0 - std::pow(r * input_.inverse_rejection, 2));
         const double w = weight_(j, i) * tukey * tukey;
-        const double x = 0.5 * input_.gain * (image_(j, i + 1) - image_(j, i - 1)) + 0.5 * (reference_(j, i + 1) - reference_(j, i - 1));
-        const double y = 0.5 * input_.gain * (image_(j + 1, i) - image_(j - 1, i)) + 0.5 * (reference_(j + 1, i) - reference_(j - 1, i));
+        const double x = 0.5 * input_.gain * (image_(j, i + 1) - image_(j, i - 1)) +
+                         0.5 * (reference_(j, i + 1) - reference_(j, i - 1));
+        const double y = 0.5 * input_.gain * (image_(j + 1, i) - image_(j - 1, i)) +
+                         0.5 * (reference_(j + 1, i) - reference_(j - 1, i));
         const double m = 0.5 * (image_(j, i) + reference_(j, i));
         const double values[] = {x * x, x * y, y * y, x * r, y * r, x, y, x * m, y * m, 1.0, r, m, m * m, m * r};
         for (int k = 0; k < 14; ++k) s[k] += w * values[k];
@@ -65,7 +67,9 @@ class SumCellsTest : public ::testing::Test {
   }
 };
 
-TEST_F(SumCellsTest, AreTheSumsOverThePixels) { check(); }
+TEST_F(SumCellsTest, AreTheSumsOverThePixels) {
+  check();
+}
 
 TEST_F(SumCellsTest, WeighByTukey) {
   input_.inverse_rejection = 1.0f / 20.0f;

@@ -34,7 +34,9 @@ TEST(EsmLevelTest, ShowsTheReferenceWhereItSays) {
   }
 }
 
-TEST(EsmLevelTest, IsEmptyWhereItWouldBeTooSmall) { EXPECT_TRUE(EsmLevel(pyramid(), kRoi, 3).planes.empty()); }  // 60 / 8 px
+TEST(EsmLevelTest, IsEmptyWhereItWouldBeTooSmall) {
+  EXPECT_TRUE(EsmLevel(pyramid(), kRoi, 3).planes.empty());
+}  // 60 / 8 px
 
 TEST(EsmLevelTest, HasAPlaneForEachChannel) {
   const EsmLevel level(pyramid({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}), kRoi, 0);
@@ -65,10 +67,12 @@ TEST(EsmLevelTest, LightIsInheritedFromTheBlockAbove) {
   ASSERT_EQ(fine.coarser_block.size(), fine.planes[0].bias.size());
   EXPECT_EQ(fine.coarser_block.front(), 0);
   EXPECT_EQ(fine.coarser_block.back(), static_cast<int>(coarse.planes[0].bias.size()) - 1);
-  for (std::size_t k = 0; k < coarse.planes[0].bias.size(); ++k) coarse.planes[0].bias[k] = coarse.planes[0].before[k] + k;
+  for (std::size_t k = 0; k < coarse.planes[0].bias.size(); ++k)
+    coarse.planes[0].bias[k] = coarse.planes[0].before[k] + k;
   fine.planes[0].bias.assign(fine.planes[0].bias.size(), 3.0);
   inheritLight(coarse, fine);
-  for (std::size_t k = 0; k < fine.planes[0].bias.size(); ++k) EXPECT_EQ(fine.planes[0].bias[k], 3.0 + fine.coarser_block[k]);
+  for (std::size_t k = 0; k < fine.planes[0].bias.size(); ++k)
+    EXPECT_EQ(fine.planes[0].bias[k], 3.0 + fine.coarser_block[k]);
 }
 
 TEST(EsmLevelTest, ABlocksBiasIsAboutItsMean) {

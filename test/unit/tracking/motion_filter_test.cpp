@@ -61,7 +61,8 @@ TEST_F(MotionFilterTest, GoesOnByTheDampedLastMotion) {
   const Eigen::Matrix3d expected = filter_.predict(now_ + 0.04).predicted;
   EXPECT_LT(farthestCorner(expected, shift(3.0 + 0.8 * 3.0, -1.8), kRoi), 1e-6);
   EXPECT_LT(farthestCorner(filter_.predict(now_ + 0.08).predicted, shift(3.0 + 1.6 * 3.0, -2.6), kRoi), 1e-6);
-  EXPECT_LT(farthestCorner(filter_.predict(now_ - 1.0).predicted, shift(3.0, -1.0), kRoi), 1e-6);  // time does not run back
+  EXPECT_LT(farthestCorner(filter_.predict(now_ - 1.0).predicted, shift(3.0, -1.0), kRoi),
+            1e-6);  // time does not run back
 }
 
 TEST_F(MotionFilterTest, StopsWhenTheRegionIsNotSeen) {
@@ -109,7 +110,8 @@ TEST_F(MotionFilterTest, RestartsWithoutAVelocity) {
   EXPECT_EQ(filter_.lastStamp(), 1.0);
 }
 
-// What the filter is for: of a region that moves as a whole only one end is seen; the other end follows, and is known to be less certain.
+// What the filter is for: of a region that moves as a whole only one end is seen; the other end follows, and is known
+// to be less certain.
 TEST_F(MotionFilterTest, TheCoveredPartFollowsWhatIsSeen) {
   const cv::Mat scene = test::tissue(cv::Size(300, 240), 5);
   const auto pyramidOf = [](const cv::Mat& image) {

@@ -12,7 +12,8 @@
 namespace laparoscope_servo::tracking {
 namespace {
 
-// Convention: the row of J is the derivative of I(G exp(A(x)) p) at x = 0 for G = I, by the chain rule through the point.
+// Convention: the row of J is the derivative of I(G exp(A(x)) p) at x = 0 for G = I, by the chain rule through the
+// point.
 TEST(EsmJacobian, IsTheDerivativeOfTheWarpedPoint) {
   const double gx = 1.7, gy = -0.6;
   for (const Eigen::Vector2d& p : {Eigen::Vector2d(0.0, 0.0), Eigen::Vector2d(0.8, -0.5), Eigen::Vector2d(-1.0, 1.0)}) {
@@ -69,8 +70,8 @@ void addAll(const Pixels& p, int row_begin, int row_end, NormalEquations& equati
     for (int i = 0; i < p.width; ++i) {
       const std::size_t k = static_cast<std::size_t>(j) * p.width + i;
       const float x = p.gx[k] / kScale, y = p.gy[k] / kScale, r = p.residual[k], m = p.intensity[k], w = p.weight[k];
-      equations.addCell({w * x * x, w * x * y, w * y * y, w * x * r, w * y * r, w * x, w * y, w * x * m, w * y * m, w, w * r,
-                         w * m, w * m * m, w * m * r},
+      equations.addCell({w * x * x, w * x * y, w * y * y, w * x * r, w * y * r, w * x, w * y, w * x * m, w * y * m, w,
+                         w * r, w * m, w * m * m, w * m * r},
                         p.u(i), p.v(j));
     }
   }
@@ -97,7 +98,9 @@ Dense dense(const Pixels& p, int split) {
   return d;
 }
 
-double relative(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) { return (a - b).norm() / b.norm(); }
+double relative(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  return (a - b).norm() / b.norm();
+}
 
 TEST(NormalEquations, MomentsGiveTheSumOverPixels) {
   for (unsigned seed = 1; seed <= 5; ++seed) {

@@ -22,7 +22,9 @@ Evidence good() {
   return e;
 }
 
-TEST(Doubt, IsEmptyWhenEveryTestIsPassed) { EXPECT_EQ(doubt(good(), QualityConfig()), ""); }
+TEST(Doubt, IsEmptyWhenEveryTestIsPassed) {
+  EXPECT_EQ(doubt(good(), QualityConfig()), "");
+}
 
 struct Flaw {
   const char* name;
@@ -35,8 +37,16 @@ TEST(Doubt, NamesEachFlawByItself) {
   const std::vector<Flaw> flaws = {
       {"ill", "determine", [](Evidence& e) { e.esm.status = EsmStatus::kIllConditioned; }},
       {"out", "infinity", [](Evidence& e) { e.esm.status = EsmStatus::kOutOfView; }},
-      {"moving", "moving", [](Evidence& e) { e.esm.status = EsmStatus::kMaxIterations; e.esm.last_step = 3.0; }},
-      {"moving nan", "moving", [=](Evidence& e) { e.esm.status = EsmStatus::kMaxIterations; e.esm.last_step = nan; }},
+      {"moving", "moving",
+       [](Evidence& e) {
+         e.esm.status = EsmStatus::kMaxIterations;
+         e.esm.last_step = 3.0;
+       }},
+      {"moving nan", "moving",
+       [=](Evidence& e) {
+         e.esm.status = EsmStatus::kMaxIterations;
+         e.esm.last_step = nan;
+       }},
       {"covered", "visible", [](Evidence& e) { e.visible_fraction = 0.05; }},
       {"covered nan", "visible", [=](Evidence& e) { e.visible_fraction = nan; }},
       {"mostly covered", "visible fraction of what is in the image", [](Evidence& e) { e.visible_fraction = 0.14; }},
@@ -57,7 +67,8 @@ TEST(Doubt, NamesEachFlawByItself) {
   for (const Flaw& flaw : flaws) {
     Evidence e = good();
     flaw.apply(e);
-    EXPECT_NE(doubt(e, QualityConfig()).find(flaw.word), std::string::npos) << flaw.name << ": " << doubt(e, QualityConfig());
+    EXPECT_NE(doubt(e, QualityConfig()).find(flaw.word), std::string::npos)
+        << flaw.name << ": " << doubt(e, QualityConfig());
   }
 }
 

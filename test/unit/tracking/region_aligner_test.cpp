@@ -31,7 +31,8 @@ TEST(FarthestCorner, IsInfiniteWhereThereIsNoImage) {
   EXPECT_NEAR(farthestCorner(Eigen::Matrix3d::Identity(), shift, kRoi), 5.0, 1e-12);
   Eigen::Matrix3d through_infinity = Eigen::Matrix3d::Identity();
   through_infinity(2, 0) = -1.0 / 150.0;  // the line x = 150 crosses the ROI
-  EXPECT_EQ(farthestCorner(Eigen::Matrix3d::Identity(), through_infinity, kRoi), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(farthestCorner(Eigen::Matrix3d::Identity(), through_infinity, kRoi),
+            std::numeric_limits<double>::infinity());
 }
 
 TEST_F(RegionAlignerTest, FindsTheMotionInWhateverChannels) {
@@ -61,7 +62,7 @@ TEST_F(RegionAlignerTest, TracksAnImageWithoutColourByItsReferenceWithColour) {
 TEST_F(RegionAlignerTest, LeavesOutWhatIsCovered) {
   const Eigen::Matrix3d truth = test::randomHomography(kRoi, 2.0, rng_);
   cv::Mat image = test::view(scene_, truth);
-  image(cv::Rect(100, 80, 55, 110)).setTo(cv::Scalar(190, 190, 190));        // a plain colour
+  image(cv::Rect(100, 80, 55, 110)).setTo(cv::Scalar(190, 190, 190));          // a plain colour
   scene_(cv::Rect(10, 10, 65, 40)).copyTo(image(cv::Rect(155, 150, 65, 40)));  // tissue from elsewhere
   RegionAligner aligner = alignerOn(scene_);
   const Alignment found = aligner.align(image, EsmState(), nullptr, 32.0);

@@ -41,9 +41,14 @@ TEST_F(RegionTrackerInputTest, BadRegionsAreRefusedByNameAndTheOldOneStays) {
   select();
   const cv::Mat now = image(1);
   const double nan = std::nan("");
-  for (const geometry::Rectangle& roi :
-       std::vector<geometry::Rectangle>{{0, 0, 0, 0}, {10, 10, 15, 50}, {-1, 0, 50, 50}, {300, 250, 100, 100}, {1000, 1000, 50, 50},
-                                        {nan, 0, 50, 50}, {0, 0, nan, 50}, {0, 0, 1e9, 1e9}}) {
+  for (const geometry::Rectangle& roi : std::vector<geometry::Rectangle>{{0, 0, 0, 0},
+                                                                         {10, 10, 15, 50},
+                                                                         {-1, 0, 50, 50},
+                                                                         {300, 250, 100, 100},
+                                                                         {1000, 1000, 50, 50},
+                                                                         {nan, 0, 50, 50},
+                                                                         {0, 0, nan, 50},
+                                                                         {0, 0, 1e9, 1e9}}) {
     EXPECT_THROW(tracker_.select(now, 0.04, roi), std::invalid_argument) << roi.x << ' ' << roi.width;
   }
   try {

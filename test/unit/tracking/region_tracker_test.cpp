@@ -112,7 +112,8 @@ TEST_F(RegionTrackerTest, ComesBackWhileItIsMoving) {
     return g;
   };
   int frame = 1;
-  for (; frame <= 20; ++frame) tracker_.track(test::view(scene_, Eigen::Matrix3d::Identity(), 1.0, 0.0, 2.0, frame), 0.04 * frame);
+  for (; frame <= 20; ++frame)
+    tracker_.track(test::view(scene_, Eigen::Matrix3d::Identity(), 1.0, 0.0, 2.0, frame), 0.04 * frame);
   for (; frame <= 25; ++frame) ASSERT_NE(tracker_.track(smoke, 0.04 * frame).state, State::kTracking);
   int seen = 0;
   for (; seen < 6; ++seen, ++frame) {

@@ -23,18 +23,20 @@ class RelocalisationTest : public ::testing::Test {
   }
   std::vector<Candidate> search(const cv::Mat& image, const Eigen::Matrix3d& last, int count = 3) {
     const EsmLevel& level = esm_.level(2);
-    return searchByCorrelation(level.planes[0].value.view(), level.image_T_patch, pyramidOf(image).level(2), level.scale, kRoi, last, count);
+    return searchByCorrelation(level.planes[0].value.view(), level.image_T_patch, pyramidOf(image).level(2),
+                               level.scale, kRoi, last, count);
   }
 };
 
 TEST_F(RelocalisationTest, FindsTheRegionWhereverItMoved) {
-  for (const auto& [x, y] : {std::pair(0.0, 0.0), std::pair(250.0, 150.0), std::pair(-40.0, -30.0), std::pair(301.0, 77.0)}) {
+  for (const auto& [x, y] :
+       {std::pair(0.0, 0.0), std::pair(250.0, 150.0), std::pair(-40.0, -30.0), std::pair(301.0, 77.0)}) {
     Eigen::Matrix3d g = Eigen::Matrix3d::Identity();
     g.topRightCorner<2, 1>() << x, y;
     const std::vector<Candidate> found = search(test::view(scene_, g), Eigen::Matrix3d::Identity());
     ASSERT_FALSE(found.empty());
     EXPECT_LT(test::cornerDistance(found[0].g, g, kRoi), 4.0);  // one pixel of the level
-    EXPECT_GT(found[0].score, 0.7);  // half a pixel of the level off, fine texture has gone
+    EXPECT_GT(found[0].score, 0.7);                             // half a pixel of the level off, fine texture has gone
   }
 }
 

@@ -102,7 +102,8 @@ TEST_F(StructureGateTest, GivesTheMomentsOfAnAreasUsedPixels) {
 }
 
 TEST_F(StructureGateTest, TakesTheMeanOverTheChannels) {
-  const image::Patch a = patchOf(reference_ + noise(kSize, 5.0, 1)), b = patchOf(reference_), flat = patchOf(cv::Mat1f(kSize, 9.0f));
+  const image::Patch a = patchOf(reference_ + noise(kSize, 5.0, 1)), b = patchOf(reference_),
+                     flat = patchOf(cv::Mat1f(kSize, 9.0f));
   const PatchPair pairs[] = {{&a, &b}, {&flat, &flat}};
   statistics_.compute(pairs, 1, patchOf(valid_), grid_);
   const AreaMoments one = statistics_.area(17);

@@ -7,7 +7,9 @@
 namespace laparoscope_servo::tracking {
 namespace {
 
-TEST(TrackerConfig, DefaultsAreValid) { EXPECT_TRUE(validate(TrackerConfig()).empty()); }
+TEST(TrackerConfig, DefaultsAreValid) {
+  EXPECT_TRUE(validate(TrackerConfig()).empty());
+}
 
 TEST(TrackerConfig, EveryErrorIsListedWithNameAndValue) {
   TrackerConfig c;
