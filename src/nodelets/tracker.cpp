@@ -130,7 +130,11 @@ void Tracker::followRobot(const skin::RobotMotionConfig& config) {
   tf_listener_ = std::make_unique<tf2_ros::TransformListener>(*tf_);  // in a thread of its own
   session_->setCameraMotion([this, fixed_frame = config.fixed_frame](const std::string& frame, const ros::Time& from,
                                                                      const ros::Time& to, std::string& why) {
-    return skin::cameraMotion(*tf_, fixed_frame, frame, from, to, why);
+    const auto motion = skin::cameraMotion(*tf_, fixed_frame, frame, from, to, why);
+    if (!motion && future_transforms_.found(*tf_, fixed_frame, frame, ros::Time::now(), steadySeconds())) {
+      why = "the pose of " + frame + " in " + fixed_frame + " is stamped in the future";
+    }
+    return motion;
   });
 }
 

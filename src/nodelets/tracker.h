@@ -17,6 +17,7 @@
 #include <memory>
 #include <string>
 
+#include "laparoscope_servo/ros/future_transforms.h"
 #include "laparoscope_servo/ros/tracker_diagnostics.h"
 #include "laparoscope_servo/ros/tracker_request.h"
 #include "laparoscope_servo/ros/tracker_session.h"
@@ -53,6 +54,7 @@ class Tracker : public nodelet::Nodelet {
 
   std::unique_ptr<tf2_ros::Buffer> tf_;  // with robot_motion only
   std::unique_ptr<tf2_ros::TransformListener> tf_listener_;
+  skin::FutureTransforms future_transforms_{1.0};
   std::unique_ptr<skin::TrackerSession> session_;
   std::unique_ptr<skin::TrackerDiagnostics> statistics_;
   std::unique_ptr<diagnostic_updater::Updater> diagnostics_;

@@ -32,6 +32,7 @@ const char* doing(servo::Task task) {
 ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_node, const ControllerNodeConfig& config)
     : config_(config),
       controller_(config.control),
+      future_transforms_(config.control.safety.max_depth_age),
       last_now_(ros::Time::now()),
       tf_listener_(tf_),
       diagnostics_(node, private_node),
@@ -204,6 +205,11 @@ servo::ControllerInput ControllerNode::input() {
 
 servo::DepthInput ControllerNode::depth(double steady_now) {
   servo::DepthInput depth;
+  const ros::Time now = ros::Time::now();
+  if (future_transforms_.found(tf_, config_.camera, config_.insertion_point, now, steady_now)) {
+    depth.problem = "tf is stamped in the future, compare the clocks of the machines";
+    return depth;
+  }
   try {
     const auto transform = tf_.lookupTransform(config_.camera, config_.insertion_point, ros::Time(0));
     depth =
@@ -216,11 +222,7 @@ servo::DepthInput ControllerNode::depth(double steady_now) {
       return depth;
     }
     depth.pose_is_new = depth_watch_.arrived(transform.header.stamp, steady_now) != StampWatch::Arrival::kRepeated;
-    const ros::Time now = ros::Time::now();
     depth.age = depth_watch_.age(now, steady_now);
-    if (depth_watch_.isAhead(now, config_.control.safety.max_depth_age)) {
-      depth.problem = "tf is stamped in the future, compare the clocks of the machines";
-    }
   } catch (const tf2::ExtrapolationException&) {  // its text holds times, which change with every step
     depth.problem = "tf from " + config_.camera + " to " + config_.insertion_point + " has no common time";
   } catch (const tf2::TransformException& error) {

@@ -21,6 +21,7 @@
 #include <limits>
 
 #include "laparoscope_servo/ros/controller_parameters.h"
+#include "laparoscope_servo/ros/future_transforms.h"
 #include "laparoscope_servo/ros/stamp_watch.h"
 #include "laparoscope_servo/ros/static_frame_watch.h"
 #include "laparoscope_servo/servo/controller.h"
@@ -57,6 +58,7 @@ class ControllerNode {
   StampWatch task_error_watch_;
   StampWatch depth_watch_;
   StaticFrameWatch insertion_point_watch_;
+  FutureTransforms future_transforms_;
   servo::RobotFacts robot_;
   double robot_arrival_ = 0.0;  // s, steady
   servo::DeadManFacts dead_man_;

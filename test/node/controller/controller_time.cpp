@@ -67,8 +67,8 @@ class ControllerTime : public ::testing::Test {
   void SetUp() override {
     clock_.run(true);
     ASSERT_TRUE(cart_.waitForController());
-    ASSERT_TRUE(cart_.engageWhenReady());
-    ASSERT_TRUE(cart_.waitForState(ControllerState::SERVO));
+    ASSERT_TRUE(cart_.engageWhenReady()) << cart_.answer();
+    ASSERT_TRUE(cart_.waitForState(ControllerState::SERVO)) << cart_.state().reason;
     ASSERT_TRUE(waitFor([this] { return cart_.moves(); }));
   }
 
@@ -91,11 +91,25 @@ TEST_F(ControllerTime, TimeThatJumpsBackIsAFault) {
     EXPECT_FALSE(success);
     // What came before the jump is forgotten; with what comes after it, one may engage again.
     cart_.engage(false, success);
-    ASSERT_TRUE(cart_.engageWhenReady());
-    ASSERT_TRUE(cart_.waitForState(ControllerState::SERVO));
+    ASSERT_TRUE(cart_.engageWhenReady()) << cart_.answer();
+    ASSERT_TRUE(cart_.waitForState(ControllerState::SERVO)) << cart_.state().reason;
     ASSERT_TRUE(waitFor([this] { return cart_.moves(); }));
   }
   printStoppingTimes("ROS time jumped back", "FAULT", times);
+}
+
+// Of two connections one is always later.
+TEST_F(ControllerTime, TransformsFromBeforeTheJumpDoNotBlockWhatFollows) {
+  clock_.jump(-50.0);
+  ASSERT_TRUE(cart_.waitForState(ControllerState::FAULT, 2.0));
+  cart_.strike([](Feed& feed) { feed.tf_stamp_offset = 50.0; });
+  cart_.set([](Feed& feed) { feed.tf_stamp_offset = 0.0; });
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));  // until the controller has it
+  bool success = false;
+  cart_.engage(false, success);
+  EXPECT_TRUE(cart_.engageWhenReady()) << cart_.answer();
+  EXPECT_TRUE(cart_.waitForState(ControllerState::SERVO)) << cart_.state().reason;
+  EXPECT_TRUE(waitFor([this] { return cart_.moves(); }));
 }
 
 TEST_F(ControllerTime, TimeThatStopsHolds) {

@@ -192,8 +192,11 @@ class FakeCart {
     std_srvs::SetBool call;
     call.request.data = on;
     success = engage_.call(call) && call.response.success;
-    return call.response.message;
+    return answer_ = call.response.message;
   }
+
+  // The last one of engage().
+  const std::string& answer() const { return answer_; }
 
   // Engages as soon as the controller has all it needs.
   bool engageWhenReady(double seconds = 5.0) {
@@ -284,6 +287,7 @@ class FakeCart {
   ros::Subscriber command_subscriber_;
   ros::Subscriber state_subscriber_;
   ros::ServiceClient engage_;
+  std::string answer_;
 
   std::mutex publish_mutex_;  // locked before mutex_
   ros::Time last_image_;
