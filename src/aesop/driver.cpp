@@ -98,6 +98,7 @@ std::string Driver::command(const ScopeVelocity& velocity, double stamp, double 
            payloadOf({velocity.pan, velocity.tilt, velocity.spin, velocity.insertion, stamp, stamp_now}));
   }
   refusal_ = guard_.accept(velocity, stamp, stamp_now, now);
+  if (!session_.isEnabled()) guard_.forget();  // nor when the enable is confirmed while it would still count
   return refusal_;
 }
 

@@ -41,6 +41,8 @@ class CommandGuard {
   std::string accept(const ScopeVelocity& velocity, double stamp, double stamp_now, double now);
   // Zero until a command comes that was stamped after this moment.
   void reset(double stamp_now);
+  // Zero until the next command.
+  void forget() { last_ = ScopeVelocity(); }
   // The command that counts now.
   ScopeVelocity velocity(double now) const;
   // s since the last command that was accepted; infinite before the first.

@@ -86,6 +86,16 @@ TEST(CommandGuard, resetForgetsAndWantsNewerStamps) {
   EXPECT_EQ(guard.accept(kPan, 1000.11, 1000.14, 5.14), "");
 }
 
+TEST(CommandGuard, forgottenIsZeroUntilTheNext) {
+  CommandGuard guard{CommandConfig()};
+  ASSERT_EQ(guard.accept(kPan, 1000.0, 1000.0, 5.0), "");
+  guard.forget();
+  EXPECT_TRUE(guard.velocity(5.0).isZero());
+  EXPECT_NE(guard.accept(kPan, 1000.0, 1000.01, 5.01), "") << "a stamp counts once";
+  EXPECT_EQ(guard.accept(kPan, 1000.04, 1000.04, 5.04), "");
+  EXPECT_EQ(guard.velocity(5.04).pan, kPan.pan);
+}
+
 TEST(CommandGuard, clockSetBackStopsAndGoesOn) {
   CommandGuard guard{CommandConfig()};
   ASSERT_EQ(guard.accept(kPan, 1000.0, 1000.0, 5.0), "");

@@ -113,6 +113,23 @@ TEST_P(DriverTest, nothingMovesBeforeEnable) {
   EXPECT_EQ(emulator_.arm().position(), before);
 }
 
+TEST_P(DriverTest, commandsFromBeforeTheConfirmationMoveNothing) {
+  const JointVector before = emulator_.arm().position();
+  run(0.5);
+  ASSERT_EQ(driver_.enable(kStampOffset + now_, now_), "");
+  for (int tick = 0; tick < 200 && mode() != OperatingMode::kEnabled; ++tick) {
+    run(kTick);
+    if (mode() != OperatingMode::kEnabled) {
+      EXPECT_EQ(command({0.05, 0.0, 0.0, 0.0}), "");
+    }
+  }
+  ASSERT_EQ(mode(), OperatingMode::kEnabled);
+  run(1.0);
+  EXPECT_EQ(emulator_.arm().position(), before);
+  run(1.0, 0.05);
+  EXPECT_NE(emulator_.arm().position(), before);
+}
+
 TEST_P(DriverTest, commandsThatEndStopTheArm) {
   startMoving();
   EXPECT_LT(timeToStand(), kLongestStop);
