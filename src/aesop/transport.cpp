@@ -183,7 +183,11 @@ SerialTransport::~SerialTransport() = default;
 
 void SerialTransport::open(const std::string& port, int baud_rate) {
   port_.reset();
-  port_ = std::make_unique<Port>(port, baud_rate);
+  try {
+    port_ = std::make_unique<Port>(port, baud_rate);
+  } catch (const boost::system::system_error& error) {  // no descriptors left, for one
+    throw TransportError("port '" + port + "': it cannot be opened: " + error.what());
+  }
 }
 
 void SerialTransport::close() {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <stdlib.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -77,6 +78,27 @@ TEST_F(TransportTest, noSuchPort) {
   EXPECT_NE(error.find(path("nothing")), std::string::npos) << error;
   EXPECT_NE(error.find("no such port"), std::string::npos) << error;
   EXPECT_FALSE(transport.isOpen());
+}
+
+// What the system refuses is an error of the port like any other: the node tries again, and does not end.
+TEST_F(TransportTest, noDescriptorsLeft) {
+  rlimit limit{};
+  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &limit), 0);
+  const int next = ::dup(0);
+  ASSERT_GE(next, 0);
+  ::close(next);
+  std::string error;
+  for (int spare = 0; spare < 6; ++spare) {  // each of the descriptors that opening needs is the one that is missing
+    rlimit tight = limit;
+    tight.rlim_cur = static_cast<rlim_t>(next + spare);
+    ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &tight), 0);
+    SerialTransport transport;
+    error = errorOf(transport, path("port"));
+    ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &limit), 0);
+    if (error.empty()) break;
+    EXPECT_NE(error.find(path("port")), std::string::npos) << error;
+  }
+  EXPECT_EQ(error, "") << "with enough of them it opens";
 }
 
 TEST_F(TransportTest, notATerminal) {
