@@ -3,39 +3,32 @@
 
 #include <ros/ros.h>
 
-#include <csignal>
 #include <exception>
+
+#include "laparoscope_servo/ros/stop_request.h"
 
 namespace {
 
-std::atomic<bool> stop{false};
-
-void onSignal(int) {
-  stop = true;
-}
-
 int run() {
+  using namespace laparoscope_servo;
   const ros::NodeHandle node;
   const ros::NodeHandle private_node("~");
-  using namespace laparoscope_servo;
+  skin::catchStopRequests();
   skin::ParameterReader reader(skin::parametersOf(private_node), private_node.getNamespace());
   const skin::AesopParameters parameters = skin::readAesopParameters(reader);
   if (!reader.errors().empty()) {
     ROS_FATAL_STREAM(reader.report());
     return 1;
   }
-  skin::AesopNode(node, private_node, parameters).run(stop);
+  skin::AesopNode(node, private_node, parameters).run(skin::stopRequested);
   return 0;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  // Own handlers: the arm has to be disabled while there is still a node to do it.
+  // No handler of ROS: the arm has to be disabled while there is still a node to do it.
   ros::init(argc, argv, "aesop", ros::init_options::NoSigintHandler);
-  std::signal(SIGINT, onSignal);
-  std::signal(SIGTERM, onSignal);
-  std::signal(SIGHUP, onSignal);
   int status = 1;
   try {
     status = run();

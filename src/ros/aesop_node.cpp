@@ -72,13 +72,13 @@ AesopNode::AesopNode(const ros::NodeHandle& node, const ros::NodeHandle& private
   if (!reported_.lineWarning().empty()) ROS_WARN_STREAM(reported_.lineWarning());
 }
 
-void AesopNode::run(const std::atomic<bool>& stop) {
+void AesopNode::run(const std::function<bool()>& stop) {
   if (parameters_.realtime_priority > 0) {
     const std::string refusal = goRealtime(parameters_.realtime_priority);
     if (!refusal.empty()) ROS_WARN_STREAM(refusal);
   }
   try {
-    while (!stop && ros::ok()) {
+    while (!stop() && ros::ok()) {
       const auto next = std::chrono::steady_clock::now() + kPeriod;
       ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.0));
       if (thrown_) std::rethrow_exception(thrown_);

@@ -10,7 +10,6 @@
 #include <tf2_ros/static_transform_broadcaster.h>
 #include <tf2_ros/transform_broadcaster.h>
 
-#include <atomic>
 #include <exception>
 #include <functional>
 #include <memory>
@@ -31,9 +30,9 @@ class AesopNode {
   // Throws std::invalid_argument when the parameters are not valid.
   AesopNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node, const AesopParameters& parameters);
 
-  // Runs until `stop` becomes true or ROS shuts down, then disables the arm and waits a moment for it to be confirmed.
+  // Runs until `stop` returns true or ROS shuts down, then disables the arm and waits a moment for it to be confirmed.
   // The same when anything throws, which is then thrown on.
-  void run(const std::atomic<bool>& stop);
+  void run(const std::function<bool()>& stop);
 
  private:
   using Response = std_srvs::Trigger::Response;

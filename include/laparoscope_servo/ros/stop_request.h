@@ -4,8 +4,8 @@
 
 namespace laparoscope_servo::skin {
 
-// Turns SIGINT, SIGTERM and `rosnode kill` into a request. Call it after ros::init with NoSigintHandler and after the
-// first NodeHandle was made.
+// Turns SIGINT, SIGTERM, SIGHUP and `rosnode kill` into a request. Call it after ros::init with NoSigintHandler and
+// after the first NodeHandle was made: until there is a master, a signal simply ends the process.
 void catchStopRequests();
 
 // Somebody asked the process to end.

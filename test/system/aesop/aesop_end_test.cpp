@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 #include <std_msgs/Empty.h>
 
-#include <atomic>
 #include <stdexcept>
 
 #include "laparoscope_servo/ros/aesop_node.h"
@@ -74,9 +73,8 @@ int runThrowingNode() {
   ros::NodeHandle node;
   const ros::Subscriber subscriber = node.subscribe<std_msgs::Empty>("throw", 1, &fail);
   skin::ParameterReader reader(skin::parametersOf(private_node), private_node.getNamespace());
-  const std::atomic<bool> stop{false};
   try {
-    skin::AesopNode(node, private_node, skin::readAesopParameters(reader)).run(stop);
+    skin::AesopNode(node, private_node, skin::readAesopParameters(reader)).run([] { return false; });
   } catch (const std::runtime_error&) {
     return 1;
   }
