@@ -42,7 +42,7 @@ std::string CommandGuard::accept(const ScopeVelocity& velocity, double stamp, do
   if (stamp_now < last_stamp_now_) reset(stamp_now);  // the clock was set back: old stamps compare with nothing
   last_stamp_now_ = stamp_now;
   if (const std::optional<Refusal> refusal = judge(velocity, stamp, stamp_now)) {
-    if (*refusal == Refusal::kNotFinite) last_ = ScopeVelocity();
+    if (*refusal == Refusal::kNotFinite) forget();
     ++refused_[static_cast<std::size_t>(*refusal)];
     return "it " + describe(*refusal);
   }
@@ -76,7 +76,7 @@ ScopeVelocity CommandGuard::clamp(const ScopeVelocity& velocity) const {
 }
 
 void CommandGuard::reset(double stamp_now) {
-  last_ = ScopeVelocity();
+  forget();
   last_stamp_ = -std::numeric_limits<double>::infinity();
   not_before_ = last_stamp_now_ = stamp_now;
 }

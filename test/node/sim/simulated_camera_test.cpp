@@ -28,12 +28,12 @@ class SimulatedCamera : public testing::Test {
   }
   ~SimulatedCamera() override { ros::param::del("/simulated_camera"); }
 
-  std::string control() const { return directory_.file("control"); }
+  std::string control() const { return folder_.file("control"); }
 
   void startEmulator() {
     emulator_ = std::make_unique<ChildProcess>(
-        AESOP_EMULATOR, std::vector<std::string>{"--link", directory_.file("port"), "--control", control()},
-        directory_.file("emulator.log"));
+        AESOP_EMULATOR, std::vector<std::string>{"--link", folder_.file("port"), "--control", control()},
+        folder_.file("emulator.log"));
     ASSERT_TRUE(spinUntil([this] {
       try {
         truth_ = std::make_unique<sim::EmulatorControlClient>(control());
@@ -46,7 +46,7 @@ class SimulatedCamera : public testing::Test {
   void startCamera() {
     ros::param::set("/simulated_camera", parameters_);
     camera_ = std::make_unique<ChildProcess>(SIMULATED_CAMERA, std::vector<std::string>{"__name:=simulated_camera"},
-                                             directory_.file("camera.log"));
+                                             folder_.file("camera.log"));
   }
   void startBoth() {
     startEmulator();
@@ -66,7 +66,7 @@ class SimulatedCamera : public testing::Test {
     return image;
   }
 
-  TemporaryDirectory directory_;
+  test_support::TemporaryFolder folder_;
   ros::NodeHandle node_;
   XmlRpc::XmlRpcValue parameters_;
   std::unique_ptr<ChildProcess> emulator_;
@@ -144,7 +144,7 @@ TEST_F(SimulatedCamera, StopsWithTheEmulatorAndComesBackWithIt) {
   spinUntil([] { return false; }, 0.3);
   EXPECT_FALSE(next(1, 1.0));
   EXPECT_TRUE(camera_->isRunning());
-  EXPECT_NE(contents(directory_.file("camera.log")).find("the emulated arm does not answer at " + control()),
+  EXPECT_NE(contents(folder_.file("camera.log")).find("the emulated arm does not answer at " + control()),
             std::string::npos);
   startEmulator();
   EXPECT_TRUE(next());
@@ -161,17 +161,17 @@ TEST_F(SimulatedCamera, ListsAllErrorsInItsParametersAndRefusesToStart) {
   parameters_ = without_control;
   startCamera();
   EXPECT_EQ(camera_->exitStatus(10.0), 1);
-  const std::string log = contents(directory_.file("camera.log"));
+  const std::string log = contents(folder_.file("camera.log"));
   for (const char* part : {"camera/rate", "tissue/wdith", "emulator/delay", "control is not set"}) {
     EXPECT_NE(log.find(part), std::string::npos) << part << " in\n" << log;
   }
 }
 
 TEST_F(SimulatedCamera, RefusesATextureThatIsNoImage) {
-  parameters_["tissue"]["image"] = directory_.file("missing.png");
+  parameters_["tissue"]["image"] = folder_.file("missing.png");
   startCamera();
   EXPECT_EQ(camera_->exitStatus(10.0), 1);
-  EXPECT_NE(contents(directory_.file("camera.log")).find("missing.png"), std::string::npos);
+  EXPECT_NE(contents(folder_.file("camera.log")).find("missing.png"), std::string::npos);
 }
 
 }  // namespace

@@ -32,18 +32,18 @@ class VideoPlayer : public testing::Test {
   ~VideoPlayer() override { ros::param::del("/player"); }
 
   std::string folder() {
-    std::filesystem::create_directory(directory_.file("images"));
-    for (int k = 0; k < kImages; ++k) cv::imwrite(directory_.file("images/" + std::to_string(k) + ".png"), image(k));
-    return directory_.file("images");
+    std::filesystem::create_directory(folder_.file("images"));
+    for (int k = 0; k < kImages; ++k) cv::imwrite(folder_.file("images/" + std::to_string(k) + ".png"), image(k));
+    return folder_.file("images");
   }
   std::string video() {
-    const std::string file = directory_.file("video.avi");
+    const std::string file = folder_.file("video.avi");
     cv::VideoWriter writer(file, cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 50.0, {64, 48});
     for (int k = 0; k < kImages; ++k) writer.write(image(k));
     return file;
   }
   std::string bag(bool compressed) {
-    const std::string file = directory_.file("images.bag");
+    const std::string file = folder_.file("images.bag");
     rosbag::Bag bag(file, rosbag::bagmode::Write);
     for (int k = 0; k < kImages; ++k) {
       std_msgs::Header header;
@@ -69,7 +69,7 @@ class VideoPlayer : public testing::Test {
     return file;
   }
   std::string calibration(int width) {
-    const std::string file = directory_.file("calibration.yaml");
+    const std::string file = folder_.file("calibration.yaml");
     std::ofstream(file) << "image_width: " << width << "\nimage_height: 48\ncamera_name: scope\n"
                         << "camera_matrix: {rows: 3, cols: 3, data: [90, 0, 31, 0, 91, 23, 0, 0, 1]}\n"
                         << "distortion_model: plumb_bob\n"
@@ -115,10 +115,10 @@ class VideoPlayer : public testing::Test {
     EXPECT_EQ(player_->exitStatus(10.0), 1);
     EXPECT_NE(contents(log()).find(part), std::string::npos) << part << " in\n" << contents(log());
   }
-  std::string log() const { return directory_.file("player.log"); }
+  std::string log() const { return folder_.file("player.log"); }
   ros::Time stamp(std::size_t k) const { return images_->all[k]->header.stamp; }
 
-  TemporaryDirectory directory_;
+  test_support::TemporaryFolder folder_;
   ros::NodeHandle node_;
   XmlRpc::XmlRpcValue parameters_;
   std::unique_ptr<ChildProcess> player_;
@@ -207,11 +207,11 @@ TEST_F(VideoPlayer, RefusesACalibrationForImagesOfAnotherSize) {
 }
 
 TEST_F(VideoPlayer, RefusesWhatItCannotPlayAndSaysWhy) {
-  expectRefusal(directory_.file("missing.mp4"), "missing.mp4' does not exist");
-  std::ofstream(directory_.file("text.mp4")) << "no video";
-  expectRefusal(directory_.file("text.mp4"), "text.mp4' cannot be opened");
-  std::filesystem::create_directory(directory_.file("empty"));
-  expectRefusal(directory_.file("empty"), "has no images");
+  expectRefusal(folder_.file("missing.mp4"), "missing.mp4' does not exist");
+  std::ofstream(folder_.file("text.mp4")) << "no video";
+  expectRefusal(folder_.file("text.mp4"), "text.mp4' cannot be opened");
+  std::filesystem::create_directory(folder_.file("empty"));
+  expectRefusal(folder_.file("empty"), "has no images");
   parameters_["start"] = 100.0;
   expectRefusal(video(), "has no image after 100");
   parameters_["start"] = 0.0;

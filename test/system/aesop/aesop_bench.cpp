@@ -1,7 +1,6 @@
 #include "system/aesop/aesop_bench.h"
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
 
 #include <chrono>
 #include <stdexcept>
@@ -20,21 +19,14 @@ ros::Subscriber keepLast(ros::NodeHandle& node, const std::string& topic, std::o
   return node.subscribe<Message>(topic, 10, [&last](const typename Message::ConstPtr& message) { last = *message; });
 }
 
-std::string temporaryDirectory() {
-  std::string pattern = "/tmp/aesop_bench_XXXXXX";
-  if (::mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("cannot make a temporary directory");
-  return pattern;
-}
-
 }  // namespace
 
 double steadyNow() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-AesopBench::AesopBench(bool with_node, const std::vector<std::string>& emulator_arguments)
-    : directory_(temporaryDirectory()) {
-  const std::string control = directory_ + "/control";
+AesopBench::AesopBench(bool with_node, const std::vector<std::string>& emulator_arguments) {
+  const std::string control = folder_.file("control");
   std::vector<std::string> arguments{"--link", port(), "--control", control, "--baud", "38400"};
   arguments.insert(arguments.end(), emulator_arguments.begin(), emulator_arguments.end());
   emulator_ = std::make_unique<ChildProcess>(AESOP_EMULATOR, arguments);
@@ -68,7 +60,6 @@ AesopBench::~AesopBench() {
     emulator_->exitStatus(2.0);
   }
   emulator_.reset();
-  ::rmdir(directory_.c_str());
 }
 
 void AesopBench::startNode(const std::string& program, const std::vector<std::string>& arguments,

@@ -18,6 +18,7 @@
 #include "laparoscope_servo/OperatingState.h"
 #include "laparoscope_servo/ScopeVelocity.h"
 #include "laparoscope_servo/sim/emulator_control_client.h"
+#include "support/temporary_folder.h"
 #include "system/aesop/child_process.h"
 
 namespace laparoscope_servo::test {
@@ -40,8 +41,9 @@ class AesopBench {
   ChildProcess& emulator() { return *emulator_; }
   // What only the emulator knows.
   sim::EmulatorControlClient& truth() { return *truth_; }
-  std::string port() const { return directory_ + "/port"; }
-  const std::string& directory() const { return directory_; }
+  std::string port() const { return file("port"); }
+  // In a folder of this bench.
+  std::string file(const std::string& name) const { return folder_.file(name); }
 
   // Handles messages until `condition` holds; false after `seconds`.
   bool waitFor(const std::function<bool()>& condition, double seconds = 5.0);
@@ -84,7 +86,7 @@ class AesopBench {
 
  private:
   XmlRpc::XmlRpcValue overlay_;
-  std::string directory_;
+  test_support::TemporaryFolder folder_;
   ros::NodeHandle node_handle_;
   std::unique_ptr<ChildProcess> emulator_;
   std::unique_ptr<ChildProcess> node_;

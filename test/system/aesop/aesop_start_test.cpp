@@ -24,7 +24,7 @@ std::string contents(const std::string& path) {
 
 // Starts a second node, on another port, and waits until it has said `what`.
 void expectComplaint(AesopBench& bench, const std::string& port, const std::string& what) {
-  const std::string output = bench.directory() + "/output";
+  const std::string output = bench.file("output");
   XmlRpc::XmlRpcValue parameters = skin::parametersFromYaml(AESOP_CONFIG);
   parameters["port"] = port;
   ros::param::set("/other", parameters);
@@ -47,8 +47,8 @@ void expectComplaint(AesopBench& bench, const std::string& port, const std::stri
 
 TEST(AesopStart, portsThatCannotBe) {
   AesopBench bench;
-  expectComplaint(bench, bench.directory() + "/nothing", "no such port");
-  const std::string file = bench.directory() + "/file";
+  expectComplaint(bench, bench.file("nothing"), "no such port");
+  const std::string file = bench.file("file");
   std::ofstream(file) << "text";
   expectComplaint(bench, file, "no serial port");
   ::unlink(file.c_str());
@@ -58,7 +58,7 @@ TEST(AesopStart, portsThatCannotBe) {
 
 TEST(AesopStart, wrongParametersAreAllNamedAndTheNodeDoesNotStart) {
   AesopBench bench(false);
-  const std::string output = bench.directory() + "/output";
+  const std::string output = bench.file("output");
   XmlRpc::XmlRpcValue parameters = skin::parametersFromYaml(AESOP_CONFIG);
   parameters["baud_rate"] = "fast";
   XmlRpc::XmlRpcValue plane;
@@ -80,11 +80,11 @@ TEST(AesopStart, wrongParametersAreAllNamedAndTheNodeDoesNotStart) {
 
 TEST(AesopEmulator, commandLine) {
   AesopBench bench(false);
-  const std::string output = bench.directory() + "/output";
-  const std::string wrong = bench.directory() + "/wrong.yaml";
-  const std::string link = bench.directory() + "/other";
+  const std::string output = bench.file("output");
+  const std::string wrong = bench.file("wrong.yaml");
+  const std::string link = bench.file("other");
   std::ofstream(wrong) << "emulator: {delay: late, dely: 0.1}\nemulatr: {delay: 0.1}\n";
-  const std::string script = bench.directory() + "/script.yaml";
+  const std::string script = bench.file("script.yaml");
   std::ofstream(script) << "script: [{at: 1, fault: reboot}, {at: 2, fault: rust}]\n";
   struct Case {
     std::vector<std::string> arguments;

@@ -25,7 +25,7 @@ class CartStops : public testing::Test {
   void SetUp() override {
     XmlRpc::XmlRpcValue camera = skin::parametersFromYaml(config("simulation.yaml"));
     camera["tissue"]["texture_side"] = 1200;
-    camera["control"] = bench_.directory() + "/control";
+    camera["control"] = bench_.file("control");
     ros::param::set("/simulated_camera", camera);
     ros::param::set("/tracker", skin::parametersFromYaml(config("tracker.yaml")));
     ros::param::set("/controller", skin::parametersFromYaml(config("controller.yaml")));

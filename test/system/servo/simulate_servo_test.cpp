@@ -1,6 +1,5 @@
 // The tool simulate_servo as a user runs it.
 #include <gtest/gtest.h>
-#include <stdlib.h>
 #include <sys/wait.h>
 
 #include <algorithm>
@@ -14,17 +13,12 @@
 #include <utility>
 #include <vector>
 
+#include "support/temporary_folder.h"
+
 namespace {
 
 class SimulateServo : public ::testing::Test {
  protected:
-  void SetUp() override {
-    char name[] = "/tmp/simulate_servo_XXXXXX";
-    ASSERT_NE(mkdtemp(name), nullptr);
-    folder_ = name;
-  }
-  void TearDown() override { std::system(("rm -r " + folder_).c_str()); }
-
   // Runs the tool; its output, with standard error, and its exit status.
   std::string run(const std::string& arguments) {
     std::FILE* pipe = popen((std::string(SIMULATE_SERVO) + " " + arguments + " 2>&1").c_str(), "r");
@@ -36,7 +30,7 @@ class SimulateServo : public ::testing::Test {
     return output;
   }
 
-  std::string file(const std::string& name) const { return folder_ + "/" + name; }
+  std::string file(const std::string& name) const { return folder_.file(name); }
 
   std::string write(const std::string& name, const std::string& text) const {
     std::ofstream(file(name)) << text;
@@ -62,7 +56,7 @@ class SimulateServo : public ::testing::Test {
     return rows;
   }
 
-  std::string folder_;
+  const laparoscope_servo::test_support::TemporaryFolder folder_;
   int status_ = -1;
 };
 

@@ -1,7 +1,6 @@
 #include "laparoscope_servo/aesop/transport.h"
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -11,23 +10,14 @@
 #include <thread>
 
 #include "laparoscope_servo/sim/pty.h"
+#include "support/temporary_folder.h"
 
 namespace laparoscope_servo::aesop {
 namespace {
 
 class TransportTest : public ::testing::Test {
  protected:
-  TransportTest() {
-    std::string pattern = ::testing::TempDir() + "/transport_XXXXXX";
-    directory_ = ::mkdtemp(pattern.data());
-    pty_ = std::make_unique<sim::Pty>(path("port"));
-  }
-  ~TransportTest() override {
-    pty_.reset();
-    ::unlink(path("file").c_str());
-    ::rmdir(directory_.c_str());
-  }
-  std::string path(const std::string& name) const { return directory_ + "/" + name; }
+  std::string path(const std::string& name) const { return folder_.file(name); }
 
   static std::string errorOf(SerialTransport& transport, const std::string& port, int baud_rate = 38400) {
     try {
@@ -50,8 +40,8 @@ class TransportTest : public ::testing::Test {
     return bytes;
   }
 
-  std::string directory_;
-  std::unique_ptr<sim::Pty> pty_;
+  const test_support::TemporaryFolder folder_;
+  std::unique_ptr<sim::Pty> pty_ = std::make_unique<sim::Pty>(path("port"));
 };
 
 TEST_F(TransportTest, everyByteGoesBothWaysUnchanged) {
@@ -104,7 +94,7 @@ TEST_F(TransportTest, noDescriptorsLeft) {
 TEST_F(TransportTest, notATerminal) {
   std::ofstream(path("file")) << "text";
   SerialTransport transport;
-  for (const std::string& port : {path("file"), directory_, std::string("/dev/null")}) {
+  for (const std::string& port : {path("file"), folder_.path(), std::string("/dev/null")}) {
     const std::string error = errorOf(transport, port);
     EXPECT_NE(error.find("no serial port"), std::string::npos) << error;
     EXPECT_FALSE(transport.isOpen());

@@ -1,12 +1,12 @@
 #include "laparoscope_servo/ros/parameters.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <cstdio>
 #include <fstream>
 #include <limits>
 #include <stdexcept>
+
+#include "support/temporary_folder.h"
 
 namespace laparoscope_servo::skin {
 namespace {
@@ -18,17 +18,11 @@ const double kInfinity = std::numeric_limits<double>::infinity();
 // A YAML file that lives as long as the object.
 class File {
  public:
-  explicit File(const std::string& text) {
-    char name[] = "/tmp/parameters_test_XXXXXX";
-    close(mkstemp(name));
-    name_ = name;
-    std::ofstream(name_) << text;
-  }
-  ~File() { std::remove(name_.c_str()); }
-  const std::string& name() const { return name_; }
+  explicit File(const std::string& text) { std::ofstream(name()) << text; }
+  std::string name() const { return folder_.file("parameters.yaml"); }
 
  private:
-  std::string name_;
+  const test_support::TemporaryFolder folder_;
 };
 
 XmlRpcValue tree(const std::string& text) {

@@ -2,7 +2,6 @@
 #include "laparoscope_servo/sim/emulator_server.h"
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -15,6 +14,7 @@
 #include "laparoscope_servo/aesop/own_codec.h"
 #include "laparoscope_servo/aesop/transport.h"
 #include "laparoscope_servo/sim/emulator_control_client.h"
+#include "support/temporary_folder.h"
 
 namespace laparoscope_servo::sim {
 namespace {
@@ -28,15 +28,7 @@ ServerConfig server(const std::string& link, const std::string& control) {
 
 class EmulatorServerTest : public ::testing::Test {
  protected:
-  EmulatorServerTest() {
-    std::string pattern = ::testing::TempDir() + "/server_XXXXXX";
-    directory_ = ::mkdtemp(pattern.data());
-  }
-  ~EmulatorServerTest() override {
-    end();
-    ::unlink(path("file").c_str());
-    ::rmdir(directory_.c_str());
-  }
+  ~EmulatorServerTest() override { end(); }
   void start(int baud_rate = 0, const std::vector<ScheduledFault>& script = {}) {
     ServerConfig config = server(path("port"), path("control"));
     config.baud_rate = baud_rate;
@@ -49,7 +41,7 @@ class EmulatorServerTest : public ::testing::Test {
     if (thread_.joinable()) thread_.join();
     server_.reset();
   }
-  std::string path(const std::string& name) const { return directory_ + "/" + name; }
+  std::string path(const std::string& name) const { return folder_.file(name); }
 
   template <typename Condition>
   static bool waitFor(Condition condition) {
@@ -61,7 +53,7 @@ class EmulatorServerTest : public ::testing::Test {
     return true;
   }
 
-  std::string directory_;
+  const test_support::TemporaryFolder folder_;
   std::atomic<bool> stop_{false};
   std::unique_ptr<EmulatorServer> server_;
   std::thread thread_;
@@ -160,8 +152,7 @@ TEST_F(EmulatorServerTest, namesThatAreTaken) {
   std::ofstream(path("file")) << "precious";
   EXPECT_THROW(EmulatorServer(EmulatorConfig(), server(path("file"), "")), std::runtime_error);
   EXPECT_THROW(EmulatorServer(EmulatorConfig(), server(path("port"), path("file"))), std::runtime_error);
-  EXPECT_THROW(EmulatorServer(EmulatorConfig(), server(path("port"), directory_ + "/no/such/folder")),
-               std::runtime_error);
+  EXPECT_THROW(EmulatorServer(EmulatorConfig(), server(path("port"), path("no/such/folder"))), std::runtime_error);
   EXPECT_NE(::access(path("port").c_str(), F_OK), 0) << "no port stays behind";
 }
 

@@ -1,7 +1,6 @@
 #include "laparoscope_servo/sim/pty.h"
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -9,26 +8,19 @@
 #include <memory>
 #include <stdexcept>
 
+#include "support/temporary_folder.h"
+
 namespace laparoscope_servo::sim {
 namespace {
 
 class PtyTest : public ::testing::Test {
  protected:
-  PtyTest() {
-    std::string pattern = ::testing::TempDir() + "/pty_XXXXXX";
-    directory_ = ::mkdtemp(pattern.data());
-    link_ = directory_ + "/port";
-  }
-  ~PtyTest() override {
-    ::unlink(link_.c_str());
-    ::rmdir(directory_.c_str());
-  }
   bool exists() const {
     struct stat info {};
     return ::lstat(link_.c_str(), &info) == 0;
   }
-  std::string directory_;
-  std::string link_;
+  const test_support::TemporaryFolder folder_;
+  const std::string link_ = folder_.file("port");
 };
 
 TEST_F(PtyTest, linkComesAndGoes) {
@@ -54,7 +46,7 @@ TEST_F(PtyTest, aFileIsNotOverwritten) {
   std::string text;
   std::ifstream(link_) >> text;
   EXPECT_EQ(text, "precious");
-  EXPECT_THROW(Pty{directory_ + "/no/such/folder"}, std::runtime_error);
+  EXPECT_THROW(Pty{folder_.file("no/such/folder")}, std::runtime_error);
 }
 
 TEST_F(PtyTest, nobodyReadingBlocksNothing) {
