@@ -27,12 +27,6 @@ else()
   set(LAPAROSCOPE_SERVO_GTEST_MAIN gtest_main)
 endif()
 
-# scripts/test builds the tests without a master while those with one run.
-if(CATKIN_ENABLE_TESTING)
-  add_custom_target(${PROJECT_NAME}_gtests)
-  add_custom_target(${PROJECT_NAME}_rostests)
-endif()
-
 # A program that is never built holds what the tests precompile: of the core's, and of the skin's.
 function(laparoscope_servo_test_headers)
   set(source ${CMAKE_CURRENT_BINARY_DIR}/test_headers.cpp)
@@ -47,34 +41,31 @@ function(laparoscope_servo_test_headers)
   target_precompile_headers(test_headers_skin PRIVATE ${LAPAROSCOPE_SERVO_ROS_HEADERS} <random> <gtest/gtest.h>)
 endfunction()
 
+# What the kinds of test have in common: KIND of headers, core or skin, and LIBRARIES
+function(laparoscope_servo_test_target name kind)
+  if(TARGET test_${name})
+    target_link_libraries(test_${name} ${ARGN})
+    target_precompile_headers(test_${name} REUSE_FROM test_headers_${kind})
+    if(kind STREQUAL skin)
+      add_dependencies(test_${name} ${PROJECT_NAME}_generate_messages_cpp ${catkin_EXPORTED_TARGETS})
+    endif()
+  endif()
+endfunction()
+
 # laparoscope_servo_unit_test(NAME SOURCE...): a GoogleTest without a master, linked to the core alone
 function(laparoscope_servo_unit_test name)
   catkin_add_gtest(test_${name} ${ARGN})
-  if(TARGET test_${name})
-    target_link_libraries(test_${name} ${PROJECT_NAME}_core ${LAPAROSCOPE_SERVO_GTEST_MAIN})
-    target_precompile_headers(test_${name} REUSE_FROM test_headers_core)
-    add_dependencies(${PROJECT_NAME}_gtests test_${name})
-  endif()
+  laparoscope_servo_test_target(${name} core ${PROJECT_NAME}_core ${LAPAROSCOPE_SERVO_GTEST_MAIN})
 endfunction()
 
 # laparoscope_servo_skin_test(NAME SOURCE...): a GoogleTest without a master, linked to the ROS skin
 function(laparoscope_servo_skin_test name)
   catkin_add_gtest(test_${name} ${ARGN})
-  if(TARGET test_${name})
-    target_link_libraries(test_${name} ${PROJECT_NAME}_ros ${LAPAROSCOPE_SERVO_GTEST_MAIN})
-    target_precompile_headers(test_${name} REUSE_FROM test_headers_skin)
-    add_dependencies(${PROJECT_NAME}_gtests test_${name})
-    add_dependencies(test_${name} ${PROJECT_NAME}_generate_messages_cpp ${catkin_EXPORTED_TARGETS})
-  endif()
+  laparoscope_servo_test_target(${name} skin ${PROJECT_NAME}_ros ${LAPAROSCOPE_SERVO_GTEST_MAIN})
 endfunction()
 
 # laparoscope_servo_rostest(NAME SOURCE...): NAME.test beside the sources, run by rostest under a master of its own
 function(laparoscope_servo_rostest name)
   add_rostest_gtest(test_${name} ${CMAKE_CURRENT_SOURCE_DIR}/${name}.test ${ARGN})
-  if(TARGET test_${name})
-    target_link_libraries(test_${name} ${PROJECT_NAME}_ros)
-    target_precompile_headers(test_${name} REUSE_FROM test_headers_skin)
-    add_dependencies(${PROJECT_NAME}_rostests test_${name})
-    add_dependencies(test_${name} ${PROJECT_NAME}_generate_messages_cpp ${catkin_EXPORTED_TARGETS})
-  endif()
+  laparoscope_servo_test_target(${name} skin ${PROJECT_NAME}_ros)
 endfunction()
