@@ -105,12 +105,11 @@ TEST_F(ControllerEngage, AnotherRegionWhileTheArmIsWaitedForIsLost) {
   engageAndMove();
   cart_.set([](Feed& feed) { feed.tf = false; });
   ASSERT_TRUE(cart_.waitForState(ControllerState::HOLD, 1.0));
-  cart_.set([](Feed& feed) {
-    feed.tf = true;
-    feed.message.reference_stamp = ros::Time(1.0);
-  });
+  cart_.set([](Feed& feed) { feed.message.reference_stamp = ros::Time(1.0); });
   ASSERT_TRUE(cart_.waitForState(ControllerState::LOST, 1.0));
   EXPECT_NE(cart_.state().reason.find("another region"), std::string::npos) << cart_.state().reason;
+  cart_.set([](Feed& feed) { feed.tf = true; });
+  EXPECT_FALSE(cart_.waitForState(ControllerState::SERVO, 0.5));
   EXPECT_TRUE(cart_.stands());
 }
 
