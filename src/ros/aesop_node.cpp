@@ -39,7 +39,7 @@ AesopNode::AesopNode(const ros::NodeHandle& node, const ros::NodeHandle& private
       reconnect_(parameters.reconnect),
       master_(node.resolveName(parameters.publisher, false)),
       callers_(resolved(node, parameters.service_callers)),
-      calibration_(private_node, parameters, callers_, driver_),
+      calibration_(private_node, parameters, callers_, service_errors_, driver_),
       reported_(parameters.port, aesop::lineWarning(parameters.driver.session, parameters.baud_rate)),
       node_(node),
       private_node_(private_node) {
@@ -81,7 +81,7 @@ void AesopNode::run(const std::function<bool()>& stop) {
     while (!stop() && ros::ok()) {
       const auto next = std::chrono::steady_clock::now() + kPeriod;
       ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.0));
-      if (thrown_) std::rethrow_exception(thrown_);
+      service_errors_.rethrow();
       step();
       std::this_thread::sleep_until(next);
     }

@@ -2,8 +2,6 @@
 // time.
 #include <ros/ros.h>
 
-#include <exception>
-
 #include "laparoscope_servo/ros/aesop_node.h"
 #include "laparoscope_servo/ros/clocks.h"
 
@@ -29,12 +27,7 @@ void AesopNode::advertise(const std::string& name, Action action, Callers caller
     const std::string caller = event.getCallerName();
     Response& response = event.getResponse();
     const std::string refusal = callers == Callers::kNamed ? callers_.refusal(name, caller) : "";
-    try {
-      response = refusal.empty() ? (this->*action)() : answer(refusal);
-    } catch (const std::exception& error) {
-      thrown_ = std::current_exception();  // roscpp would only log it: the loop ends the node
-      response = answer(error.what());
-    }
+    service_errors_.guard(response, [&] { response = refusal.empty() ? (this->*action)() : answer(refusal); });
     ROS_INFO_STREAM(name << ", called by " << shownName(caller) << ": " << (response.success ? "done" : "refused")
                          << (response.message.empty() ? "" : ", ") << response.message);
     return true;

@@ -55,20 +55,36 @@ CalibrationState toMessage(const InsertionPointCalibration& calibration, const s
 }  // namespace
 
 CalibrationServices::CalibrationServices(const ros::NodeHandle& private_node, const AesopParameters& parameters,
-                                         const ServiceCallers& callers, aesop::Driver& driver)
+                                         const ServiceCallers& callers, ServiceErrors& errors, aesop::Driver& driver)
     : node_(private_node, "calibrate_insertion_point"),
       callers_(callers),
+      errors_(errors),
       frame_(parameters.frame_prefix + "aesop_base"),
       origin_(parameters.insertion_point_origin),
       calibration_(parameters.calibration, driver) {
   publisher_ = node_.advertise<CalibrationState>("state", 10, true);
   using Start = ros::ServiceEvent<StartCalibration::Request, StartCalibration::Response>;
-  using Finish = ros::ServiceEvent<std_srvs::Trigger::Request, std_srvs::Trigger::Response>;
-  services_ = {
-      node_.advertiseService("start", boost::function<bool(Start&)>([this](Start& e) { return start(e); })),
-      node_.advertiseService("finish", boost::function<bool(Finish&)>([this](Finish& e) { return finish(e); })),
-      // What makes the arm stand is for everybody.
-      node_.advertiseService("cancel", &CalibrationServices::cancel, this)};
+  using End = ros::ServiceEvent<std_srvs::Trigger::Request, Ending>;
+  const boost::function<bool(Start&)> on_start = [this](Start& event) {
+    StartCalibration::Response& response = event.getResponse();
+    response.message = callers_.refusal("calibrate_insertion_point/start", event.getCallerName());
+    if (response.message.empty()) errors_.guard(response, [&] { start(event.getRequest(), response); });
+    return true;
+  };
+  const boost::function<bool(End&)> on_finish = [this](End& event) {
+    Ending& response = event.getResponse();
+    response.message = callers_.refusal("calibrate_insertion_point/finish", event.getCallerName());
+    if (response.message.empty()) errors_.guard(response, [&] { end(calibration_.finish(steadyNow()), response); });
+    return true;
+  };
+  // What makes the arm stand is for everybody.
+  const boost::function<bool(End&)> on_cancel = [this](End& event) {
+    Ending& response = event.getResponse();
+    errors_.guard(response, [&] { end(calibration_.cancel(steadyNow()), response); });
+    return true;
+  };
+  services_ = {node_.advertiseService("start", on_start), node_.advertiseService("finish", on_finish),
+               node_.advertiseService("cancel", on_cancel)};
   ROS_INFO_STREAM("insertion point: " << origin_);
   publisher_.publish(toMessage(calibration_, frame_));
 }
@@ -109,41 +125,23 @@ void CalibrationServices::describe(diagnostic_updater::DiagnosticStatusWrapper& 
   status.add("calibration", stageName(calibration_.stage()) + ": " + calibration_.message());
 }
 
-bool CalibrationServices::start(ros::ServiceEvent<StartCalibration::Request, StartCalibration::Response>& event) {
-  const StartCalibration::Request& request = event.getRequest();
-  StartCalibration::Response& response = event.getResponse();
-  response.message = callers_.refusal("calibrate_insertion_point/start", event.getCallerName());
-  if (!response.message.empty()) return true;
+void CalibrationServices::start(const StartCalibration::Request& request, StartCalibration::Response& response) {
   if (request.method != StartCalibration::Request::HAND && request.method != StartCalibration::Request::PATTERN) {
     response.message = "no method '" + request.method + "', expected HAND or PATTERN";
-    return true;
+    return;
   }
   const bool by_hand = request.method == StartCalibration::Request::HAND;
   response.message = calibration_.start(by_hand ? CalibrationMethod::kHand : CalibrationMethod::kPattern, steadyNow());
   response.success = response.message.empty();
-  if (!response.success) return true;
+  if (!response.success) return;
   response.message = by_hand ? "move the scope about the trocar, to all sides; then finish" : "the arm moves";
   publish(steadyNow());
-  return true;
 }
 
-bool CalibrationServices::finish(ros::ServiceEvent<std_srvs::Trigger::Request, std_srvs::Trigger::Response>& event) {
-  std_srvs::Trigger::Response& response = event.getResponse();
-  response.message = callers_.refusal("calibrate_insertion_point/finish", event.getCallerName());
-  if (!response.message.empty()) return true;
-  response.message = calibration_.finish(steadyNow());
-  response.success = response.message.empty();
-  if (response.success) response.message = calibration_.message();
+void CalibrationServices::end(const std::string& refusal, Ending& response) {
+  response.success = refusal.empty();
+  response.message = refusal.empty() ? calibration_.message() : refusal;
   publish(steadyNow());
-  return true;
-}
-
-bool CalibrationServices::cancel(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
-  response.message = calibration_.cancel(steadyNow());
-  response.success = response.message.empty();
-  if (response.success) response.message = calibration_.message();
-  publish(steadyNow());
-  return true;
 }
 
 }  // namespace laparoscope_servo::skin

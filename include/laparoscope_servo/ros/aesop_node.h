@@ -10,7 +10,6 @@
 #include <tf2_ros/static_transform_broadcaster.h>
 #include <tf2_ros/transform_broadcaster.h>
 
-#include <exception>
 #include <functional>
 #include <memory>
 #include <string>
@@ -22,6 +21,7 @@
 #include "laparoscope_servo/ros/calibration_services.h"
 #include "laparoscope_servo/ros/command_master.h"
 #include "laparoscope_servo/ros/service_callers.h"
+#include "laparoscope_servo/ros/service_errors.h"
 
 namespace laparoscope_servo::skin {
 
@@ -76,6 +76,7 @@ class AesopNode {
   aesop::Reconnect reconnect_;
   CommandMaster master_;
   ServiceCallers callers_;
+  ServiceErrors service_errors_;
   aesop::SerialTransport transport_;
   CalibrationServices calibration_;
   AesopDiagnostics reported_;
@@ -83,7 +84,6 @@ class AesopNode {
   double next_report_ = 0.0;       // s, steady: of a refused command
   double next_stranger_ = 0.0;     // s, steady: of a publisher that is not the master
   std::string last_loss_;
-  std::exception_ptr thrown_;    // in a service
   std::uint64_t published_ = 0;  // statuses received when the last one was published
   aesop::OperatingState last_state_;
   bool state_published_ = false;

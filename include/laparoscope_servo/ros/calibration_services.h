@@ -12,15 +12,16 @@
 #include "laparoscope_servo/StartCalibration.h"
 #include "laparoscope_servo/ros/insertion_point_calibration.h"
 #include "laparoscope_servo/ros/service_callers.h"
+#include "laparoscope_servo/ros/service_errors.h"
 
 namespace laparoscope_servo::skin {
 
 class CalibrationServices {
  public:
-  // `driver` has to outlive this. `callers`: who may start a calibration, which may move the arm, or end it with a
-  // result.
+  // `callers`: who may start a calibration, which may move the arm, or end it with a result. `errors` takes what the
+  // services throw; it and `driver` have to outlive this.
   CalibrationServices(const ros::NodeHandle& private_node, const AesopParameters& parameters,
-                      const ServiceCallers& callers, aesop::Driver& driver);
+                      const ServiceCallers& callers, ServiceErrors& errors, aesop::Driver& driver);
 
   // Call often. True when the insertion point is another one from now on.
   bool step(double stamp_now, double now);
@@ -31,13 +32,16 @@ class CalibrationServices {
   void describe(diagnostic_updater::DiagnosticStatusWrapper& status) const;
 
  private:
-  bool start(ros::ServiceEvent<StartCalibration::Request, StartCalibration::Response>& event);
-  bool finish(ros::ServiceEvent<std_srvs::Trigger::Request, std_srvs::Trigger::Response>& event);
-  bool cancel(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
+  using Ending = std_srvs::Trigger::Response;
+
+  // Each fills what the service answers.
+  void start(const StartCalibration::Request& request, StartCalibration::Response& response);
+  void end(const std::string& refusal, Ending& response);
   void publish(double now);
 
   ros::NodeHandle node_;
   ServiceCallers callers_;
+  ServiceErrors& errors_;
   std::string frame_;
   std::string origin_;  // of the insertion point, in words
   InsertionPointCalibration calibration_;
