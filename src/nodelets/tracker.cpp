@@ -1,7 +1,6 @@
 #include "tracker.h"
 
 #include <boost/make_shared.hpp>
-#include <chrono>
 #include <exception>
 #include <optional>
 #include <pluginlib/class_list_macros.hpp>
@@ -10,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "laparoscope_servo/ros/clocks.h"
 #include "laparoscope_servo/ros/overlay.h"
 #include "laparoscope_servo/ros/parameters.h"
 #include "laparoscope_servo/ros/result_messages.h"
@@ -19,10 +19,6 @@ namespace laparoscope_servo::nodelets {
 namespace {
 
 constexpr double kThrottle = 5.0;  // s between two lines of the log about the same kind of trouble
-
-double steadySeconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 template <class Message>
 void publishIfHeard(const ros::Publisher& publisher, Message (*make)(const skin::Processed&),
@@ -131,7 +127,7 @@ void Tracker::followRobot(const skin::RobotMotionConfig& config) {
   session_->setCameraMotion([this, fixed_frame = config.fixed_frame](const std::string& frame, const ros::Time& from,
                                                                      const ros::Time& to, std::string& why) {
     const auto motion = skin::cameraMotion(*tf_, fixed_frame, frame, from, to, why);
-    if (!motion && future_transforms_.found(*tf_, fixed_frame, frame, ros::Time::now(), steadySeconds())) {
+    if (!motion && future_transforms_.found(*tf_, fixed_frame, frame, ros::Time::now(), skin::steadyNow())) {
       why = "the pose of " + frame + " in " + fixed_frame + " is stamped in the future";
     }
     return motion;
@@ -173,7 +169,7 @@ void Tracker::process(const sensor_msgs::ImageConstPtr& message) {
   if (!processed.selection_error.empty()) {
     NODELET_ERROR_THROTTLE(kThrottle, "the ROI could not be selected: %s", processed.selection_error.c_str());
   }
-  statistics_->processed(steadySeconds(), processed, session_->ignoresDistortion());
+  statistics_->processed(skin::steadyNow(), processed, session_->ignoresDistortion());
   publish(processed);
 }
 
@@ -192,7 +188,7 @@ void Tracker::publish(const skin::Processed& processed) {
 }
 
 void Tracker::refuse(const std::string& error) {
-  statistics_->refused(steadySeconds(), error);
+  statistics_->refused(skin::steadyNow(), error);
   NODELET_ERROR_THROTTLE(kThrottle, "image refused: %s", error.c_str());
 }
 
@@ -207,7 +203,7 @@ void Tracker::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
   if (!why_aside_.empty()) {
     status.summary(diagnostic_msgs::DiagnosticStatus::ERROR, "not started: " + why_aside_);
   } else if (statistics_) {
-    statistics_->fill(steadySeconds(), status);
+    statistics_->fill(skin::steadyNow(), status);
   }
 }
 

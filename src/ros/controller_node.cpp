@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "laparoscope_servo/ros/clocks.h"
 #include "laparoscope_servo/ros/controller_conversions.h"
 
 namespace laparoscope_servo::skin {
@@ -18,10 +19,6 @@ constexpr double kClockCorrection = 0.1;
 constexpr double kWarningPeriod = 5.0;  // s
 // s. A velocity that was measured so long before, or after, has no place among the commands.
 constexpr double kOldestReport = 0.3;
-
-double steadyNow() {
-  return ros::SteadyTime::now().toSec();
-}
 
 const char* doing(servo::Task task) {
   return task == servo::Task::kManual ? "is driven by hand" : "follows the region of interest";
@@ -103,20 +100,6 @@ void ControllerNode::onManual(const ScopeVelocity& message) {
   }
 }
 
-bool ControllerNode::onSelectTask(SelectTask::Request& request, SelectTask::Response& response) {
-  checkTime();
-  response.success = request.task == SelectTask::Request::HOLD_VIEW || request.task == SelectTask::Request::MANUAL;
-  if (!response.success) {
-    response.message =
-        "no task '" + request.task + "', expected HOLD_VIEW or MANUAL; " + taskName(controller_.task()) + " goes on";
-    return true;
-  }
-  controller_.select(request.task == SelectTask::Request::MANUAL ? servo::Task::kManual : servo::Task::kHoldView);
-  onTick();
-  response.message = request.task + ", " + toMessage(last_output_).state + ": " + last_output_.reason;
-  return true;
-}
-
 // Only the delay is measured with it: what is missing or wrong here is left out.
 void ControllerNode::onMeasuredVelocity(const geometry_msgs::TwistStamped& message) {
   const double age = (ros::Time::now() - message.header.stamp).toSec();
@@ -130,24 +113,6 @@ void ControllerNode::onMeasuredVelocity(const geometry_msgs::TwistStamped& messa
   }
   robot_report_.present = true;
   robot_report_arrival_ = steadyNow() - age;
-}
-
-bool ControllerNode::onEngage(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response) {
-  checkTime();
-  if (!request.data) {
-    controller_.disengage("not engaged");
-    response.success = true;
-    response.message = "disengaged";
-  } else if (controller_.engaged()) {
-    response.success = true;
-    response.message = "was engaged already, " + toMessage(last_output_).state + ": " + last_output_.reason;
-  } else {
-    const std::string problem = controller_.engage(input());
-    response.success = problem.empty();
-    response.message = problem.empty() ? "engaged" : "not engaged: " + problem;
-  }
-  onTick();
-  return true;
 }
 
 void ControllerNode::onTick() {

@@ -9,16 +9,9 @@
 #include <cmath>
 
 #include "laparoscope_servo/ros/aesop_parameters.h"
+#include "laparoscope_servo/ros/clocks.h"
 
 namespace laparoscope_servo::skin {
-
-namespace {
-
-double now() {
-  return ros::SteadyTime::now().toSec();
-}
-
-}  // namespace
 
 DemoConfig demoConfig(ParameterReader& reader) {
   DemoConfig config;
@@ -73,10 +66,10 @@ void DemoDirector::play() {
 }
 
 void DemoDirector::waitFor(const std::string& what, double timeout, const std::function<bool()>& condition) {
-  const double end = now() + timeout;
+  const double end = steadyNow() + timeout;
   while (!condition()) {
     if (!ros::ok()) throw Failed("interrupted while waiting for " + what);
-    if (now() > end) {
+    if (steadyNow() > end) {
       throw Failed(what + " did not come about within " + std::to_string(static_cast<int>(std::lround(timeout))) +
                    " s");
     }
@@ -98,7 +91,7 @@ void DemoDirector::onHomography(const Homography& message) {
   ++summary_.total_frames;
   summary_.tracked_frames += tracking ? 1 : 0;
   if (tracking) error_ = viewError(message, roi_);
-  settling_.update(now(), tracking, error_);
+  settling_.update(steadyNow(), tracking, error_);
   if (crossing_) {
     ++summary_.crossing_frames;
     summary_.crossing_tracked_frames += tracking ? 1 : 0;
@@ -153,8 +146,8 @@ void DemoDirector::moveByHand() {
   ROS_INFO("moving the scope by hand");
   // Tilt is a turn about x, which takes the optical axis up.
   emulator_->hand({config_.pan, config_.tilt, config_.spin, config_.deeper}, config_.hand_time);
-  const double end = now() + config_.hand_time + 0.5;
-  waitFor("the end of the motion by hand", config_.hand_time + 5.0, [end] { return now() > end; });
+  const double end = steadyNow() + config_.hand_time + 0.5;
+  waitFor("the end of the motion by hand", config_.hand_time + 5.0, [end] { return steadyNow() > end; });
   if (homography_->state != Homography::TRACKING) throw Failed("the ROI was lost while the scope was moved by hand");
   summary_.start_error_px = error_.centre;
   summary_.start_scale_error = error_.scale;
@@ -168,11 +161,11 @@ void DemoDirector::closeLoop() {
   engage.request.data = static_cast<std::uint8_t>(true);
   // The controller may hear of ENABLED a moment later.
   const std::string service = node_.resolveName("controller/engage");
-  const double last_try = now() + 2.0;
+  const double last_try = steadyNow() + 2.0;
   waitFor("an answer of " + service, 5.0,
-          [&] { return (ros::service::call(service, engage) && engage.response.success) || now() > last_try; });
+          [&] { return (ros::service::call(service, engage) && engage.response.success) || steadyNow() > last_try; });
   if (!engage.response.success) throw Failed("the service " + service + " refused: " + engage.response.message);
-  const double begin = now();
+  const double begin = steadyNow();
   waitFor("convergence", config_.timeout, [this] { return settling_.settled(); });
   summary_.settling_time = std::max(0.0, settling_.since() - begin);
   ROS_INFO("settled after %.1f s", summary_.settling_time);
@@ -189,9 +182,9 @@ void DemoDirector::crossInstrument() {
   waitFor("the end of the crossing", config_.timeout,
           [this] { return homography_->state == Homography::TRACKING && homography_->visible_fraction > 0.95; });
   crossing_ = false;
-  const double end = now() + config_.settled_time;
+  const double end = steadyNow() + config_.settled_time;
   waitFor("convergence after the crossing", config_.timeout,
-          [this, end] { return now() > end && settling_.settled(); });
+          [this, end] { return steadyNow() > end && settling_.settled(); });
 }
 
 void DemoDirector::finish() {

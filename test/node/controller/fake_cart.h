@@ -6,7 +6,6 @@
 #include <laparoscope_servo/ControllerState.h>
 #include <laparoscope_servo/OperatingState.h>
 #include <laparoscope_servo/ScopeVelocity.h>
-#include <laparoscope_servo/TaskError.h>
 #include <ros/ros.h>
 #include <std_msgs/Bool.h>
 #include <std_srvs/SetBool.h>
@@ -21,15 +20,15 @@
 #include <thread>
 #include <vector>
 
+#include "laparoscope_servo/ros/clocks.h"
+#include "feed.h"
+
 namespace laparoscope_servo {
+
+using skin::steadyNow;
 
 inline bool isZero(const ScopeVelocity& c) {
   return c.pan == 0.0 && c.tilt == 0.0 && c.spin == 0.0 && c.insertion == 0.0;
-}
-
-// s
-inline double steadyNow() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 // Waits until `condition` holds, at most `seconds`; polls, since what is waited for happens in other processes.
@@ -40,41 +39,6 @@ inline bool waitFor(const std::function<bool()>& condition, double seconds = 5.0
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   return condition();
-}
-
-// What is published; a test changes it through FakeCart::set.
-struct Feed {
-  bool task_error = true;
-  bool tf = true;
-  bool robot = true;
-  bool dead_man = true;
-  bool pressed = true;
-  bool images_stop = false;      // the tracker goes on, over images that are hardly newer each time
-  double stamp_offset = 0.0;     // s, added to the stamps of task errors
-  ros::Time fixed_stamp;         // not zero: every task error has this stamp
-  double tf_stamp_offset = 0.0;  // s
-  double d2 = 0.1;               // m
-  double lateral = 0.0;          // m
-  double optics = 0.0;           // rad, of the camera on the scope, about its x axis
-  std::string robot_state = "ENABLED";
-  TaskError message;
-};
-
-inline TaskError offTarget() {
-  TaskError message;
-  message.valid = true;
-  message.e_v.x = 0.2;
-  message.e_v.y = -0.1;
-  message.e_v.z = 0.1;
-  message.e_w.z = -0.1;
-  message.x = 0.2 / 1.1;
-  message.y = -0.1 / 1.1;
-  message.log_depth = std::log(1.1);
-  message.alpha = -0.05;
-  message.m_star.z = 1.0;
-  message.visible_fraction = 1.0;
-  message.corner_error = 0.1;
-  return message;
 }
 
 class FakeCart {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <iostream>
 #include <stdexcept>
 #include <thread>
 
@@ -20,10 +21,6 @@ ros::Subscriber keepLast(ros::NodeHandle& node, const std::string& topic, std::o
 }
 
 }  // namespace
-
-double steadyNow() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 AesopBench::AesopBench(bool with_node, const std::vector<std::string>& emulator_arguments) {
   const std::string control = folder_.file("control");
@@ -129,7 +126,9 @@ std_srvs::Trigger::Response AesopBench::call(const std::string& service) {
 }
 
 bool AesopBench::enable() {
-  return call("enable").success && waitFor([this] { return stateIs("ENABLED"); });
+  const std_srvs::Trigger::Response answer = call("enable");
+  if (!answer.success) std::cerr << "enable: " << answer.message << "\n";
+  return answer.success && waitFor([this] { return stateIs("ENABLED"); });
 }
 
 bool AesopBench::startMoving() {
