@@ -2,10 +2,11 @@
 #include <ros/ros.h>
 
 #include <cstdlib>
-#include <fstream>
 #include <iostream>
+#include <stdexcept>
 
 #include "laparoscope_servo/ros/demo_director.h"
+#include "laparoscope_servo/ros/output_file.h"
 
 namespace skin = laparoscope_servo::skin;
 
@@ -22,8 +23,10 @@ int main(int argc, char** argv) {
   const skin::DemoSummary summary = skin::DemoDirector(node, config).run();
   const std::string text = toJson(summary);
   std::cout << text << std::flush;
-  if (!config.summary.empty() && !(std::ofstream(config.summary) << text)) {
-    ROS_FATAL("cannot write the summary '%s'", config.summary.c_str());
+  try {
+    if (!config.summary.empty()) skin::writeTextFile(config.summary, [&](std::ostream& stream) { stream << text; });
+  } catch (const std::runtime_error& error) {
+    ROS_FATAL("the summary is lost: %s", error.what());
     return EXIT_FAILURE;
   }
   if (!summary.converged) {

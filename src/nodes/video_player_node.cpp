@@ -21,7 +21,6 @@ int main(int argc, char** argv) {
   try {
     skin::VideoPlayer player(node, config);
     player.run();
-    ROS_INFO("played %zu images", player.published());
     // Publishing is asynchronous: the last images have to leave before the connections close.
     ros::WallDuration(0.5).sleep();
   } catch (const std::exception& error) {

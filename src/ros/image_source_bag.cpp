@@ -3,6 +3,7 @@
 #include <rosbag/view.h>
 #include <sensor_msgs/CompressedImage.h>
 
+#include <boost/make_shared.hpp>
 #include <map>
 #include <memory>
 #include <opencv2/imgcodecs.hpp>
@@ -33,13 +34,17 @@ std::string listing(const Topics& topics) {
   return text;
 }
 
+Topics::const_iterator findTopic(const Topics& topics, const std::string& path, const std::string& wanted) {
+  auto found = topics.find(wanted);
+  if (found == topics.end()) found = topics.find('/' + wanted);
+  if (found == topics.end()) throw SourceError("bag '" + path + "' has no topic '" + wanted + "'; " + listing(topics));
+  return found;
+}
+
 std::string chooseImageTopic(const Topics& topics, const std::string& path, const std::string& wanted) {
   const std::string expected = std::string(", expected ") + kImageType + " or " + kCompressedType + "; ";
   if (!wanted.empty()) {
-    auto found = topics.find(wanted);
-    if (found == topics.end()) found = topics.find('/' + wanted);
-    if (found == topics.end())
-      throw SourceError("bag '" + path + "' has no topic '" + wanted + "'; " + listing(topics));
+    const auto found = findTopic(topics, path, wanted);
     if (!isImageType(found->second)) {
       throw SourceError("topic '" + wanted + "' of bag '" + path + "' is of type " + found->second + expected +
                         listing(topics));
@@ -66,14 +71,60 @@ std::string parent(const std::string& topic) {
 }
 
 // As a camera driver names it: beside the image's topic; that of a compressed image has the transport's name appended.
-std::string cameraInfoTopic(const Topics& topics, const std::string& image_topic) {
+std::string usualCameraInfoTopic(const Topics& topics, const std::string& image_topic) {
   const std::string raw_topic = topics.at(image_topic) == kCompressedType ? parent(image_topic) : image_topic;
   const std::string beside = parent(raw_topic);
-  const std::string name =
-      beside.empty() && raw_topic.find('/') == std::string::npos ? "camera_info" : beside + "/camera_info";
-  const auto found = topics.find(name);
-  return found != topics.end() && found->second == kCameraInfoType ? name : "";
+  return beside.empty() && raw_topic.find('/') == std::string::npos ? "camera_info" : beside + "/camera_info";
 }
+
+// Empty when there is none.
+std::string chooseCameraInfoTopic(const Topics& topics, const std::string& path, const std::string& image_topic,
+                                  const std::string& wanted) {
+  if (wanted.empty()) {
+    const auto found = topics.find(usualCameraInfoTopic(topics, image_topic));
+    return found != topics.end() && found->second == kCameraInfoType ? found->first : "";
+  }
+  const auto found = findTopic(topics, path, wanted);
+  if (found->second == kCameraInfoType) return found->first;
+  throw SourceError("topic '" + wanted + "' of bag '" + path + "' is of type " + found->second + ", expected " +
+                    kCameraInfoType + "; " + listing(topics));
+}
+
+// What a user may have meant when there is no camera_info where it is looked for.
+std::string otherCameraInfoTopics(const Topics& topics) {
+  std::string names;
+  for (const auto& [name, type] : topics) {
+    if (type == kCameraInfoType) names += (names.empty() ? "" : ", ") + name;
+  }
+  return names;
+}
+
+// Stamps that can stand for an image: not zero, and not that of the image before. One that cannot is replaced by the
+// time of recording, or by the stamp before and the time that has passed in the recording since.
+class UsableStamps {
+ public:
+  ros::Time of(const ros::Time& stamp, const ros::Time& recorded) {
+    ros::Time usable = stamp;
+    if (stamp.isZero() || (any_ && stamp == given_)) {
+      ++replaced_;
+      usable = any_ ? last_ + (recorded - recorded_) : recorded;
+      if (any_ && !(usable > last_)) usable = last_ + ros::Duration(0, 1);
+    }
+    given_ = stamp;
+    last_ = usable;
+    recorded_ = recorded;
+    any_ = true;
+    return usable;
+  }
+  std::size_t replaced() const { return replaced_; }
+
+ private:
+  bool any_ = false;
+  ros::Time given_;  // of the image before
+  ros::Time last_;   // what was made of it
+  ros::Time recorded_;
+  std::size_t replaced_ = 0;
+};
 
 void decode(const sensor_msgs::CompressedImage& message, SourceImage& image) {
   image.header = message.header;
@@ -96,15 +147,13 @@ void decode(const sensor_msgs::CompressedImage& message, SourceImage& image) {
 
 class BagSource : public ImageSource {
  public:
-  BagSource(const std::string& path, const SourceOptions& options) : path_(path) {
+  BagSource(const std::vector<std::string>& paths, const SourceOptions& options) : name_(paths.front()) {
+    if (paths.size() > 1) name_ += "' and " + std::to_string(paths.size() - 1) + " more '";
+    for (const std::string& path : paths) openBag(path);
     try {
-      bag_.open(path, rosbag::bagmode::Read);
       open(options);
-    } catch (const rosbag::BagUnindexedException&) {
-      throw SourceError("bag '" + path + "' has no index, it was not closed: 'rosbag reindex' may repair it");
     } catch (const rosbag::BagException& error) {
-      throw SourceError("'" + path + "' is no bag, or a damaged one (" + error.what() +
-                        "); 'rosbag reindex' may repair it");
+      throw damaged(error);
     }
   }
 
@@ -112,7 +161,7 @@ class BagSource : public ImageSource {
     try {
       return read();
     } catch (const ros::Exception& error) {  // of rosbag, and of the messages' deserialisation
-      throw SourceError("bag '" + path_ + "' is damaged behind image " + std::to_string(frame_) + " (" + error.what() +
+      throw SourceError("bag '" + name_ + "' is damaged behind image " + std::to_string(frame_) + " (" + error.what() +
                         "); 'rosbag reindex' may repair it");
     }
   }
@@ -120,29 +169,72 @@ class BagSource : public ImageSource {
   std::size_t size() const override { return size_; }
   double rate() const override { return rate_; }
   bool hasRecordedStamps() const override { return true; }
+  std::vector<std::string> notes() const override {
+    std::vector<std::string> notes = notes_;
+    if (stamps_.replaced() > 0) {
+      notes.push_back(std::to_string(stamps_.replaced()) +
+                      " images have the stamp 0 or that of the image before: theirs is from the time of recording");
+    }
+    return notes;
+  }
 
  private:
-  void open(const SourceOptions& options) {
+  SourceError damaged(const rosbag::BagException& error) const {
+    return SourceError("'" + name_ + "' is no bag, or a damaged one (" + error.what() +
+                       "); 'rosbag reindex' may repair it");
+  }
+
+  void openBag(const std::string& path) {
+    auto bag = std::make_unique<rosbag::Bag>();
+    try {
+      bag->open(path, rosbag::bagmode::Read);
+    } catch (const rosbag::BagUnindexedException&) {
+      throw SourceError("bag '" + path + "' has no index, it was not closed: 'rosbag reindex' may repair it");
+    } catch (const rosbag::BagException& error) {
+      throw SourceError("'" + path + "' is no bag, or a damaged one (" + error.what() +
+                        "); 'rosbag reindex' may repair it");
+    }
+    bags_.push_back(std::move(bag));
+  }
+
+  // Their messages in the order of time.
+  std::unique_ptr<rosbag::View> view(const std::vector<std::string>& topics) const {
+    auto view = std::make_unique<rosbag::View>();
+    for (const auto& bag : bags_) view->addQuery(*bag, rosbag::TopicQuery(topics));
+    return view;
+  }
+
+  Topics topics() const {
     Topics topics;
-    rosbag::View all(bag_);
-    for (const rosbag::ConnectionInfo* connection : all.getConnections())
-      topics[connection->topic] = connection->datatype;
-    image_topic_ = chooseImageTopic(topics, path_, options.image_topic);
-    rosbag::View images(bag_, rosbag::TopicQuery(image_topic_));
-    size_ = images.size();
-    const double duration = (images.getEndTime() - images.getBeginTime()).toSec();
+    for (const auto& bag : bags_) {
+      rosbag::View all(*bag);
+      for (const rosbag::ConnectionInfo* connection : all.getConnections())
+        topics[connection->topic] = connection->datatype;
+    }
+    return topics;
+  }
+
+  void open(const SourceOptions& options) {
+    const Topics topics = this->topics();
+    image_topic_ = chooseImageTopic(topics, name_, options.image_topic);
+    const auto images = view({image_topic_});
+    size_ = images->size();
+    const double duration = (images->getEndTime() - images->getBeginTime()).toSec();
     rate_ = size_ > 1 && duration > 0.0 ? static_cast<double>(size_ - 1) / duration : options.folder_rate;
-    start_ = images.getBeginTime() + ros::Duration(options.start);
+    start_ = images->getBeginTime() + ros::Duration(options.start);
 
     std::vector<std::string> read_topics{image_topic_};
-    const std::string camera_info_topic = cameraInfoTopic(topics, image_topic_);
+    const std::string camera_info_topic = chooseCameraInfoTopic(topics, name_, image_topic_, options.camera_info_topic);
     if (!camera_info_topic.empty()) {
       read_topics.push_back(camera_info_topic);
       // A driver sends it after the image it belongs to; the first image should have it, too.
-      rosbag::View infos(bag_, rosbag::TopicQuery(camera_info_topic));
-      if (infos.size() > 0) camera_info_ = infos.begin()->instantiate<sensor_msgs::CameraInfo>();
+      const auto infos = view({camera_info_topic});
+      if (infos->size() > 0) camera_info_ = infos->begin()->instantiate<sensor_msgs::CameraInfo>();
+    } else if (const std::string others = otherCameraInfoTopics(topics); !others.empty()) {
+      notes_.push_back("the bag has no " + usualCameraInfoTopic(topics, image_topic_) + ", but " + others +
+                       ": one of them can be chosen by camera-info-topic");
     }
-    view_ = std::make_unique<rosbag::View>(bag_, rosbag::TopicQuery(read_topics));
+    view_ = view(read_topics);
     position_ = view_->begin();
   }
 
@@ -159,6 +251,7 @@ class BagSource : public ImageSource {
       image.frame = frame;
       image.record_time = instance.getTime();
       image.camera_info.swap(camera_info_);
+      if (image.error.empty()) stampUsably(image);
       ++position_;
       return image;
     }
@@ -178,8 +271,18 @@ class BagSource : public ImageSource {
     return image;
   }
 
-  std::string path_;
-  rosbag::Bag bag_;
+  void stampUsably(SourceImage& image) {
+    const ros::Time stamp = stamps_.of(image.header.stamp, image.record_time);
+    if (stamp == image.header.stamp) return;
+    image.header.stamp = stamp;
+    if (!image.message) return;
+    const auto restamped = boost::make_shared<sensor_msgs::Image>(*image.message);
+    restamped->header.stamp = stamp;
+    image.message = restamped;
+  }
+
+  std::string name_;
+  std::vector<std::unique_ptr<rosbag::Bag>> bags_;
   std::string image_topic_;
   std::size_t size_ = 0;
   double rate_ = 0.0;
@@ -188,12 +291,14 @@ class BagSource : public ImageSource {
   rosbag::View::iterator position_;
   std::size_t frame_ = 0;
   sensor_msgs::CameraInfoConstPtr camera_info_;  // newest that no image has taken along
+  UsableStamps stamps_;
+  std::vector<std::string> notes_;
 };
 
 }  // namespace
 
-std::unique_ptr<ImageSource> openBagSource(const std::string& path, const SourceOptions& options) {
-  return std::make_unique<BagSource>(path, options);
+std::unique_ptr<ImageSource> openBagSource(const std::vector<std::string>& paths, const SourceOptions& options) {
+  return std::make_unique<BagSource>(paths, options);
 }
 
 }  // namespace laparoscope_servo::skin

@@ -1,16 +1,12 @@
 #include "laparoscope_servo/ros/insertion_point_file.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
-#include <cerrno>
 #include <cmath>
-#include <cstdio>
-#include <cstring>
 #include <ctime>
+#include <ostream>
 #include <sstream>
 #include <stdexcept>
 
+#include "laparoscope_servo/ros/output_file.h"
 #include "laparoscope_servo/ros/parameters.h"
 
 namespace laparoscope_servo::skin {
@@ -19,10 +15,6 @@ namespace {
 
 constexpr double kLargest = 100.0;             // m, rad
 constexpr double kResidualTolerance = 0.0005;  // m
-
-[[noreturn]] void fail(const std::string& file, const std::string& what) {
-  throw std::runtime_error("cannot write '" + file + "': " + what + ": " + std::strerror(errno));
-}
 
 template <typename Numbers>
 std::string list(const Numbers& numbers) {
@@ -48,39 +40,6 @@ std::string toYaml(const CalibratedInsertionPoint& c) {
   text << "]\n";
   return text.str();
 }
-
-// A file that is closed, and taken away unless it is kept.
-class NewFile {
- public:
-  explicit NewFile(const std::string& path)
-      : path_(path), descriptor_(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644)) {
-    if (descriptor_ < 0) fail(path, "open");
-  }
-  ~NewFile() {
-    if (descriptor_ >= 0) ::close(descriptor_);
-    if (!kept_) ::unlink(path_.c_str());
-  }
-  NewFile(const NewFile&) = delete;
-  NewFile& operator=(const NewFile&) = delete;
-
-  void write(const std::string& text) {
-    for (std::size_t done = 0; done < text.size();) {
-      const ssize_t count = ::write(descriptor_, text.data() + done, text.size() - done);
-      if (count < 0 && errno != EINTR) fail(path_, "write");
-      if (count > 0) done += static_cast<std::size_t>(count);
-    }
-    if (::fsync(descriptor_) != 0) fail(path_, "fsync");
-  }
-  void keepAs(const std::string& path) {
-    if (std::rename(path_.c_str(), path.c_str()) != 0) fail(path, "rename");
-    kept_ = true;
-  }
-
- private:
-  std::string path_;
-  int descriptor_;
-  bool kept_ = false;
-};
 
 void readPoses(ParameterReader& reader, const std::string& file, std::vector<aesop::JointVector>& poses) {
   std::vector<double> numbers;
@@ -136,9 +95,7 @@ double residual(const aesop::Kinematics& kinematics, const std::vector<aesop::Jo
 }
 
 void saveInsertionPoint(const std::string& file, const CalibratedInsertionPoint& calibrated) {
-  NewFile replacement(file + ".new");
-  replacement.write(toYaml(calibrated));
-  replacement.keepAs(file);
+  writeTextFile(file, [&](std::ostream& stream) { stream << toYaml(calibrated); });
 }
 
 CalibratedInsertionPoint loadInsertionPoint(const std::string& file, const aesop::Kinematics& kinematics) {

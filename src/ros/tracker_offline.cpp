@@ -1,124 +1,24 @@
 #include "laparoscope_servo/ros/tracker_offline.h"
 
-#include <rosbag/bag.h>
-
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <memory>
-#include <opencv2/imgproc.hpp>
-#include <opencv2/videoio.hpp>
 #include <optional>
 #include <stdexcept>
 
-#include "laparoscope_servo/ros/overlay.h"
-#include "laparoscope_servo/ros/result_messages.h"
-#include "laparoscope_servo/ros/tracker_csv.h"
 #include "laparoscope_servo/ros/tracker_session.h"
+#include "offline_outputs.h"
 
 namespace laparoscope_servo::skin {
 
 namespace {
 
-// One of the files to write; does nothing when its path is empty.
-class CsvFile {
- public:
-  explicit CsvFile(const std::string& path) : path_(path) {
-    if (path_.empty()) return;
-    errno = 0;
-    file_.open(path_, std::ios::trunc);
-    if (!file_) throw std::runtime_error("'" + path_ + "' cannot be written: " + std::strerror(errno));
-    writeCsvHeader(file_);
-  }
-
-  void write(std::size_t frame, const Processed& processed) {
-    if (path_.empty()) return;
-    writeCsvRow(file_, frame, processed);
-    if (!file_) throw std::runtime_error("'" + path_ + "' cannot be written on, is the disk full?");
-  }
-
-  void close() {
-    if (path_.empty()) return;
-    file_.close();
-    if (!file_) throw std::runtime_error("'" + path_ + "' cannot be written to its end, is the disk full?");
-  }
-
- private:
-  std::string path_;
-  std::ofstream file_;
-};
-
-class ResultBag {
- public:
-  explicit ResultBag(const std::string& path) : path_(path) {
-    if (path_.empty()) return;
-    try {
-      bag_.open(path_, rosbag::bagmode::Write);
-    } catch (const rosbag::BagException& error) {
-      throw std::runtime_error("'" + path_ + "' cannot be written: " + error.what());
-    }
-  }
-
-  void write(const ros::Time& record_time, const Processed& processed) {
-    if (path_.empty()) return;
-    // rosbag takes no time of zero, which the first image of a video has.
-    const ros::Time time = std::max(record_time, ros::TIME_MIN);
-    bag_.write("/tracker/homography", time, homographyMessage(processed));
-    bag_.write("/tracker/task_error", time, taskErrorMessage(processed));
-    bag_.write("/tracker/areas", time, areaSelectionMessage(processed));
-    bag_.write("/tracker/roi", time, roiMessage(processed));
-  }
-
-  void close() {
-    if (!path_.empty()) bag_.close();
-  }
-
- private:
-  std::string path_;
-  rosbag::Bag bag_;
-};
-
-class OverlayVideo {
- public:
-  OverlayVideo(const std::string& path, double rate) : path_(path), rate_(rate) {
-    // The video's size is known with the first image; that the path is wrong should be known before.
-    if (path_.empty()) return;
-    errno = 0;
-    if (!std::ofstream(path_, std::ios::app)) {
-      throw std::runtime_error("'" + path_ + "' cannot be written: " + std::strerror(errno));
-    }
-  }
-
-  void write(const Processed& processed) {
-    if (path_.empty()) return;
-    cv::Mat picture = drawOverlay(processed.image, processed.result, processed.lens.get());
-    if (size_.empty()) open(picture.size());
-    if (picture.size() != size_) cv::resize(picture, picture, size_);
-    writer_.write(picture);
-  }
-
- private:
-  void open(const cv::Size& size) {
-    size_ = size;
-    const bool avi = std::filesystem::path(path_).extension() == ".avi";
-    const int codec = avi ? cv::VideoWriter::fourcc('M', 'J', 'P', 'G') : cv::VideoWriter::fourcc('m', 'p', '4', 'v');
-    if (!writer_.open(path_, codec, rate_, size_)) {
-      throw std::runtime_error("'" + path_ + "' cannot be written as a video, expected a name ending in .mp4 or .avi");
-    }
-  }
-
-  std::string path_;
-  double rate_;
-  cv::Size size_;
-  cv::VideoWriter writer_;
-};
-
 void refuseToOverwriteInput(const OfflineOptions& options) {
   for (const std::string& output : {options.csv, options.bag, options.overlay}) {
     std::error_code error;
-    if (!output.empty() && std::filesystem::equivalent(options.input, output, error)) {
-      throw std::invalid_argument("'" + output + "' is the input, and would be overwritten");
+    for (const std::string& input : options.inputs) {
+      if (!output.empty() && std::filesystem::equivalent(input, output, error)) {
+        throw std::invalid_argument("'" + output + "' is the input, and would be overwritten");
+      }
     }
   }
 }
@@ -129,51 +29,108 @@ Processed process(TrackerSession& session, const SourceImage& image) {
   return session.process(image.decoded, image.header);
 }
 
+// What is written, as one.
+class Outputs {
+ public:
+  Outputs(const OfflineOptions& options, double rate)
+      : csv_(options.csv), bag_(options.bag), overlay_(options.overlay, rate) {}
+
+  void write(const SourceImage& image, const Processed& processed) {
+    csv_.write(image.frame, processed);
+    bag_.write(image.record_time, processed);
+    overlay_.write(processed);
+  }
+  void keep() {
+    csv_.keep();
+    bag_.keep();
+    overlay_.keep();
+  }
+
+ private:
+  CsvOutput csv_;
+  BagOutput bag_;
+  OverlayOutput overlay_;
+};
+
+class OfflineRun {
+ public:
+  OfflineRun(const OfflineOptions& options, const OfflineProgress& progress, const OfflineReport& report)
+      : options_(options), progress_(progress), report_(report), session_(options.parameters) {
+    own_camera_info_ = !options.camera_info.empty();
+    if (own_camera_info_) session_.setCameraInfo(readCameraInfo(options.camera_info));
+    source_ = openImageSource(options.inputs, options.source);
+    refuseToOverwriteInput(options);
+    outputs_.emplace(options, source_->rate());
+    summary_.by_state.assign(4, 0);
+  }
+
+  OfflineSummary run() {
+    try {
+      while (!stopped()) {
+        const std::optional<SourceImage> image = source_->next();
+        if (!image) break;
+        take(*image);
+      }
+    } catch (const SourceError& error) {
+      // What could be read before is as good as if the input had ended there.
+      if (summary_.images == 0) throw;
+      summary_.source_error = error.what();
+    }
+    summary_.notes = source_->notes();
+    if (summary_.images > 0) {
+      outputs_->keep();
+    } else if (!summary_.stopped) {
+      throw SourceError("'" + options_.inputs.front() + "' has no image after " +
+                        std::to_string(options_.source.start) + " s, but " + std::to_string(source_->size()) +
+                        " in all");
+    }
+    return summary_;
+  }
+
+ private:
+  bool stopped() {
+    summary_.stopped = options_.stopped && options_.stopped();
+    return summary_.stopped;
+  }
+
+  void take(const SourceImage& image) {
+    if (image.camera_info && !own_camera_info_) session_.setCameraInfo(*image.camera_info);
+    Processed processed;
+    try {
+      processed = process(session_, image);
+    } catch (const std::exception& error) {
+      // Without the reference nothing that follows means anything.
+      if (summary_.images == 0) throw std::runtime_error("image " + std::to_string(image.frame) + ": " + error.what());
+      summary_.refused += image.lost;
+      report_(image.frame, error.what());
+      return;
+    }
+    if (summary_.images == 0 && !processed.result.selected_now) throw std::invalid_argument(processed.selection_error);
+    ++summary_.images;
+    ++summary_.by_state[static_cast<std::size_t>(processed.result.state)];
+    summary_.times.push_back(processed.processing_time);
+    outputs_->write(image, processed);
+    progress_(summary_, source_->size());
+  }
+
+  const OfflineOptions& options_;
+  const OfflineProgress& progress_;
+  const OfflineReport& report_;
+  TrackerSession session_;
+  bool own_camera_info_ = false;
+  std::unique_ptr<ImageSource> source_;
+  std::optional<Outputs> outputs_;
+  OfflineSummary summary_;
+};
+
 }  // namespace
 
 OfflineSummary trackOffline(const OfflineOptions& options, const OfflineProgress& progress,
                             const OfflineReport& report) {
+  if (options.inputs.empty())
+    throw std::invalid_argument("no input is given, expected a bag, a video or a folder of images");
   if (!options.parameters.roi) throw std::invalid_argument("no ROI is given, expected x,y,width,height in px");
-  TrackerSession session(options.parameters);
-  const bool own_camera_info = !options.camera_info.empty();
-  if (own_camera_info) session.setCameraInfo(readCameraInfo(options.camera_info));
-  const std::unique_ptr<ImageSource> source = openImageSource(options.input, options.source);
-  refuseToOverwriteInput(options);
-  CsvFile csv(options.csv);
-  ResultBag bag(options.bag);
-  OverlayVideo overlay(options.overlay, source->rate());
-
-  OfflineSummary summary;
-  summary.by_state.assign(4, 0);
-  while (const std::optional<SourceImage> image = source->next()) {
-    if (image->camera_info && !own_camera_info) session.setCameraInfo(*image->camera_info);
-    Processed processed;
-    try {
-      processed = process(session, *image);
-    } catch (const std::exception& error) {
-      const std::string frame = "image " + std::to_string(image->frame) + ": ";
-      // Without the reference nothing that follows means anything.
-      if (summary.images == 0) throw std::runtime_error(frame + error.what());
-      ++summary.refused;
-      report(image->frame, error.what());
-      continue;
-    }
-    if (summary.images == 0 && !processed.result.selected_now) throw std::invalid_argument(processed.selection_error);
-    ++summary.images;
-    ++summary.by_state[static_cast<std::size_t>(processed.result.state)];
-    summary.times.push_back(processed.processing_time);
-    csv.write(image->frame, processed);
-    bag.write(image->record_time, processed);
-    overlay.write(processed);
-    progress(summary, source->size());
-  }
-  if (summary.images == 0) {
-    throw SourceError("'" + options.input + "' has no image after " + std::to_string(options.source.start) +
-                      " s, but " + std::to_string(source->size()) + " in all");
-  }
-  csv.close();
-  bag.close();
-  return summary;
+  return OfflineRun(options, progress, report).run();
 }
 
 }  // namespace laparoscope_servo::skin

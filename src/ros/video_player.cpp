@@ -28,6 +28,7 @@ VideoPlayerConfig videoPlayerConfig(ParameterReader& reader) {
   reader.require("video", "a bag, a video file or a folder of images");
   reader.read("video", config.video);
   reader.read("image_topic", config.image_topic);
+  reader.read("camera_info_topic", config.camera_info_topic);
   reader.read("camera_info", config.camera_info);
   reader.read("frame_id", config.frame_id);
   reader.read("fps", config.fps, 0.1, 1000.0);
@@ -35,6 +36,7 @@ VideoPlayerConfig videoPlayerConfig(ParameterReader& reader) {
   reader.read("start", config.start, 0.0, 1e6);
   reader.read("first_stamp", config.first_stamp, 1e-3, 1e9);
   reader.read("loop", config.loop);
+  reader.read("stay", config.stay);
   reader.read("restart_time", config.restart_time);
   reader.read("clock", config.clock);
   reader.read("lockstep", config.lockstep);
@@ -45,15 +47,17 @@ VideoPlayerConfig videoPlayerConfig(ParameterReader& reader) {
 
 VideoPlayer::VideoPlayer(ros::NodeHandle node, const VideoPlayerConfig& config) : config_(config), transport_(node) {
   options_.image_topic = config.image_topic;
+  options_.camera_info_topic = config.camera_info_topic;
   options_.start = config.start;
   options_.folder_rate = config.fps;
-  source_ = openImageSource(config.video, options_);
+  source_ = openImageSource(inputsOf(config.video), options_);
   if (!source_->hasRecordedStamps()) offset_ = ros::Duration(config.first_stamp);
   if (!config.camera_info.empty()) camera_info_ = readCameraInfo(config.camera_info);
   if (config.clock) clock_publisher_ = node.advertise<rosgraph_msgs::Clock>("/clock", 10);
   if (config.lockstep) {
-    homography_subscriber_ = node.subscribe<Homography>(
-        "homography", 10, [this](const HomographyConstPtr& result) { result_stamp_ = result->header.stamp; });
+    homography_subscriber_ = node.subscribe<Homography>("homography", 10, [this](const HomographyConstPtr& result) {
+      answered_ = answered_ || result->header.stamp == awaited_;
+    });
   }
   // A queue long enough that a burst after a slow read loses nothing.
   image_publisher_ = transport_.advertise("image_raw", 50);
@@ -63,16 +67,27 @@ VideoPlayer::VideoPlayer(ros::NodeHandle node, const VideoPlayerConfig& config) 
 
 void VideoPlayer::run() {
   waitForSubscribers();
+  bool first_time = true;
   do {
     const std::size_t before = published_;
     playOnce();
     if (ros::ok() && published_ == before) {
       throw SourceError("'" + config_.video + "' has no image after " + std::to_string(config_.start) + " s");
     }
+    if (first_time) tellNotes();
+    first_time = false;
     if (!config_.loop) break;
     if (!config_.restart_time) offset_ += last_ - begin_ + ros::Duration(1.0 / source_->rate());
-    source_ = openImageSource(config_.video, options_);
+    source_ = openImageSource(inputsOf(config_.video), options_);
   } while (ros::ok());
+  ROS_INFO("played %zu images of '%s'%s", published_, config_.video.c_str(),
+           config_.stay && ros::ok() ? "; the last one stays until this node is ended" : "");
+  if (config_.stay) ros::spin();
+}
+
+void VideoPlayer::tellNotes() const {
+  for (const std::string& note : source_->notes()) ROS_WARN("'%s': %s", config_.video.c_str(), note.c_str());
+  if (unanswered_ > 0) ROS_WARN("the tracker gave no result for %zu of %zu images", unanswered_, published_);
 }
 
 void VideoPlayer::waitForSubscribers() const {
@@ -110,8 +125,10 @@ void VideoPlayer::playOnce() {
     waitUntil(last_);
     publishClock(last_);
     if (image->error.empty()) {
+      awaited_ = image->header.stamp + offset_;
+      answered_ = false;
       publish(*image);
-      if (config_.lockstep) waitForResult(image->header.stamp + offset_, last_);
+      if (config_.lockstep) waitForResult(last_);
     } else {
       ROS_ERROR("image %zu is left out: %s", image->frame, image->error.c_str());
     }
@@ -134,12 +151,13 @@ void VideoPlayer::waitUntil(const ros::Time& time) {
   std::this_thread::sleep_until(due);
 }
 
-void VideoPlayer::waitForResult(const ros::Time& stamp, const ros::Time& time) {
+void VideoPlayer::waitForResult(const ros::Time& time) {
   const auto begin = Clock::now();
-  while (ros::ok() && result_stamp_ != stamp && homography_subscriber_.getNumPublishers() > 0 &&
+  while (ros::ok() && !answered_ && homography_subscriber_.getNumPublishers() > 0 &&
          Clock::now() - begin < kResultTimeout) {
     ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.001));
   }
+  if (!answered_ && ros::ok()) ++unanswered_;
   // What comes late does not make the next ones hurry.
   const auto late = Clock::now() - dueTime(time + ros::Duration(1.0 / source_->rate()));
   if (late > Clock::duration::zero()) begin_due_ += late;

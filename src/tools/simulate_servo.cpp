@@ -1,10 +1,10 @@
 // simulate_servo: the closed loop without ROS, see laparoscope_servo/ros/servo_simulation.h; many runs of it,
 // servo_runs.h.
 #include <boost/program_options.hpp>
-#include <fstream>
 #include <functional>
 #include <iostream>
 
+#include "laparoscope_servo/ros/output_file.h"
 #include "laparoscope_servo/ros/servo_runs.h"
 
 namespace options = boost::program_options;
@@ -23,13 +23,6 @@ void print(const skin::SimulationSummary& summary) {
             << 100.0 * summary.moving_share << " % of the time\n"
             << "at the insertion point: lateral speed at most " << summary.max_lateral_speed
             << " m/s, lateral offset at most " << summary.max_lateral_offset << " m\n";
-}
-
-void save(const std::string& name, const std::function<void(std::ostream&)>& write) {
-  std::ofstream file(name);
-  write(file);
-  file.close();
-  if (!file) throw std::runtime_error("cannot write '" + name + "'");
 }
 
 struct Request {
@@ -92,10 +85,12 @@ void runAll(const Request& request, const skin::ControllerNodeConfig& controller
     runs.back().seed = seed;
     runs.back().drawn = drawn;
     if (k > 0) continue;
-    if (!request.csv.empty()) save(request.csv, [&](std::ostream& stream) { skin::writeCsv(samples, stream); });
+    if (!request.csv.empty())
+      skin::writeTextFile(request.csv, [&](std::ostream& stream) { skin::writeCsv(samples, stream); });
     if (request.runs == 1) print(skin::summarise(samples, started));
   }
-  if (!request.summary.empty()) save(request.summary, [&](std::ostream& stream) { skin::writeRuns(runs, stream); });
+  if (!request.summary.empty())
+    skin::writeTextFile(request.summary, [&](std::ostream& stream) { skin::writeRuns(runs, stream); });
   if (request.runs > 1) skin::printRuns(runs, request.bounds, std::cout);
 }
 

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <boost/program_options.hpp>
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <exception>
 #include <filesystem>
 #include <iostream>
@@ -23,14 +25,18 @@ namespace options = boost::program_options;
 namespace skin = laparoscope_servo::skin;
 
 constexpr int kBadUsage = 2;
+constexpr int kSignalled = 128;  // as shells count: and the signal's number
 
 options::options_description describeOptions(skin::OfflineOptions& offline, std::string& roi, std::string& parameters) {
   options::options_description description("Options");
   auto add = description.add_options();
   add("help", "print this and end");
-  add("input", options::value(&offline.input), "bag, video, or folder of images (in the order of their names)");
+  add("input", options::value(&offline.inputs)->composing(),
+      "bag, video, or folder of images (in the order of their names and numbers); several: bags of one recording");
   add("roi", options::value(&roi), "x,y,width,height: region in the first image, px");
   add("image-topic", options::value(&offline.source.image_topic), "of a bag with several topics of images");
+  add("camera-info-topic", options::value(&offline.source.camera_info_topic),
+      "of a bag, when it is not camera_info beside the images");
   add("start", options::value(&offline.source.start), "skip so many seconds of the input");
   add("rate", options::value(&offline.source.folder_rate), "images per second of a folder (default 25)");
   add("camera-info", options::value(&offline.camera_info),
@@ -93,8 +99,35 @@ void printSummary(const skin::OfflineSummary& summary) {
                1e3 * quantile(summary.times, 0.99));
 }
 
-int run(const skin::OfflineOptions& offline) {
+volatile std::sig_atomic_t stop_signal = 0;
+
+void onSignal(int signal) {
+  stop_signal = signal;
+  std::signal(signal, SIG_DFL);  // a second one ends it at once
+}
+
+void catchSignals() {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, onSignal);
+  std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is told like a full disk
+}
+
+int exitStatus(const skin::OfflineSummary& summary) {
+  if (!summary.source_error.empty()) std::cerr << "track_bag: " << summary.source_error << '\n';
+  if (summary.refused > 0) {
+    std::cerr << summary.refused << " of " << summary.refused + summary.images << " images could not be processed\n";
+  }
+  if (summary.stopped) {
+    std::cerr << "track_bag: ended by " << strsignal(stop_signal) << " after " << summary.images << " images, "
+              << (summary.images > 0 ? "the outputs hold them" : "nothing is written") << '\n';
+    return kSignalled + stop_signal;
+  }
+  return summary.refused == 0 && summary.source_error.empty() ? EXIT_SUCCESS : EXIT_FAILURE;
+}
+
+int run(skin::OfflineOptions& offline) {
   ProgressLine line;
+  catchSignals();
+  offline.stopped = [] { return stop_signal != 0; };
   const skin::OfflineSummary summary = skin::trackOffline(
       offline, [&line](const skin::OfflineSummary& so_far, std::size_t expected) { line(so_far, expected); },
       [&line](std::size_t frame, const std::string& error) {
@@ -102,10 +135,9 @@ int run(const skin::OfflineOptions& offline) {
         std::cerr << "image " << frame << " is left out: " << error << '\n';
       });
   line.end();
-  printSummary(summary);
-  if (summary.refused == 0) return EXIT_SUCCESS;
-  std::cerr << summary.refused << " of " << summary.refused + summary.images << " images could not be processed\n";
-  return EXIT_FAILURE;
+  for (const std::string& note : summary.notes) std::cerr << "note: " << note << '\n';
+  if (summary.images > 0) printSummary(summary);
+  return exitStatus(summary);
 }
 
 }  // namespace
@@ -117,14 +149,18 @@ int main(int argc, char** argv) {
   const options::options_description description = describeOptions(offline, roi, parameters);
   try {
     options::positional_options_description positional;
-    positional.add("input", 1);
+    positional.add("input", -1);
     options::variables_map map;
     options::store(options::command_line_parser(argc, argv).options(description).positional(positional).run(), map);
     options::notify(map);
     if (map.count("help") > 0) {
-      std::cout << "track_bag INPUT --roi x,y,w,h [options]: tracks a region through recorded images.\n"
-                << "Ends with status 0 when every image was processed, whatever the tracker found.\n"
-                << description;
+      std::cout
+          << "track_bag INPUT... --roi x,y,w,h [options]: tracks a region through recorded images.\n"
+          << "Ends with status 0 when every image was processed, whatever the tracker found; with 1 when images\n"
+          << "are lost or damaged (each is named) or an output cannot be written. Outputs appear under their\n"
+          << "names when they are whole. A signal ends the work as the input's end would, with status 128 and its\n"
+          << "number.\n"
+          << description;
       return EXIT_SUCCESS;
     }
   } catch (const options::error& error) {
@@ -132,7 +168,7 @@ int main(int argc, char** argv) {
     return kBadUsage;
   }
   try {
-    if (offline.input.empty())
+    if (offline.inputs.empty())
       throw std::invalid_argument("no input is given, expected a bag, a video or a folder of images");
     offline.parameters = readParameters(parameters);
     if (!roi.empty()) offline.parameters.roi = skin::parseRoi(roi);

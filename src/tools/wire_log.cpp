@@ -161,7 +161,9 @@ int main(int argc, char** argv) {
     return kBadUsage;
   }
   try {
-    return arguments.replay ? replay(arguments) : print(arguments);
+    const int status = arguments.replay ? replay(arguments) : print(arguments);
+    if (!std::cout.flush()) throw std::runtime_error("not everything could be written, is the disk full?");
+    return status;
   } catch (const std::exception& error) {
     std::cerr << "wire_log: " << error.what() << '\n';
     return EXIT_FAILURE;

@@ -12,11 +12,14 @@
 namespace laparoscope_servo::skin {
 
 struct OfflineOptions {
-  std::string input;  // see image_source.h
+  std::vector<std::string> inputs;  // see image_source.h
   SourceOptions source;
   TrackerParameters parameters;  // with a ROI
   std::string camera_info;       // file, see readCameraInfo; empty: that of the bag
-  // Files to write; empty: none.
+  // Asked before each image whether to end there, as at the end of the input; empty: never.
+  std::function<bool()> stopped;
+  // Files to write; empty: none. Each appears under its name when it is whole, and not at all when something could not
+  // be written.
   std::string csv;  // see tracker_csv.h
   std::string
       bag;  // Homography, TaskError, AreaSelection, ROI on the nodelet's topics, with the images' headers and times
@@ -25,7 +28,10 @@ struct OfflineOptions {
 
 struct OfflineSummary {
   std::size_t images = 0;             // processed
-  std::size_t refused = 0;            // not processed: each was reported
+  std::size_t refused = 0;            // not processed, or lost: each was reported
+  std::string source_error;           // the input could not be read to its end: why
+  bool stopped = false;               // by OfflineOptions::stopped; without an image there are no outputs
+  std::vector<std::string> notes;     // of the source
   std::vector<std::size_t> by_state;  // images in each state, indexed by tracking::State
   std::vector<double> times;          // s, of the tracker, per image
 };
@@ -36,7 +42,7 @@ using OfflineProgress = std::function<void(const OfflineSummary& summary, std::s
 using OfflineReport = std::function<void(std::size_t frame, const std::string& error)>;
 
 // Throws std::runtime_error (SourceError for the input) or std::invalid_argument when nothing can be done: input,
-// outputs, ROI or parameters are not usable, or the first image is not.
+// outputs, ROI or parameters are not usable, or the first image is not; and when an output cannot be written on.
 OfflineSummary trackOffline(const OfflineOptions& options, const OfflineProgress& progress,
                             const OfflineReport& report);
 

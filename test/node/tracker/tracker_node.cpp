@@ -46,7 +46,7 @@ TEST(TrackerNode, GivesTheSameNumbersAsTheOfflineTool) {
     }
   }
   skin::OfflineOptions options;
-  options.input = folder.file("in.bag");
+  options.inputs = {folder.file("in.bag")};
   options.bag = folder.file("out.bag");
   options.parameters.roi = kRoi;
   skin::trackOffline(

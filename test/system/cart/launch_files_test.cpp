@@ -3,6 +3,9 @@
 
 #include <array>
 #include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <set>
 #include <sstream>
 #include <string>
@@ -73,6 +76,24 @@ TEST(LaunchFiles, CalibrationIsWrittenWhereTheCartReadsIt) {
 
 TEST(LaunchFiles, CartNeedsItsPort) {
   EXPECT_NE(outputOf("roslaunch --nodes laparoscope_servo cart.launch").find("port"), std::string::npos);
+}
+
+// What a run before has set would hold for the next one.
+TEST(LaunchFiles, EveryNodeForgetsTheParametersOfTheRunBefore) {
+  int files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(LAPAROSCOPE_SERVO_LAUNCH)) {
+    std::ifstream file(entry.path());
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    std::size_t nodes = 0;
+    for (std::size_t at = text.find("<node "); at != std::string::npos; at = text.find("<node ", at + 1)) {
+      const std::string tag = text.substr(at, text.find('>', at) - at);
+      EXPECT_NE(tag.find("clear_params=\"true\""), std::string::npos) << entry.path() << ": " << tag;
+      ++nodes;
+    }
+    EXPECT_GT(nodes, 0u) << entry.path();
+    ++files;
+  }
+  EXPECT_GE(files, 5);
 }
 
 TEST(LaunchFiles, EveryArgumentIsDocumented) {

@@ -79,15 +79,16 @@ TEST(InsertionPointFile, ReplacesAsAWholeOrNotAtAll) {
   EXPECT_EQ(loadInsertionPoint(file, kKinematics).method, "PATTERN");
 
   const std::string before = contentOf(file);
-  std::filesystem::create_directory(file + ".new");  // so that the new file cannot be made
-  EXPECT_NE(errorOf([&] { saveInsertionPoint(file, example()); }).find("cannot write '" + file), std::string::npos);
+  std::filesystem::create_directory(file + ".partial");  // so that the new file cannot be made
+  EXPECT_NE(errorOf([&] { saveInsertionPoint(file, example()); }).find("'" + file + "' cannot be written"),
+            std::string::npos);
   EXPECT_EQ(contentOf(file), before);
-  std::filesystem::remove(file + ".new");
+  std::filesystem::remove(file + ".partial");
 
   const std::string folder_name = folder.file("a_folder");
   std::filesystem::create_directory(folder_name);
   EXPECT_NE(errorOf([&] { saveInsertionPoint(folder_name, example()); }).find("a_folder"), std::string::npos);
-  EXPECT_FALSE(std::filesystem::exists(folder_name + ".new")) << "nothing is left behind";
+  EXPECT_FALSE(std::filesystem::exists(folder_name + ".partial")) << "nothing is left behind";
   EXPECT_NE(errorOf([&] { saveInsertionPoint(folder.file("no/such/point.yaml"), example()); }).find("No such file"),
             std::string::npos);
 }

@@ -60,12 +60,12 @@ class TrackerOfflineTest : public testing::Test {
 
   void writeFolder() {
     for (std::size_t k = 0; k < images_.size(); ++k) cv::imwrite(in_.file(std::to_string(k) + ".png"), images_[k]);
-    options_.input = in_.path();
+    options_.inputs = {in_.path()};
   }
 
   void writeBag() {
-    options_.input = in_.file("in.bag");
-    rosbag::Bag bag(options_.input, rosbag::bagmode::Write);
+    options_.inputs = {in_.file("in.bag")};
+    rosbag::Bag bag(options_.inputs.front(), rosbag::bagmode::Write);
     for (std::size_t k = 0; k < images_.size(); ++k) {
       const auto header = headerOf(k);
       bag.write("/scope/image_raw", timeOf(k), *cv_bridge::CvImage(header, "bgr8", images_[k]).toImageMsg());
@@ -243,7 +243,7 @@ TEST_F(TrackerOfflineTest, EndsBeforeTheWorkWhenAnOutputCannotBeWritten) {
 
 TEST_F(TrackerOfflineTest, DoesNotOverwriteItsInput) {
   writeBag();
-  options_.bag = options_.input;
+  options_.bag = options_.inputs.front();
   EXPECT_THROW(run(), std::invalid_argument);
   options_.bag.clear();
   EXPECT_EQ(run().images, static_cast<std::size_t>(kImages));

@@ -1,21 +1,25 @@
-// Videos and folders of images.
+// Folders of images.
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <opencv2/imgcodecs.hpp>
-#include <opencv2/videoio.hpp>
 #include <set>
 #include <utility>
 #include <vector>
 
 #include "image_sources.h"
+#include "jpeg_end.h"
+#include "natural_order.h"
 
 namespace laparoscope_servo::skin {
 
 namespace {
 
-constexpr double kTimeTolerance = 1e-6;  // s: --start 0.2 means frame 5 at 25 Hz, whatever rounding says
+// Turned as EXIF says, of the depth that the file has, without alpha.
+constexpr int kAsShown = cv::IMREAD_ANYDEPTH | cv::IMREAD_ANYCOLOR;
 
 SourceImage imageAt(std::size_t frame, double rate) {
   SourceImage image;
@@ -24,51 +28,6 @@ SourceImage imageAt(std::size_t frame, double rate) {
   return image;
 }
 
-bool isBeforeStart(std::size_t frame, double rate, double start) {
-  return static_cast<double>(frame) / rate < start - kTimeTolerance;
-}
-
-class VideoSource : public ImageSource {
- public:
-  VideoSource(const std::string& path, const SourceOptions& options) : path_(path), start_(options.start) {
-    if (!capture_.open(path)) {
-      throw SourceError("'" + path +
-                        "' cannot be opened, expected a bag, a folder of images or a video that OpenCV can decode");
-    }
-    rate_ = capture_.get(cv::CAP_PROP_FPS);
-    if (!(rate_ > 0.0) || !std::isfinite(rate_)) rate_ = options.folder_rate;
-    const double count = capture_.get(cv::CAP_PROP_FRAME_COUNT);
-    if (count > 0.0 && count < 1e9) size_ = static_cast<std::size_t>(count);
-  }
-
-  std::optional<SourceImage> next() override {
-    while (isBeforeStart(frame_, rate_, start_)) {
-      if (!capture_.grab()) return std::nullopt;
-      ++frame_;
-    }
-    SourceImage image = imageAt(frame_, rate_);
-    // A new matrix each time: the caller may keep the last one.
-    if (!capture_.read(image.decoded)) {
-      if (frame_ == 0) throw SourceError("video '" + path_ + "' has no frame that can be decoded");
-      return std::nullopt;
-    }
-    ++frame_;
-    return image;
-  }
-
-  std::size_t size() const override { return size_; }
-  double rate() const override { return rate_; }
-  bool hasRecordedStamps() const override { return false; }
-
- private:
-  std::string path_;
-  cv::VideoCapture capture_;
-  double start_;
-  double rate_ = 0.0;
-  std::size_t size_ = 0;
-  std::size_t frame_ = 0;
-};
-
 bool isImage(const std::filesystem::path& path) {
   static const std::set<std::string> kExtensions{".png",  ".jpg", ".jpeg", ".bmp", ".tif",
                                                  ".tiff", ".pgm", ".ppm",  ".pnm", ".webp"};
@@ -76,6 +35,13 @@ bool isImage(const std::filesystem::path& path) {
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return std::tolower(c); });
   return kExtensions.count(extension) > 0 && path.filename().string().front() != '.';
+}
+
+// A JPEG without its end: libjpeg makes the rest grey and calls it an image.
+bool isCutOff(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  return isJpeg(bytes) && !hasJpegEnd(bytes);
 }
 
 class FolderSource : public ImageSource {
@@ -91,16 +57,20 @@ class FolderSource : public ImageSource {
       throw SourceError("folder '" + path +
                         "' has no images, expected files ending in png, jpg, bmp, tif, pgm, ppm or webp");
     }
-    std::sort(files_.begin(), files_.end());
+    std::sort(files_.begin(), files_.end(), comesBefore);
   }
 
   std::optional<SourceImage> next() override {
-    while (frame_ < files_.size() && isBeforeStart(frame_, rate_, start_)) ++frame_;
+    while (frame_ < files_.size() && isBeforeStart(static_cast<double>(frame_) / rate_, start_)) ++frame_;
     if (frame_ >= files_.size()) return std::nullopt;
     SourceImage image = imageAt(frame_, rate_);
     const std::string& file = files_[frame_++];
-    image.decoded = cv::imread(file, cv::IMREAD_UNCHANGED);
-    if (image.decoded.empty()) image.error = "'" + file + "' cannot be read, expected an image";
+    if (isCutOff(file)) {
+      image.error = "'" + file + "' breaks off before the end of its image";
+      return image;
+    }
+    image.decoded = cv::imread(file, kAsShown);
+    if (image.decoded.empty()) image.error = "'" + file + "' cannot be read, expected a whole image";
     return image;
   }
 
@@ -116,10 +86,6 @@ class FolderSource : public ImageSource {
 };
 
 }  // namespace
-
-std::unique_ptr<ImageSource> openVideoSource(const std::string& path, const SourceOptions& options) {
-  return std::make_unique<VideoSource>(path, options);
-}
 
 std::unique_ptr<ImageSource> openFolderSource(const std::string& path, const SourceOptions& options) {
   return std::make_unique<FolderSource>(path, options);
