@@ -65,8 +65,10 @@ std::optional<int> parse(int argc, char** argv, const boost::program_options::op
 std::ofstream create(const std::string& file) {
   std::ofstream stream;
   if (file.empty()) return stream;
+  stream.rdbuf()->pubsetbuf(nullptr, 0);  // so that a full disk is known at once, and nothing is left for the end
   stream.open(file);
   if (!stream) throw std::runtime_error(file + ": cannot be written");
+  stream.exceptions(std::ios::badbit | std::ios::failbit);
   return stream;
 }
 

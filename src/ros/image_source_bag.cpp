@@ -4,127 +4,21 @@
 #include <sensor_msgs/CompressedImage.h>
 
 #include <boost/make_shared.hpp>
-#include <map>
 #include <memory>
 #include <opencv2/imgcodecs.hpp>
 #include <utility>
 #include <vector>
 
+#include "bag_topics.h"
 #include "image_sources.h"
 #include "laparoscope_servo/ros/image_conversion.h"
+#include "usable_stamps.h"
 
 namespace laparoscope_servo::skin {
 
 namespace {
 
-const char* const kImageType = "sensor_msgs/Image";
-const char* const kCompressedType = "sensor_msgs/CompressedImage";
-const char* const kCameraInfoType = "sensor_msgs/CameraInfo";
-
-using Topics = std::map<std::string, std::string>;  // name to type
-
-bool isImageType(const std::string& type) {
-  return type == kImageType || type == kCompressedType;
-}
-
-std::string listing(const Topics& topics) {
-  if (topics.empty()) return "the bag is empty";
-  std::string text = "the bag has:";
-  for (const auto& [name, type] : topics) text += "\n  " + name + " (" + type + ")";
-  return text;
-}
-
-Topics::const_iterator findTopic(const Topics& topics, const std::string& path, const std::string& wanted) {
-  auto found = topics.find(wanted);
-  if (found == topics.end()) found = topics.find('/' + wanted);
-  if (found == topics.end()) throw SourceError("bag '" + path + "' has no topic '" + wanted + "'; " + listing(topics));
-  return found;
-}
-
-std::string chooseImageTopic(const Topics& topics, const std::string& path, const std::string& wanted) {
-  const std::string expected = std::string(", expected ") + kImageType + " or " + kCompressedType + "; ";
-  if (!wanted.empty()) {
-    const auto found = findTopic(topics, path, wanted);
-    if (!isImageType(found->second)) {
-      throw SourceError("topic '" + wanted + "' of bag '" + path + "' is of type " + found->second + expected +
-                        listing(topics));
-    }
-    return found->first;
-  }
-  Topics with_images;
-  for (const auto& topic : topics) {
-    if (isImageType(topic.second)) with_images.insert(topic);
-  }
-  if (with_images.empty())
-    throw SourceError("bag '" + path + "' has no topic with images" + expected + listing(topics));
-  if (with_images.size() > 1) {
-    std::string text = "bag '" + path + "' has several topics with images, choose one by --image-topic:";
-    for (const auto& [name, type] : with_images) text += "\n  " + name + " (" + type + ")";
-    throw SourceError(text);
-  }
-  return with_images.begin()->first;
-}
-
-std::string parent(const std::string& topic) {
-  const std::size_t slash = topic.rfind('/');
-  return slash == std::string::npos ? "" : topic.substr(0, slash);
-}
-
-// As a camera driver names it: beside the image's topic; that of a compressed image has the transport's name appended.
-std::string usualCameraInfoTopic(const Topics& topics, const std::string& image_topic) {
-  const std::string raw_topic = topics.at(image_topic) == kCompressedType ? parent(image_topic) : image_topic;
-  const std::string beside = parent(raw_topic);
-  return beside.empty() && raw_topic.find('/') == std::string::npos ? "camera_info" : beside + "/camera_info";
-}
-
-// Empty when there is none.
-std::string chooseCameraInfoTopic(const Topics& topics, const std::string& path, const std::string& image_topic,
-                                  const std::string& wanted) {
-  if (wanted.empty()) {
-    const auto found = topics.find(usualCameraInfoTopic(topics, image_topic));
-    return found != topics.end() && found->second == kCameraInfoType ? found->first : "";
-  }
-  const auto found = findTopic(topics, path, wanted);
-  if (found->second == kCameraInfoType) return found->first;
-  throw SourceError("topic '" + wanted + "' of bag '" + path + "' is of type " + found->second + ", expected " +
-                    kCameraInfoType + "; " + listing(topics));
-}
-
-// What a user may have meant when there is no camera_info where it is looked for.
-std::string otherCameraInfoTopics(const Topics& topics) {
-  std::string names;
-  for (const auto& [name, type] : topics) {
-    if (type == kCameraInfoType) names += (names.empty() ? "" : ", ") + name;
-  }
-  return names;
-}
-
-// Stamps that can stand for an image: not zero, and not that of the image before. One that cannot is replaced by the
-// time of recording, or by the stamp before and the time that has passed in the recording since.
-class UsableStamps {
- public:
-  ros::Time of(const ros::Time& stamp, const ros::Time& recorded) {
-    ros::Time usable = stamp;
-    if (stamp.isZero() || (any_ && stamp == given_)) {
-      ++replaced_;
-      usable = any_ ? last_ + (recorded - recorded_) : recorded;
-      if (any_ && !(usable > last_)) usable = last_ + ros::Duration(0, 1);
-    }
-    given_ = stamp;
-    last_ = usable;
-    recorded_ = recorded;
-    any_ = true;
-    return usable;
-  }
-  std::size_t replaced() const { return replaced_; }
-
- private:
-  bool any_ = false;
-  ros::Time given_;  // of the image before
-  ros::Time last_;   // what was made of it
-  ros::Time recorded_;
-  std::size_t replaced_ = 0;
-};
+constexpr std::size_t kMostWithoutStamp = 100;  // images at the beginning: more are not read twice
 
 void decode(const sensor_msgs::CompressedImage& message, SourceImage& image) {
   image.header = message.header;
@@ -234,8 +128,25 @@ class BagSource : public ImageSource {
       notes_.push_back("the bag has no " + usualCameraInfoTopic(topics, image_topic_) + ", but " + others +
                        ": one of them can be chosen by camera-info-topic");
     }
+    learnStamps(*images);
     view_ = view(read_topics);
     position_ = view_->begin();
+  }
+
+  // Images without a stamp at the beginning take theirs from the first that has one.
+  void learnStamps(rosbag::View& images) {
+    std::size_t looked_at = 0;
+    for (const rosbag::MessageInstance& instance : images) {
+      const ros::Time stamp = stampOf(instance);
+      if (!stamp.isZero()) return stamps_.learn(stamp, instance.getTime());
+      if (++looked_at == kMostWithoutStamp) return;
+    }
+  }
+
+  static ros::Time stampOf(const rosbag::MessageInstance& instance) {
+    if (const auto raw = instance.instantiate<sensor_msgs::Image>()) return raw->header.stamp;
+    if (const auto compressed = instance.instantiate<sensor_msgs::CompressedImage>()) return compressed->header.stamp;
+    return {};
   }
 
   std::optional<SourceImage> read() {

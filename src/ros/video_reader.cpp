@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdarg>
 #include <cstdio>
 #include <cstring>
 #include <thread>
@@ -14,7 +15,8 @@ namespace {
 
 constexpr unsigned kMostThreads = 16;         // of the decoder: each holds a picture back
 constexpr std::int64_t kMostFailures = 1000;  // of reading or decoding, one behind the other: it does not get better
-constexpr double kMissingPeriods = 2.5;       // that a video may end before its header says, for rounding
+// A video may end before its header says by so many of its longest periods, as the last one is not always known.
+constexpr double kMissingPeriods = 1.5;
 constexpr std::int64_t kLargestNothing = 19;  // bytes: an MPEG-4 picture that says `as before`
 
 double toDouble(AVRational value) {
@@ -45,10 +47,26 @@ std::string timeText(double seconds) {
   return text;
 }
 
+// What a container is damaged by is only to be had as a message; it comes in the thread that reads.
+thread_local const void* listening_to = nullptr;
+thread_local bool complained = false;
+
+void onMessage(void* object, int level, const char* /*format*/, va_list /*arguments*/) {
+  if (object != nullptr && object == listening_to && level <= AV_LOG_ERROR) complained = true;
+}
+
+// Where libav has no other word for damage than its messages, which go for errors then; no other picture rests on
+// these.
+bool standsAlone(AVCodecID id) {
+  const AVCodecDescriptor* descriptor = avcodec_descriptor_get(id);
+  const bool intra = descriptor != nullptr && (descriptor->props & AV_CODEC_PROP_INTRA_ONLY) != 0;
+  return intra || id == AV_CODEC_ID_FFV1;
+}
+
 }  // namespace
 
 VideoReader::VideoReader(const std::string& path) : path_(path), packet_(av_packet_alloc()) {
-  av_log_set_level(AV_LOG_FATAL);  // what matters of a video's damage is told in words of our own
+  av_log_set_callback(onMessage);  // what matters of a video's damage is told in words of our own
   const std::string refused = "'" + path + "' cannot be opened as a video (";
   const std::string expected = "), expected a bag, a folder of images or a whole video that libav can decode";
   AVDictionary* options = nullptr;
@@ -78,6 +96,7 @@ void VideoReader::openDecoder() {
   if (codec == nullptr) refuse("libav has no decoder for it");
   codec_.reset(avcodec_alloc_context3(codec));
   int result = avcodec_parameters_to_context(codec_.get(), stream_->codecpar);
+  if (standsAlone(codec_->codec_id)) codec_->err_recognition |= AV_EF_EXPLODE | AV_EF_CRCCHECK;
   codec_->pkt_timebase = stream_->time_base;
   codec_->thread_count = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, kMostThreads));
   if (result >= 0) result = avcodec_open2(codec_.get(), codec, nullptr);
@@ -89,22 +108,24 @@ void VideoReader::learnLength() {
   base_den_ = stream_->time_base.den;
   rate_ = toDouble(stream_->avg_frame_rate);
   if (!(rate_ > 0.0)) rate_ = toDouble(av_guess_frame_rate(format_.get(), stream_, nullptr));
-  const std::string name = format_->iformat->name;
-  promised_ = stream_->nb_frames > 0 ? static_cast<std::size_t>(stream_->nb_frames) : 0;
-  // The index of an MP4 lacks what its edit list cuts off, and is what has to come.
-  const std::int64_t entries = indexEntries(stream_);
-  if (name.find("mp4") != std::string::npos && entries > 0) promised_ = static_cast<std::size_t>(entries);
-  size_ = promised_;
+  size_ = stream_->nb_frames > 0 ? static_cast<std::size_t>(stream_->nb_frames) : 0;
   double duration = stream_->duration != AV_NOPTS_VALUE ? seconds(stream_->duration) : 0.0;
-  if (!(duration > 0.0) && format_->duration > 0) duration = static_cast<double>(format_->duration) / AV_TIME_BASE;
-  if (size_ == 0 && duration > 0.0) size_ = static_cast<std::size_t>(std::lround(duration * rate_));
-  if (promised_ > 0) return;
-  promised_end_ = durationTag(*stream_);
-  // Of several streams any may be the longest.
-  const bool from_header = format_->duration_estimation_method == AVFMT_DURATION_FROM_STREAM && format_->duration > 0;
-  if (!(promised_end_ > 0.0) && from_header && format_->nb_streams == 1 && name.find("matroska") != std::string::npos) {
-    promised_end_ = static_cast<double>(format_->duration) / AV_TIME_BASE;
+  const std::string name = format_->iformat->name;
+  if (name.find("mp4") != std::string::npos && indexEntries(stream_) > 0) {
+    // It lacks what an edit list cuts off, and is what has to come.
+    promised_ = size_ = static_cast<std::size_t>(indexEntries(stream_));
+  } else if (name == "avi" && size_ > 0) {
+    // Counts pictures that were left out, too, for which nothing comes.
+    promised_end_ = duration;
+    every_period_is_there_ = true;
+  } else if (name.find("matroska") != std::string::npos) {
+    promised_end_ = durationTag(*stream_);
+    // Of several streams any may be the longest.
+    const bool alone = format_->nb_streams == 1 && format_->duration_estimation_method == AVFMT_DURATION_FROM_STREAM;
+    if (!(promised_end_ > 0.0) && alone) promised_end_ = static_cast<double>(format_->duration) / AV_TIME_BASE;
   }
+  if (!(duration > 0.0) && format_->duration > 0) duration = static_cast<double>(format_->duration) / AV_TIME_BASE;
+  if (size_ == 0) size_ = static_cast<std::size_t>(std::max(0L, std::lround(duration * rate_)));
 }
 
 Orientation VideoReader::orientation() const {
@@ -131,9 +152,9 @@ std::optional<Picture> VideoReader::next() {
     const int result = avcodec_receive_frame(codec_.get(), frame.get());
     if (result == 0) {
       take(std::move(frame));
-    } else if (result == AVERROR(EAGAIN)) {
-      if (!all_read_) send();
-    } else if (result == AVERROR_EOF || ++errors > kMostFailures) {
+    } else if (result == AVERROR(EAGAIN) && !all_read_) {
+      send();
+    } else if (result == AVERROR(EAGAIN) || result == AVERROR_EOF || ++errors > kMostFailures) {
       finish();
     } else {
       decode_error_ = libav::errorText(result);
@@ -156,7 +177,11 @@ bool VideoReader::isPicture(const AVPacket& packet) const {
 bool VideoReader::readPacket() {
   for (;;) {
     av_packet_unref(packet_.get());
+    listening_to = format_.get();
+    complained = false;
     const int result = av_read_frame(format_.get(), packet_.get());
+    listening_to = nullptr;
+    if (complained && !complaint_) complaint_ = packets_ + 1;
     if (result == AVERROR_EOF) return false;
     if (result < 0) {
       read_error_ = libav::errorText(result);
@@ -166,7 +191,9 @@ bool VideoReader::readPacket() {
     failures_ = 0;
     if (packet_->stream_index != stream_->index) continue;
     ++packets_;
-    if (packet_->pts != AV_NOPTS_VALUE) end_ = std::max(end_, seconds(packet_->pts + packet_->duration));
+    const std::int64_t time = packet_->pts != AV_NOPTS_VALUE ? packet_->pts : packet_->dts;
+    const double period = packet_->duration > 0 ? seconds(packet_->duration) : rate_ > 0.0 ? 1.0 / rate_ : 0.0;
+    if (time != AV_NOPTS_VALUE) end_ = std::max(end_, seconds(time) + period);
     // Some recorders write an empty one where nothing has changed; to the decoder it would mean the end.
     if (packet_->size > 0) return true;
   }
@@ -185,7 +212,10 @@ void VideoReader::send() {
     picture.key = (packet_->flags & AV_PKT_FLAG_KEY) != 0;
     pending_.sent(index, picture);
   }
-  if ((packet_->flags & AV_PKT_FLAG_CORRUPT) != 0) damaged_[index] = "its data are damaged or cut off";
+  // A transport stream calls a packet corrupt where its counter jumps, also where two of them were joined: there the
+  // decoder knows better.
+  const bool transport = std::strcmp(format_->iformat->name, "mpegts") == 0;
+  if ((packet_->flags & AV_PKT_FLAG_CORRUPT) != 0 && !transport) damaged_[index] = "its data are damaged or cut off";
   codec_->reordered_opaque = index;
   const int result = avcodec_send_packet(codec_.get(), packet_.get());
   if (result < 0) decode_error_ = libav::errorText(result);
@@ -196,8 +226,12 @@ void VideoReader::take(libav::Frame frame) {
   const PendingPictures::Time time = frame->best_effort_timestamp != AV_NOPTS_VALUE
                                          ? PendingPictures::Time(frame->best_effort_timestamp)
                                          : std::nullopt;
-  addLost(pending_.came(index, time));
+  const std::vector<PendingPictures::Sent> lost = pending_.came(index, time);
+  tellHidden(index, seconds(time), lost.size());
+  addLost(lost);
   any_shown_ = true;
+  if (time && last_time_) longest_period_ = std::max(longest_period_, seconds(*time) - *last_time_);
+  last_time_ = seconds(time);
   Picture picture;
   picture.time = seconds(time);
   const auto damage = damaged_.find(index);
@@ -209,6 +243,21 @@ void VideoReader::take(libav::Frame frame) {
   }
   picture.frame = std::move(frame);
   ready_.push_back(std::move(picture));
+}
+
+// A gap in the times where the container is damaged: the pictures in it never came. Without damage a gap is nothing
+// wrong: some cameras leave out pictures.
+void VideoReader::tellHidden(std::int64_t index, const std::optional<double>& time, std::size_t told) {
+  if (!complaint_ || index < *complaint_) return;
+  complaint_.reset();
+  if (!time || !last_time_ || !(rate_ > 0.0)) return;
+  const std::int64_t hidden = std::llround((*time - *last_time_) * rate_) - 1 - static_cast<std::int64_t>(told);
+  if (hidden <= 0) return;
+  Picture missing;
+  missing.time = *last_time_ + 1.0 / rate_;
+  missing.count = static_cast<std::size_t>(hidden);
+  missing.error = "the file is damaged here, and " + std::to_string(hidden) + " pictures are missing";
+  ready_.push_back(std::move(missing));
 }
 
 void VideoReader::addLost(const std::vector<PendingPictures::Sent>& pictures) {
@@ -233,15 +282,17 @@ void VideoReader::finish() {
   missing.time = end_;
   const std::string where = "the video breaks off at " + timeText(end_);
   const auto read = static_cast<std::size_t>(packets_);
+  const double tolerance =
+      every_period_is_there_ ? 0.5 / rate_ : kMissingPeriods * std::max(longest_period_, 1.0 / rate_);
   if (read < promised_) {
     missing.count = promised_ - read;
     missing.error = where + ": " + std::to_string(missing.count) + " of its " + std::to_string(promised_) +
                     " pictures are not in the file";
-  } else if (promised_end_ > 0.0 && rate_ > 0.0 && end_ + kMissingPeriods / rate_ < promised_end_) {
+  } else if (promised_end_ > 0.0 && rate_ > 0.0 && end_ + tolerance < promised_end_) {
     missing.count = static_cast<std::size_t>(std::lround((promised_end_ - end_) * rate_));
     missing.error = where + ", expected at " + timeText(promised_end_);
-  } else if (!read_error_.empty()) {
-    missing.error = where + " (" + read_error_ + ")";
+  } else if (!read_error_.empty() || complaint_) {
+    missing.error = where + " (" + (read_error_.empty() ? "the file ends within a picture" : read_error_) + ")";
   } else {
     return;
   }

@@ -45,6 +45,7 @@ class VideoReader {
   bool readPacket();
   void send();
   void take(libav::Frame frame);
+  void tellHidden(std::int64_t index, const std::optional<double>& time, std::size_t told);
   void addLost(const std::vector<PendingPictures::Sent>& pictures);
   void finish();
   bool isPicture(const AVPacket& packet) const;
@@ -60,15 +61,19 @@ class VideoReader {
   double base_den_ = 1.0;
   double rate_ = 0.0;
   std::size_t size_ = 0;
-  std::size_t promised_ = 0;   // packets that have to come; 0: not known
-  double promised_end_ = 0.0;  // s, in the file's time; 0: not known
+  std::size_t promised_ = 0;            // packets that have to come; 0: not known
+  double promised_end_ = 0.0;           // s, in the file's time; 0: not known
+  bool every_period_is_there_ = false;  // the promise is exact
 
   PendingPictures pending_;
   std::deque<Picture> ready_;
   std::map<std::int64_t, std::string> damaged_;  // packets that came incomplete
   std::int64_t packets_ = 0;
-  std::int64_t failures_ = 0;  // of reading, in a row
-  double end_ = 0.0;           // s, of what has been read
+  std::optional<std::int64_t> complaint_;  // packet in front of which the container is damaged
+  std::optional<double> last_time_;        // s, of the last picture that came out
+  double longest_period_ = 0.0;            // s, between two pictures
+  std::int64_t failures_ = 0;              // of reading, in a row
+  double end_ = 0.0;                       // s, of what has been read
   std::string read_error_;
   std::string decode_error_;
   std::size_t leading_ = 0;

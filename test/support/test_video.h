@@ -32,6 +32,7 @@ struct TestVideo {
   AVRational pixel_aspect{0, 1};
   AVColorSpace matrix = AVCOL_SPC_UNSPECIFIED;
   AVColorRange range = AVCOL_RANGE_UNSPECIFIED;
+  bool index_first = false;         // of an MP4, in front of the pictures
   std::vector<std::int64_t> times;  // of each picture; empty: 40 ms apart
 };
 
@@ -65,6 +66,7 @@ inline void writeVideo(const std::string& path, const std::vector<cv::Mat>& pict
   codec->flags |= AV_CODEC_FLAG_QSCALE;
   codec->global_quality = 2 * FF_QP2LAMBDA;
   codec->strict_std_compliance = FF_COMPLIANCE_UNOFFICIAL;
+  codec->level = video.codec == "ffv1" ? 3 : FF_LEVEL_UNKNOWN;  // with check sums
   if ((format->oformat->flags & AVFMT_GLOBALHEADER) != 0) codec->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
   check(avcodec_open2(codec, encoder, nullptr));
   AVStream* stream = avformat_new_stream(format, nullptr);
@@ -80,7 +82,10 @@ inline void writeVideo(const std::string& path, const std::vector<cv::Mat>& pict
                                   9 * sizeof(std::int32_t)));
   }
   check(avio_open(&format->pb, ("file:" + path).c_str(), AVIO_FLAG_WRITE));
-  check(avformat_write_header(format, nullptr));
+  AVDictionary* options = nullptr;
+  if (video.index_first) av_dict_set(&options, "movflags", "faststart", 0);
+  check(avformat_write_header(format, &options));
+  av_dict_free(&options);
 
   AVFrame* frame = av_frame_alloc();
   frame->format = codec->pix_fmt;
@@ -88,10 +93,21 @@ inline void writeVideo(const std::string& path, const std::vector<cv::Mat>& pict
   frame->height = height;
   frame->quality = codec->global_quality;
   check(av_frame_get_buffer(frame, 0));
-  SwsContext* scaler = sws_getContext(width, height, AV_PIX_FMT_BGR24, width, height, codec->pix_fmt, SWS_BICUBIC,
+  SwsContext* scaler = sws_getContext(width, height, AV_PIX_FMT_BGR24, width, height, codec->pix_fmt, SWS_BICUBIC | SWS_ACCURATE_RND,
                                       nullptr, nullptr, nullptr);
-  const int* table = sws_getCoefficients(video.matrix == AVCOL_SPC_BT709 ? SWS_CS_ITU709 : SWS_CS_DEFAULT);
-  sws_setColorspaceDetails(scaler, table, 0, table, video.range == AVCOL_RANGE_JPEG ? 1 : 0, 0, 1 << 16, 1 << 16);
+  const bool full = video.range == AVCOL_RANGE_JPEG || video.pixels == AV_PIX_FMT_YUVJ420P;
+  if (full || video.matrix == AVCOL_SPC_BT709) {
+    int* from = nullptr;
+    int* to = nullptr;
+    int from_full = 0;
+    int to_full = 0;
+    int brightness = 0;
+    int contrast = 0;
+    int saturation = 0;
+    sws_getColorspaceDetails(scaler, &from, &from_full, &to, &to_full, &brightness, &contrast, &saturation);
+    const int* table = video.matrix == AVCOL_SPC_BT709 ? sws_getCoefficients(SWS_CS_ITU709) : to;
+    sws_setColorspaceDetails(scaler, from, from_full, table, full ? 1 : 0, brightness, contrast, saturation);
+  }
   AVPacket* packet = av_packet_alloc();
   for (std::size_t k = 0; k <= pictures.size(); ++k) {
     if (k < pictures.size()) {

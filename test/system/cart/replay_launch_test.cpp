@@ -29,7 +29,8 @@ class ReplayLaunch : public testing::Test {
   }
   void launch(const std::string& arguments) {
     results_ = std::make_unique<Recorder<Homography>>(node_, "/tracker/homography");
-    const std::string command = "exec roslaunch laparoscope_servo replay.launch rviz:=false " + arguments;
+    const std::string command =
+        "ROSCONSOLE_STDOUT_LINE_BUFFERED=1 exec roslaunch laparoscope_servo replay.launch rviz:=false " + arguments;
     launch_ = std::make_unique<ChildProcess>("/bin/sh", std::vector<std::string>{"-c", command}, log());
   }
   bool ends() {

@@ -48,6 +48,26 @@ TEST_F(ImageSourceBagTest, BagHasCameraInfoOfBeforeTheStart) {
   EXPECT_EQ(images[0].camera_info->K[0], 101.0);
 }
 
+TEST_F(ImageSourceBagTest, BagMayHaveCameraInfoUnderAnotherName) {
+  const std::string path = writeBag("raw.bag", {"/left/image_raw"});
+  const auto source = openImageSource(path, {});
+  EXPECT_FALSE(source->next()->camera_info);
+  ASSERT_EQ(source->notes().size(), 1u);
+  EXPECT_TRUE(mentions(source->notes()[0], "no /left/camera_info, but /scope/camera_info")) << source->notes()[0];
+  SourceOptions options;
+  for (const char* name : {"/scope/camera_info", "scope/camera_info"}) {
+    options.camera_info_topic = name;
+    const auto images = readAll(path, options);
+    ASSERT_TRUE(images.at(0).camera_info);
+    EXPECT_EQ(images[0].camera_info->K[0], 100.0);
+    EXPECT_TRUE(openImageSource(path, options)->notes().empty());
+  }
+  options.camera_info_topic = "/chatter";
+  EXPECT_TRUE(mentions(errorOf(path, options), "std_msgs/String, expected sensor_msgs/CameraInfo"));
+  options.camera_info_topic = "/none";
+  EXPECT_TRUE(mentions(errorOf(path, options), "no topic '/none'"));
+}
+
 TEST_F(ImageSourceBagTest, BagMayHoldCompressedImages) {
   const auto images = readAll(writeBag("compressed.bag", {"/scope/image_raw/compressed"}, true));
   ASSERT_EQ(images.size(), 5u);

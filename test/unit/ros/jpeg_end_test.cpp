@@ -10,7 +10,7 @@ namespace laparoscope_servo::skin {
 namespace {
 
 std::string jpeg(const std::vector<int>& options) {
-  cv::Mat image(120, 160, CV_8UC3);
+  cv::Mat image(24, 32, CV_8UC3);
   cv::randu(image, 0, 255);
   std::vector<unsigned char> bytes;
   cv::imencode(".jpg", image, bytes, options);

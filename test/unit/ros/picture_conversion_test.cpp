@@ -39,11 +39,11 @@ TEST(PictureConversion, OrientationIsOfTheEightThatAMatrixCanHave) {
     EXPECT_EQ(turned.transposed, degrees % 180 == 90) << degrees;
     EXPECT_EQ(turned.mirrored_x, degrees == 90 || degrees == 180) << degrees;
     EXPECT_EQ(turned.mirrored_y, degrees == 180 || degrees == 270) << degrees;
-    av_display_matrix_flip(matrix.data(), 1, 0);  // before it is turned
+    av_display_matrix_flip(matrix.data(), 1, 0);  // after it is turned
     const Orientation both = orientationOf(matrix);
     EXPECT_EQ(both.transposed, turned.transposed);
-    EXPECT_EQ(both.mirrored_x != turned.mirrored_x, degrees % 180 == 0) << degrees;
-    EXPECT_EQ(both.mirrored_y != turned.mirrored_y, degrees % 180 == 90) << degrees;
+    EXPECT_NE(both.mirrored_x, turned.mirrored_x) << degrees;
+    EXPECT_EQ(both.mirrored_y, turned.mirrored_y) << degrees;
   }
   const Orientation none = orientationOf({});
   EXPECT_FALSE(none.transposed || none.mirrored_x || none.mirrored_y);

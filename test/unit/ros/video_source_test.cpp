@@ -1,6 +1,7 @@
 // Videos as they come, whole and damaged.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <opencv2/imgproc.hpp>
 #include <string>
@@ -51,14 +52,16 @@ struct Kind {
   const char* codec;
   int between;
 };
-const std::vector<Kind> kKinds{{"a.mp4", "mpeg4", 0},   {"b.mp4", "mpeg4", 2},    {"a.mkv", "mpeg4", 2},
-                               {"b.mkv", "ffv1", 0},    {"c.mkv", "mjpeg", 0},    {"a.mp4", "libx264", 2},
-                               {"d.mkv", "libx264", 2}, {"a.ts", "mpeg2video", 2}};
+const std::vector<Kind> kKinds{{"a.mp4", "mpeg4", 0},    {"b.mp4", "mpeg4", 2},      {"a.mkv", "mpeg4", 2},
+                               {"b.mkv", "ffv1", 0},     {"c.mkv", "mjpeg", 0},      {"fast.mp4", "mpeg4", 2},
+                               {"a.mp4", "libx264", 2},  {"fast.mp4", "libx264", 2}, {"d.mkv", "libx264", 2},
+                               {"a.ts", "mpeg2video", 2}};
 
 TestVideo of(const Kind& kind) {
   TestVideo video;
   video.codec = kind.codec;
   video.between = kind.between;
+  video.index_first = std::string(kind.name).find("fast") == 0;
   if (video.codec == "mjpeg") video.pixels = AV_PIX_FMT_YUVJ420P;
   if (video.codec == "mpeg2video") {
     video.time_base = {1, 25};
@@ -144,10 +147,10 @@ TEST_F(VideoSourceTest, IsTurnedAsAPlayerTurnsIt) {
       const auto images = readAll(write("turned.mp4", video, {stored, stored}));
       ASSERT_EQ(images.size(), 2u);
       cv::Mat shown = stored.clone();
-      if (mirrored) cv::flip(stored, shown, 1);
       if (degrees == 90) cv::rotate(shown, shown, cv::ROTATE_90_CLOCKWISE);
       if (degrees == 180) cv::rotate(shown, shown, cv::ROTATE_180);
       if (degrees == 270) cv::rotate(shown, shown, cv::ROTATE_90_COUNTERCLOCKWISE);
+      if (mirrored) cv::flip(shown, shown, 1);
       ASSERT_EQ(images[0].decoded.size(), shown.size());
       EXPECT_LT(cv::norm(images[0].decoded, shown, cv::NORM_L1) / static_cast<double>(shown.total()), 15.0);
     }
@@ -221,8 +224,8 @@ TEST_F(VideoSourceTest, DamagedPicturesAreNamedWithTheirPlace) {
     const auto places = test_support::packetsOf(path);
     std::string bytes = test_support::bytesOf(path);
     const auto& place = places.at(places.size() / 2);
-    for (std::size_t k = 0; k < place.size / 2; ++k)
-      bytes[place.at + place.size / 4 + k] = static_cast<char>(0xA5 + 37 * k);
+    // From its beginning on: noise in the middle may by chance be a picture to a decoder.
+    for (std::size_t k = 0; k < place.size * 3 / 4; ++k) bytes[place.at + k] = static_cast<char>(0xA5 + 37 * k);
     test_support::writeBytes(path, bytes);
     const auto images = readAll(path);
     EXPECT_GE(lostOf(images), 1u);
@@ -240,29 +243,56 @@ TEST_F(VideoSourceTest, DamagedPicturesAreNamedWithTheirPlace) {
   }
 }
 
+// Where the damage is in what the container says of its packets, nothing comes of them at all.
+TEST_F(VideoSourceTest, PicturesThatADamagedContainerHidesAreToldToo) {
+  for (const char* codec : {"mjpeg", "mpeg4"}) {
+    TestVideo video;
+    video.codec = codec;
+    if (video.codec == "mjpeg") video.pixels = AV_PIX_FMT_YUVJ420P;
+    const std::string path = write("film.mkv", video, noise(kPictures));
+    const auto places = test_support::packetsOf(path);
+    std::string bytes = test_support::bytesOf(path);
+    std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(places[8].at), places[8].size, 'Z');
+    test_support::writeBytes(path, bytes);
+    const auto images = readAll(path);
+    EXPECT_GE(lostOf(images), 1u);
+    std::size_t count = 0;
+    for (const SourceImage& image : images) {
+      const double time = image.header.stamp.toSec();
+      EXPECT_TRUE(image.error.empty() || std::abs(time - 0.32) < 0.1) << image.error;
+      EXPECT_TRUE(count < 12 || std::abs(time - 0.04 * static_cast<double>(image.frame)) < 1e-6) << time;
+      count += image.error.empty() ? 1 : image.lost;
+    }
+    EXPECT_EQ(count, static_cast<std::size_t>(kPictures)) << codec;
+  }
+}
+
 TEST_F(VideoSourceTest, AChangeOfSizeIsGivenAsItIs) {
-  TestVideo video;
-  video.codec = "mpeg2video";
-  video.time_base = {1, 25};
-  for (int k = 0; k < 10; ++k) video.times.push_back(k);
-  const std::string small = write("small.ts", video, pictures(10));
   std::vector<cv::Mat> large;
   for (int k = 10; k < 20; ++k) large.push_back(cv::Mat(96, 128, CV_8UC3, cv::Scalar::all(10 * (k + 1))));
-  const std::string big = write("large.ts", video, large);
-  const std::string both = folder_.file("both.ts");
-  test_support::writeBytes(both, test_support::bytesOf(small) + test_support::bytesOf(big));
-  const auto source = openImageSource(both, {});
-  std::vector<SourceImage> images;
-  while (auto image = source->next()) images.push_back(*image);
-  ASSERT_EQ(images.size(), 20u);
-  for (int k = 0; k < 20; ++k) {
-    EXPECT_EQ(images[k].error, "");
-    EXPECT_EQ(images[k].decoded.size(), k < 10 ? cv::Size(64, 48) : cv::Size(128, 96)) << k;
-    EXPECT_EQ(numberOf(images[k]), k);
-    EXPECT_NEAR(images[k].header.stamp.toSec(), 0.04 * k, 1e-6) << "times that begin again go on";
+  for (const auto& [codec, ending] : {std::pair{"mjpeg", ".mjpg"}, {"libx264", ".ts"}}) {
+    if (!test_support::canEncode(codec)) continue;
+    SCOPED_TRACE(codec);
+    TestVideo video;
+    video.codec = codec;
+    if (video.codec == "mjpeg") video.pixels = AV_PIX_FMT_YUVJ420P;
+    const std::string small = write(std::string("small") + ending, video, pictures(10));
+    const std::string big = write(std::string("large") + ending, video, large);
+    const std::string both = folder_.file(std::string("both") + ending);
+    test_support::writeBytes(both, test_support::bytesOf(small) + test_support::bytesOf(big));
+    const auto source = openImageSource(both, {});
+    std::vector<SourceImage> images;
+    while (auto image = source->next()) images.push_back(*image);
+    ASSERT_EQ(images.size(), 20u);
+    for (int k = 0; k < 20; ++k) {
+      EXPECT_EQ(images[k].error, "");
+      EXPECT_EQ(images[k].decoded.size(), k < 10 ? cv::Size(64, 48) : cv::Size(128, 96)) << k;
+      EXPECT_EQ(numberOf(images[k]), k);
+      EXPECT_NEAR(images[k].header.stamp.toSec(), 0.04 * k, 1e-6) << "times that begin again go on";
+    }
+    // Of a raw stream libav counts the times itself.
+    EXPECT_EQ(source->notes().size(), std::string(ending) == ".ts" ? 1u : 0u);
   }
-  ASSERT_EQ(source->notes().size(), 1u);
-  EXPECT_TRUE(mentions(source->notes()[0], "times go back")) << source->notes()[0];
 }
 
 TEST_F(VideoSourceTest, ANameIsAFileAndNoAddress) {
