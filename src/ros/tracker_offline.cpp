@@ -21,6 +21,8 @@ namespace laparoscope_servo::skin {
 
 namespace {
 
+constexpr double kAnyGap = 1e6;  // s: a recording has its pauses, and no clock that could be wrong for one image
+
 // One of the files to write; does nothing when its path is empty.
 class CsvFile {
  public:
@@ -123,6 +125,12 @@ void refuseToOverwriteInput(const OfflineOptions& options) {
   }
 }
 
+std::string cameraNote(const TrackerSession& session, const Processed& last) {
+  if (!last.camera) return "without intrinsics there is G, but no H and no task error: " + last.camera_error;
+  if (!session.ignoresDistortion()) return "";
+  return "the lens distortion in camera_info was not corrected, G and H are off by it: see the parameter rectify";
+}
+
 Processed process(TrackerSession& session, const SourceImage& image) {
   if (!image.error.empty()) throw SourceError(image.error);
   if (image.message) return session.process(*image.message);
@@ -134,7 +142,9 @@ Processed process(TrackerSession& session, const SourceImage& image) {
 OfflineSummary trackOffline(const OfflineOptions& options, const OfflineProgress& progress,
                             const OfflineReport& report) {
   if (!options.parameters.roi) throw std::invalid_argument("no ROI is given, expected x,y,width,height in px");
-  TrackerSession session(options.parameters);
+  TrackerParameters parameters = options.parameters;
+  parameters.input.max_gap = kAnyGap;
+  TrackerSession session(parameters);
   const bool own_camera_info = !options.camera_info.empty();
   if (own_camera_info) session.setCameraInfo(readCameraInfo(options.camera_info));
   const std::unique_ptr<ImageSource> source = openImageSource(options.input, options.source);
@@ -162,6 +172,7 @@ OfflineSummary trackOffline(const OfflineOptions& options, const OfflineProgress
     ++summary.images;
     ++summary.by_state[static_cast<std::size_t>(processed.result.state)];
     summary.times.push_back(processed.processing_time);
+    summary.camera_note = cameraNote(session, processed);
     csv.write(image->frame, processed);
     bag.write(image->record_time, processed);
     overlay.write(processed);

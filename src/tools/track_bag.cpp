@@ -103,6 +103,7 @@ int run(const skin::OfflineOptions& offline) {
       });
   line.end();
   printSummary(summary);
+  if (!summary.camera_note.empty()) std::cerr << summary.camera_note << '\n';
   if (summary.refused == 0) return EXIT_SUCCESS;
   std::cerr << summary.refused << " of " << summary.refused + summary.images << " images could not be processed\n";
   return EXIT_FAILURE;

@@ -28,6 +28,7 @@ struct OfflineSummary {
   std::size_t refused = 0;            // not processed: each was reported
   std::vector<std::size_t> by_state;  // images in each state, indexed by tracking::State
   std::vector<double> times;          // s, of the tracker, per image
+  std::string camera_note;            // what the results lack for the camera's sake; empty: nothing
 };
 
 // Of the images so far.
