@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "laparoscope_servo/ros/clocks.h"
+#include "laparoscope_servo/ros/image_gate.h"
 #include "laparoscope_servo/ros/overlay.h"
 #include "laparoscope_servo/ros/parameters.h"
 #include "laparoscope_servo/ros/result_messages.h"
@@ -102,10 +103,7 @@ void Tracker::start(const skin::TrackerParameters& parameters) {
   reset_server_ = private_node.advertiseService("reset", &Tracker::reset, this);
 
   camera_info_subscriber_ = node.subscribe("camera_info", 2, &Tracker::cameraInfoCallback, this);
-  // A queue of one: an image that waited is of no use to a control loop, the newest one is.
-  transport_ = std::make_unique<image_transport::ImageTransport>(node);
-  const image_transport::TransportHints hints("raw", ros::TransportHints().tcpNoDelay(), private_node);
-  image_subscriber_ = transport_->subscribe("image", 1, &Tracker::imageCallback, this, hints);
+  subscribeImages();
 
   ros::NodeHandle request_node(private_node);
   request_node.setCallbackQueue(&request_queue_);
@@ -134,14 +132,45 @@ void Tracker::followRobot(const skin::RobotMotionConfig& config) {
   });
 }
 
-void Tracker::cameraInfoCallback(const sensor_msgs::CameraInfoConstPtr& message) {
-  session_->setCameraInfo(*message);
+void Tracker::subscribeImages() {
+  // A queue of one: an image that waited is of no use to a control loop, the newest one is.
+  constexpr std::uint32_t kQueue = 1;
+  const ros::TransportHints no_delay = ros::TransportHints().tcpNoDelay();
+  const image_transport::TransportHints hints("raw", no_delay, getPrivateNodeHandle());
+  if (hints.getTransport() == "raw") {  // the topic itself: here alone it is known who has sent an image
+    image_subscriber_ = getNodeHandle().subscribe("image", kQueue, &Tracker::rawImageCallback, this, no_delay);
+    return;
+  }
+  transport_ = std::make_unique<image_transport::ImageTransport>(getNodeHandle());
+  transport_subscriber_ = transport_->subscribe("image", kQueue, &Tracker::imageCallback, this, hints);
+}
+
+void Tracker::cameraInfoCallback(const ros::MessageEvent<const sensor_msgs::CameraInfo>& event) {
+  if (!camera_info_owner_.counts(event.getPublisherName(), skin::steadyNow())) return;
+  session_->setCameraInfo(*event.getConstMessage());
+}
+
+void Tracker::rawImageCallback(const ros::MessageEvent<const sensor_msgs::Image>& event) {
+  const double now = skin::steadyNow();
+  if (image_owner_.counts(event.getPublisherName(), now)) return imageCallback(event.getConstMessage());
+  refuse("several nodes publish " + image_subscriber_.getTopic() + ": " + image_owner_.complaint(now),
+         skin::Refusal::kSender);
+}
+
+// A bag that begins again sets the clock back, too.
+void Tracker::watchClock() {
+  constexpr double kJump = 0.05;  // s: an adjusted clock goes back by less
+  const ros::Time now = ros::Time::now();
+  if ((last_now_ - now).toSec() > kJump) session_->clockJumpedBack();
+  last_now_ = now;
 }
 
 void Tracker::imageCallback(const sensor_msgs::ImageConstPtr& message) {
   // cv::Exception is a std::exception. One odd image must not end the process that the camera driver may share.
   try {
     process(message);
+  } catch (const skin::ImageError& error) {
+    refuse(error.what(), error.cause());
   } catch (const std::exception& error) {
     refuse(error.what());
   }
@@ -151,6 +180,10 @@ void Tracker::process(const sensor_msgs::ImageConstPtr& message) {
   AnswerGuard guard(request_);
   skin::Processed processed;
   try {
+    watchClock();
+    // Simulated time comes over a topic of its own, later than the image or earlier.
+    const ros::Time now = ros::Time::isSimTime() ? ros::Time() : ros::Time::now();
+    skin::checkStamp(message->header.stamp, now, session_->parameters().input.max_ahead);
     const auto* roi = guard.get<geometry::Rectangle>();
     processed = session_->process(*message, roi != nullptr ? std::make_optional(*roi) : std::nullopt);
   } catch (const std::exception& error) {
@@ -171,6 +204,7 @@ void Tracker::process(const sensor_msgs::ImageConstPtr& message) {
   }
   statistics_->processed(skin::steadyNow(), processed, session_->ignoresDistortion());
   publish(processed);
+  statistics_->answered(skin::steadyNow(), (ros::Time::now() - processed.header.stamp).toSec());
 }
 
 void Tracker::publish(const skin::Processed& processed) {
@@ -187,8 +221,8 @@ void Tracker::publish(const skin::Processed& processed) {
   }
 }
 
-void Tracker::refuse(const std::string& error) {
-  statistics_->refused(skin::steadyNow(), error);
+void Tracker::refuse(const std::string& error, skin::Refusal cause) {
+  statistics_->refused(skin::steadyNow(), error, cause);
   NODELET_ERROR_THROTTLE(kThrottle, "image refused: %s", error.c_str());
 }
 
@@ -203,7 +237,12 @@ void Tracker::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
   if (!why_aside_.empty()) {
     status.summary(diagnostic_msgs::DiagnosticStatus::ERROR, "not started: " + why_aside_);
   } else if (statistics_) {
-    statistics_->fill(skin::steadyNow(), status);
+    const double now = skin::steadyNow();
+    const bool raw = static_cast<bool>(image_subscriber_);
+    statistics_->setPublishers({raw ? image_subscriber_.getNumPublishers() : transport_subscriber_.getNumPublishers(),
+                                camera_info_subscriber_.getNumPublishers(), image_owner_.complaint(now),
+                                camera_info_owner_.complaint(now)});
+    statistics_->fill(now, status);
   }
 }
 

@@ -17,6 +17,7 @@
 #include <memory>
 #include <string>
 
+#include "laparoscope_servo/ros/feed_owner.h"
 #include "laparoscope_servo/ros/future_transforms.h"
 #include "laparoscope_servo/ros/tracker_diagnostics.h"
 #include "laparoscope_servo/ros/tracker_request.h"
@@ -36,8 +37,12 @@ class Tracker : public nodelet::Nodelet {
   void followRobot(const skin::RobotMotionConfig& config);
 
   // All in the nodelet's own single-threaded queue.
+  void subscribeImages();
   void imageCallback(const sensor_msgs::ImageConstPtr& message);
-  void cameraInfoCallback(const sensor_msgs::CameraInfoConstPtr& message);
+  // Of the raw transport, which tells who has sent the image.
+  void rawImageCallback(const ros::MessageEvent<const sensor_msgs::Image>& event);
+  void cameraInfoCallback(const ros::MessageEvent<const sensor_msgs::CameraInfo>& event);
+  void watchClock();
   bool reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
   // In a queue and a thread of its own, because it waits for an image.
@@ -50,7 +55,7 @@ class Tracker : public nodelet::Nodelet {
 
   void process(const sensor_msgs::ImageConstPtr& message);
   void publish(const skin::Processed& processed);
-  void refuse(const std::string& error);
+  void refuse(const std::string& error, skin::Refusal cause = skin::Refusal::kData);
 
   std::unique_ptr<tf2_ros::Buffer> tf_;  // with robot_motion only
   std::unique_ptr<tf2_ros::TransformListener> tf_listener_;
@@ -67,8 +72,12 @@ class Tracker : public nodelet::Nodelet {
   ros::CallbackQueue view_queue_;
   std::unique_ptr<ros::AsyncSpinner> view_spinner_;
 
-  std::unique_ptr<image_transport::ImageTransport> transport_;
-  image_transport::Subscriber image_subscriber_;
+  skin::FeedOwner image_owner_;
+  skin::FeedOwner camera_info_owner_;
+  ros::Time last_now_;
+  std::unique_ptr<image_transport::ImageTransport> transport_;  // other than raw
+  image_transport::Subscriber transport_subscriber_;
+  ros::Subscriber image_subscriber_;  // raw
   ros::Subscriber camera_info_subscriber_;
   ros::Publisher homography_publisher_;
   ros::Publisher task_error_publisher_;

@@ -9,8 +9,8 @@ namespace laparoscope_servo::nodelets {
 
 skin::TrackerRequest::Answer Tracker::ask(const skin::TrackerRequest::Question& question) {
   std::ostringstream timeout;
-  timeout << "no image came on " << image_subscriber_.getTopic() << " within " << session_->parameters().select_timeout
-          << " s (parameter select_timeout)";
+  timeout << "no image came on " << getNodeHandle().resolveName("image") << " within "
+          << session_->parameters().select_timeout << " s (parameter select_timeout)";
   return request_.ask(question, session_->parameters().select_timeout, timeout.str());
 }
 

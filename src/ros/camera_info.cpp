@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <sstream>
 #include <stdexcept>
+#include <tuple>
 
 namespace laparoscope_servo::skin {
 
@@ -21,12 +22,73 @@ bool same(const geometry::PinholeCamera& a, const geometry::PinholeCamera& b) {
 }
 
 // Binning of 0 means 1, as does a region of interest of 0 x 0 the whole image.
-cv::Size imageSize(const sensor_msgs::CameraInfo& info) {
-  const unsigned binning_x = std::max(1u, info.binning_x);
-  const unsigned binning_y = std::max(1u, info.binning_y);
-  const unsigned width = info.roi.width > 0 ? info.roi.width : info.width;
-  const unsigned height = info.roi.height > 0 ? info.roi.height : info.height;
-  return {static_cast<int>(width / binning_x), static_cast<int>(height / binning_y)};
+struct Axis {
+  const char* name;
+  std::uint64_t sensor;  // px; 0: many drivers do not say
+  std::uint64_t offset;
+  std::uint64_t region;  // of the driver, on the sensor; 0: all of it
+  std::uint64_t binning;
+  std::uint64_t image;
+  double focal_length;
+  double centre;
+};
+
+std::string pair(std::uint64_t x, std::uint64_t y) {
+  return std::to_string(x) + "x" + std::to_string(y);
+}
+
+void checkRegion(const Axis& axis) {
+  std::ostringstream message;
+  if (axis.offset > 0 && axis.region == 0) {
+    message << "camera_info cannot be used: its roi begins at " << axis.name << " = " << axis.offset
+            << " and has no size, expected one, or an offset of 0";
+  } else if (axis.sensor > 0 && axis.offset + axis.region > axis.sensor) {
+    message << "camera_info cannot be used: its roi ends at " << axis.name << " = " << axis.offset + axis.region
+            << ", the sensor has " << axis.sensor << " px";
+  }
+  if (!message.str().empty()) throw std::invalid_argument(message.str());
+}
+
+// Of the part of the sensor that is known: all of it, or what the image shows.
+std::uint64_t sensorOf(const Axis& axis) {
+  return axis.sensor > 0 ? axis.sensor : axis.offset + axis.image * axis.binning;
+}
+
+// A lens of 170 degrees has a focal length of 0.04 widths, one of 0.6 degrees 100. Its centre may lie beside the sensor
+// where the image was shifted, but not by more than half of it.
+void checkCamera(const Axis& axis, const char* matrix) {
+  constexpr double kShortest = 0.04;
+  constexpr double kLongest = 100.0;
+  constexpr double kBeside = 0.5;
+  const auto size = static_cast<double>(sensorOf(axis));
+  std::ostringstream message;
+  message << "camera_info cannot be used: " << matrix << ": ";
+  if (!(axis.focal_length >= kShortest * size && axis.focal_length <= kLongest * size)) {
+    message << "f" << axis.name << " = " << axis.focal_length << ", expected a focal length of " << kShortest * size
+            << " to " << kLongest * size << " px for a sensor of " << size << " px";
+  } else if (!(axis.centre >= -kBeside * size && axis.centre <= (1.0 + kBeside) * size)) {
+    message << "c" << axis.name << " = " << axis.centre << ", expected a principal point from " << -kBeside * size
+            << " to " << (1.0 + kBeside) * size << " px for a sensor of " << size << " px";
+  } else {
+    return;
+  }
+  throw std::invalid_argument(message.str());
+}
+
+// What rectifying does to the focal length is less than this; matrices of two calibrations, or of two sizes of the
+// image, differ by more.
+void checkAgreement(const sensor_msgs::CameraInfo& info) {
+  constexpr double kMostRatio = 2.5;
+  for (const auto& [of_k, of_p, name] :
+       {std::make_tuple(info.K[0], info.P[0], "fx"), std::make_tuple(info.K[4], info.P[5], "fy")}) {
+    if (of_k == 0.0 || of_p == 0.0) continue;  // a driver that gives one of the two
+    const double ratio = of_p / of_k;
+    if (ratio >= 1.0 / kMostRatio && ratio <= kMostRatio) continue;
+    std::ostringstream message;
+    message << "camera_info cannot be used: " << name << " is " << of_k << " in K, but " << of_p
+            << " in P: they are not of one calibration";
+    throw std::invalid_argument(message.str());
+  }
 }
 
 bool allZero(const std::vector<double>& values) {
@@ -73,20 +135,41 @@ geometry::PinholeCamera cameraFromInfo(const sensor_msgs::CameraInfo& info, Imag
   const std::string error = camera.error();
   if (!error.empty())
     throw std::invalid_argument(std::string("camera_info cannot be used: ") + (raw ? "K: " : "P: ") + error);
-  // Many drivers leave the sizes at 0: then nothing can be compared.
-  const cv::Size described = imageSize(info);
-  if (info.width > 0 && info.height > 0 && described != size) {
-    std::ostringstream message;
-    message << "camera_info is for images of " << described.width << "x" << described.height << ", the image has "
-            << size.width << "x" << size.height;
-    throw std::invalid_argument(message.str());
+  // Many drivers leave the sizes at 0: then nothing can be compared but what they do say.
+  const bool has_size = info.width > 0 && info.height > 0;
+  Axis x{"x",
+         has_size ? info.width : 0,
+         info.roi.x_offset,
+         info.roi.width,
+         std::max(1u, info.binning_x),
+         static_cast<std::uint64_t>(size.width),
+         camera.fx,
+         camera.cx};
+  Axis y{"y",
+         has_size ? info.height : 0,
+         info.roi.y_offset,
+         info.roi.height,
+         std::max(1u, info.binning_y),
+         static_cast<std::uint64_t>(size.height),
+         camera.fy,
+         camera.cy};
+  for (const Axis& axis : {x, y}) checkRegion(axis);
+  const bool has_region = x.region > 0 && y.region > 0;
+  if (has_size || has_region) {
+    const std::uint64_t width = (x.region > 0 ? x.region : x.sensor) / x.binning;
+    const std::uint64_t height = (y.region > 0 ? y.region : y.sensor) / y.binning;
+    if (width != x.image || height != y.image) {
+      std::string message = "camera_info is for images of " + pair(width, height);
+      if (x.binning > 1 || y.binning > 1) message += " (binning " + pair(x.binning, y.binning) + ")";
+      throw std::invalid_argument(message + ", the image has " + pair(x.image, y.image));
+    }
   }
-  const double binning_x = std::max(1u, info.binning_x);
-  const double binning_y = std::max(1u, info.binning_y);
-  camera.fx /= binning_x;
-  camera.fy /= binning_y;
-  camera.cx = (camera.cx - info.roi.x_offset) / binning_x;
-  camera.cy = (camera.cy - info.roi.y_offset) / binning_y;
+  for (const Axis& axis : {x, y}) checkCamera(axis, raw ? "K" : "P");
+  checkAgreement(info);
+  camera.fx /= static_cast<double>(x.binning);
+  camera.fy /= static_cast<double>(y.binning);
+  camera.cx = (camera.cx - static_cast<double>(x.offset)) / static_cast<double>(x.binning);
+  camera.cy = (camera.cy - static_cast<double>(y.offset)) / static_cast<double>(y.binning);
   return camera;
 }
 

@@ -3,6 +3,8 @@
 #include <diagnostic_msgs/DiagnosticStatus.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 
 namespace laparoscope_servo::skin {
 
@@ -39,6 +41,12 @@ void TrackerDiagnostics::processed(double now, const Processed& processed, bool 
   ++window_.images;
   window_.total_time += processed.processing_time;
   window_.longest_time = std::max(window_.longest_time, processed.processing_time);
+  times_.add(now, processed.processing_time);
+  countDropped(now, processed.period);
+  if (processed.repeats.whole > 0) {
+    ++repeated_;
+    recent_repeated_.add(now, 1.0);
+  }
   if (processed.motion_wanted) {
     ++window_.motion_wanted;
     if (processed.motion_error.empty()) ++window_.motion_given;
@@ -55,10 +63,39 @@ void TrackerDiagnostics::processed(double now, const Processed& processed, bool 
   rectifies_ = processed.lens != nullptr;
 }
 
-void TrackerDiagnostics::refused(double now, const std::string& error) {
-  ++refused_;
+// A gap in the stamps, against what is usual, is as many images that were lost before they came here, or waited in the
+// queue of one until the next one took their place.
+void TrackerDiagnostics::countDropped(double now, double period) {
+  if (!(period > 0.0)) return;
+  // Only a period that is known by several images tells a gap.
+  if (usual_period_ > 0.0 && period > 1.5 * usual_period_) {
+    const double missing = std::round(period / usual_period_) - 1.0;
+    dropped_ += static_cast<std::uint64_t>(missing);
+    recent_dropped_.add(now, missing);
+  }
+  periods_.add(now, period);
+  constexpr std::size_t kEnough = 10;
+  if (periods_.count(now) >= kEnough) usual_period_ = periods_.percentile(now, 0.5);
+}
+
+void TrackerDiagnostics::answered(double now, double latency) {
+  latencies_.add(now, latency);
+}
+
+void TrackerDiagnostics::refused(double now, const std::string& error, Refusal cause) {
+  ++refused_[static_cast<std::size_t>(cause)];
   last_image_ = now;
   refusal_ = last_refusal_ = error;
+}
+
+std::string TrackerDiagnostics::refusals() const {
+  static const char* const names[] = {"data", "stamp", "size", "sender"};
+  std::string text;
+  for (const Refusal cause : kRefusals) {
+    const auto index = static_cast<std::size_t>(cause);
+    text += (text.empty() ? "" : ", ") + std::string(names[index]) + " " + std::to_string(refused_[index]);
+  }
+  return text;
 }
 
 void TrackerDiagnostics::recallRefused(const std::string& why) {
@@ -85,6 +122,36 @@ void TrackerDiagnostics::summarise(double now, diagnostic_updater::DiagnosticSta
     if (!has_camera_)
       status.mergeSummary(DiagnosticStatus::WARN, "no homography in normalised coordinates: " + camera_error_);
   }
+  const struct {
+    const char* topic;
+    unsigned number;
+    const std::string& complaint;
+  } topics[] = {{"image", publishers_.images, publishers_.image_complaint},
+                {"camera_info", publishers_.camera_infos, publishers_.camera_info_complaint}};
+  for (const auto& topic : topics) {
+    if (topic.number < 2 && topic.complaint.empty()) continue;
+    std::string text = std::to_string(topic.number) + " publishers of " + topic.topic;
+    if (!topic.complaint.empty()) text += ": " + topic.complaint;
+    status.mergeSummary(DiagnosticStatus::WARN, text);
+  }
+}
+
+void TrackerDiagnostics::fillRecent(double now, diagnostic_updater::DiagnosticStatusWrapper& status) {
+  const struct {
+    const char* name;
+    RecentValues& values;
+  } all[] = {{"time per image", times_}, {"latency, stamp to result", latencies_}};
+  for (const auto& each : all) {
+    status.addf(std::string(each.name) + ", 95th percentile [ms]", "%.3f", 1e3 * each.values.percentile(now, 0.95));
+    status.addf(std::string(each.name) + ", 99th percentile [ms]", "%.3f", 1e3 * each.values.percentile(now, 0.99));
+  }
+  status.add("images dropped", dropped_);
+  status.addf("images dropped, last minute", "%.0f", recent_dropped_.sum(now));
+  status.addf("usual period [ms]", "%.3f", 1e3 * usual_period_);
+  status.add("pictures repeated", repeated_);
+  status.addf("pictures repeated, last minute", "%.0f", recent_repeated_.sum(now));
+  status.add("publishers of image", publishers_.images);
+  status.add("publishers of camera_info", publishers_.camera_infos);
 }
 
 std::string TrackerDiagnostics::colourGate() const {
@@ -111,7 +178,9 @@ void TrackerDiagnostics::fill(double now, diagnostic_updater::DiagnosticStatusWr
               window_.images > 0 ? 1e3 * window_.total_time / window_.images : 0.0);
   status.addf("time per image, longest [ms]", "%.3f", 1e3 * window_.longest_time);
   status.add("images processed", images_);
-  status.add("images refused", refused_);
+  fillRecent(now, status);
+  status.add("images refused", std::accumulate(refused_.begin(), refused_.end(), std::uint64_t{0}));
+  status.add("images refused, by cause", refusals());
   status.add("last refusal", last_refusal_);
   status.addf("visible fraction", "%.3f", result_.visible_fraction);
   status.addf("zncc", "%.3f", result_.zncc);

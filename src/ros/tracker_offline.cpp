@@ -12,6 +12,8 @@ namespace laparoscope_servo::skin {
 
 namespace {
 
+constexpr double kAnyGap = 1e6;  // s: a recording has its pauses, and no clock that could be wrong for one image
+
 void refuseToOverwriteInput(const OfflineOptions& options) {
   for (const std::string& output : {options.csv, options.bag, options.overlay}) {
     std::error_code error;
@@ -27,6 +29,17 @@ Processed process(TrackerSession& session, const SourceImage& image) {
   if (!image.error.empty()) throw SourceError(image.error);
   if (image.message) return session.process(*image.message);
   return session.process(image.decoded, image.header);
+}
+
+std::string cameraNote(const TrackerSession& session, const Processed& last) {
+  if (!last.camera) return "without intrinsics there is G, but no H and no task error: " + last.camera_error;
+  if (!session.ignoresDistortion()) return "";
+  return "the lens distortion in camera_info was not corrected, G and H are off by it: see the parameter rectify";
+}
+
+TrackerParameters withAnyGap(TrackerParameters parameters) {
+  parameters.input.max_gap = kAnyGap;
+  return parameters;
 }
 
 // What is written, as one.
@@ -55,7 +68,7 @@ class Outputs {
 class OfflineRun {
  public:
   OfflineRun(const OfflineOptions& options, const OfflineProgress& progress, const OfflineReport& report)
-      : options_(options), progress_(progress), report_(report), session_(options.parameters) {
+      : options_(options), progress_(progress), report_(report), session_(withAnyGap(options.parameters)) {
     own_camera_info_ = !options.camera_info.empty();
     if (own_camera_info_) session_.setCameraInfo(readCameraInfo(options.camera_info));
     source_ = openImageSource(options.inputs, options.source);
@@ -77,6 +90,7 @@ class OfflineRun {
       summary_.source_error = error.what();
     }
     summary_.notes = source_->notes();
+    if (!camera_note_.empty()) summary_.notes.push_back(camera_note_);
     if (summary_.images > 0) {
       outputs_->keep();
     } else if (!summary_.stopped) {
@@ -109,6 +123,7 @@ class OfflineRun {
     ++summary_.images;
     ++summary_.by_state[static_cast<std::size_t>(processed.result.state)];
     summary_.times.push_back(processed.processing_time);
+    camera_note_ = cameraNote(session_, processed);
     outputs_->write(image, processed);
     progress_(summary_, source_->size());
   }
@@ -120,6 +135,7 @@ class OfflineRun {
   bool own_camera_info_ = false;
   std::unique_ptr<ImageSource> source_;
   std::optional<Outputs> outputs_;
+  std::string camera_note_;  // what the results lack for the camera's sake
   OfflineSummary summary_;
 };
 

@@ -75,6 +75,27 @@ void readTracking(ParameterReader& reader, tracking::TrackerConfig& config) {
   reader.refuseUnknown("tracking");
 }
 
+void readInput(ParameterReader& reader, tracking::InputConfig& config) {
+  reader.read("input/max_repeats", config.max_repeats, 0, 25);
+  reader.read("input/max_still_repeats", config.max_still_repeats, 0, 1000);
+  reader.read("input/moving", config.moving, 0.05, 100.0);
+  reader.read("input/moved", config.moved, 0.1, 100.0);
+  reader.read("input/restart_images", config.restart_images, 2, 100);
+  reader.read("input/loop_step", config.loop_step, 0.1, 1e6);
+  reader.read("input/max_gap", config.max_gap, 0.1, 1e6);
+  reader.read("input/max_ahead", config.max_ahead, 0.0, 10.0);
+  reader.refuseUnknown("input");
+}
+
+void readImage(ParameterReader& reader, const std::string& name, ImageFormat& format) {
+  reader.read("image/bit_depth", format.bit_depth, 0, 16);
+  if (format.bit_depth > 0 && format.bit_depth < 8) {
+    reader.addError(name + "/image/bit_depth is " + std::to_string(format.bit_depth) + ", expected 0, or 8 to 16");
+  }
+  readEnum(reader, "image/yuv_range", {"limited", "full"}, format.yuv_range);
+  reader.refuseUnknown("image");
+}
+
 // A string "x,y,width,height" (empty: none), or a group of four numbers.
 void readRoi(ParameterReader& reader, const std::string& name, std::optional<geometry::Rectangle>& roi) {
   if (!reader.has("roi")) return;
@@ -128,6 +149,8 @@ TrackerParameters readTrackerParameters(const XmlRpc::XmlRpcValue& tree, const s
   TrackerParameters parameters;
   ParameterReader reader(tree, name);
   readTracking(reader, parameters.tracking);
+  readInput(reader, parameters.input);
+  readImage(reader, name, parameters.image);
   readRoi(reader, name, parameters.roi);
   readRobotMotion(reader, name, parameters.robot_motion);
   readViews(reader, parameters.views);

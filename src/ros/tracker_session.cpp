@@ -1,5 +1,6 @@
 #include "laparoscope_servo/ros/tracker_session.h"
 
+#include <algorithm>
 #include <chrono>
 #include <sstream>
 #include <stdexcept>
@@ -24,8 +25,12 @@ TrackerSession::TrackerSession(const TrackerParameters& parameters)
     : parameters_(parameters),
       tracker_(parameters.tracking),
       recall_(parameters.views),
-      intrinsics_(parameters.image_kind) {
-  start_roi_pending_ = start_roi_in_force_ = parameters.roi.has_value();
+      intrinsics_(parameters.image_kind),
+      gate_(parameters.input),
+      feed_(parameters.input) {
+  const std::vector<std::string> errors = tracking::validate(parameters.input);
+  if (!errors.empty()) throw std::invalid_argument("input: " + errors.front());
+  start_roi_pending_ = parameters.roi.has_value();
 }
 
 Processed TrackerSession::process(const sensor_msgs::Image& message,
@@ -33,7 +38,7 @@ Processed TrackerSession::process(const sensor_msgs::Image& message,
   const Stopwatch watch;
   Processed processed;
   processed.header = message.header;
-  processed.image = trackerImage(message);
+  processed.image = trackerImage(message, parameters_.image, parameters_.image.bit_depth == 0 ? &depth_ : nullptr);
   complete(processed, request);
   processed.processing_time = watch.seconds();
   return processed;
@@ -44,29 +49,33 @@ Processed TrackerSession::process(const cv::Mat& decoded, const std_msgs::Header
   const Stopwatch watch;
   Processed processed;
   processed.header = header;
-  processed.image = trackerImage(decoded);
+  processed.image = trackerImage(decoded, parameters_.image, parameters_.image.bit_depth == 0 ? &depth_ : nullptr);
   complete(processed, request);
   processed.processing_time = watch.seconds();
   return processed;
 }
 
 void TrackerSession::complete(Processed& processed, const std::optional<geometry::Rectangle>& request) {
+  passGate(processed, processed.period);
   const ros::Time stamp = processed.header.stamp;
-  const bool jumped_back = last_stamp_ && stamp < *last_stamp_;
-  if (jumped_back && start_roi_in_force_) start_roi_pending_ = true;
-  if (jumped_back) recall_.end("time jumped back");
   const bool had_roi = tracker_.hasRoi();
   bool new_reference = false;
+  robot_step_ = 0.0;
   processed.result = track(processed, request, new_reference);
+  const tracking::TrackResult found = processed.result;
+  watchPicture(processed, before_);
+  before_ = found;
   if (had_roi && !tracker_.hasRoi()) ++epoch_;
   if (!tracker_.hasRoi() && recall_.due() == nullptr) recall_.end(processed.result.reason);
   recall_.see(processed.result);
   processed.recall = recall_.text();
-  if (processed.result.state == tracking::State::kTracking) believed_stamp_ = stamp;
+  if (processed.result.state == tracking::State::kTracking && processed.repeats.region == 0) believed_stamp_ = stamp;
   if (!tracker_.hasRoi()) believed_stamp_.reset();
-  last_stamp_ = stamp;
   image_size_ = processed.image.size();
-  if (processed.result.selected_now) reference_stamp_ = stamp;
+  if (processed.result.selected_now) {
+    reference_stamp_ = stamp;
+    reference_ = Reference{processed.image.clone(), processed.result.roi, stamp};
+  }
   processed.reference_stamp = reference_stamp_;
   intrinsics_.update(processed.image.size(), new_reference || !tracker_.hasRoi());
   processed.camera = intrinsics_.camera();
@@ -79,7 +88,7 @@ void TrackerSession::complete(Processed& processed, const std::optional<geometry
 }
 
 // Pixels of the image that was believed last to those of this one, for a plane parallel to the image.
-std::optional<Eigen::Matrix3d> TrackerSession::motionBefore(Processed& processed) const {
+std::optional<Eigen::Matrix3d> TrackerSession::motionBefore(Processed& processed) {
   const ros::Time& stamp = processed.header.stamp;
   if (!camera_motion_ || !believed_stamp_ || !tracker_.hasRoi() || !(stamp > *believed_stamp_)) return std::nullopt;
   processed.motion_wanted = true;
@@ -96,7 +105,12 @@ std::optional<Eigen::Matrix3d> TrackerSession::motionBefore(Processed& processed
     motion = turn * *motion * turn.inverse();
   }
   try {
-    return geometry::pixelsFromPlane(*motion, Eigen::Vector3d::UnitZ(), parameters_.robot_motion.depth, *camera);
+    const Eigen::Matrix3d pixels =
+        geometry::pixelsFromPlane(*motion, Eigen::Vector3d::UnitZ(), parameters_.robot_motion.depth, *camera);
+    const geometry::Quadrilateral corners = geometry::apply(before_.g, before_.roi.corners());
+    const geometry::Quadrilateral moved = geometry::apply(pixels, corners);
+    for (int k = 0; k < 4; ++k) robot_step_ = std::max(robot_step_, (moved[k] - corners[k]).norm());
+    return pixels;
   } catch (const std::invalid_argument& error) {
     processed.motion_error = error.what();
     return std::nullopt;
@@ -109,23 +123,25 @@ void TrackerSession::updateLens(const cv::Size& size) {
   lens_error_ = lens ? "" : "images cannot be rectified: " + lens_source_.error();
   if (!lens || lens == lens_) return;
   recall_.end("the lens changed");
+  reference_.reset();
   tracker_.setLens(*lens);
   lens_ = lens;
 }
 
 // A view of a recall becomes the reference. True when the camera of this image is taken for that of the reference: for
 // the first view only, so that intrinsics which change on the way take H away.
-bool TrackerSession::takeDueView(double stamp) {
+bool TrackerSession::takeDueView(double time) {
   const RecallStep* step = recall_.due();
   if (step == nullptr || !lens_error_.empty()) return false;
   try {
-    tracker_.recall(step->view.image, step->stamp.toSec(), step->view.roi, stamp);
+    tracker_.recall(step->view.image, step->stamp.toSec(), step->view.roi, time);
   } catch (const std::invalid_argument& error) {
     recall_.end(error.what());
     return false;
   }
   recall_.taken();
-  start_roi_pending_ = start_roi_in_force_ = false;
+  reference_ = Reference{step->view.image, step->view.roi, step->stamp};
+  start_roi_pending_ = false;
   believed_stamp_.reset();
   reference_stamp_ = step->stamp;
   return recall_.first();
@@ -133,16 +149,14 @@ bool TrackerSession::takeDueView(double stamp) {
 
 tracking::TrackResult TrackerSession::track(Processed& processed, const std::optional<geometry::Rectangle>& request,
                                             bool& new_reference) {
-  const double stamp = processed.header.stamp.toSec();
   const bool from_parameters = !request && start_roi_pending_ && recall_.due() == nullptr;
   updateLens(processed.image.size());
   if (!lens_error_.empty()) {
     if (request || from_parameters) processed.selection_error = lens_error_;
   } else if (request || from_parameters) {
     try {
-      const auto result = tracker_.select(processed.image, stamp, request ? *request : *parameters_.roi);
+      const auto result = tracker_.select(processed.image, time_, request ? *request : *parameters_.roi);
       start_roi_pending_ = false;
-      if (request) start_roi_in_force_ = false;
       recall_.end("a region was selected");
       ++epoch_;
       new_reference = true;
@@ -153,8 +167,8 @@ tracking::TrackResult TrackerSession::track(Processed& processed, const std::opt
     }
   }
   const bool had_roi = tracker_.hasRoi();
-  if (takeDueView(stamp)) new_reference = true;
-  tracking::TrackResult result = tracker_.track(processed.image, stamp, motionBefore(processed));
+  if (takeDueView(time_)) new_reference = true;
+  tracking::TrackResult result = tracker_.track(processed.image, time_, motionBefore(processed));
   if (!lens_error_.empty() && !had_roi) result.reason = lens_error_;
   if (!processed.selection_error.empty() && result.state == tracking::State::kIdle) {
     result.reason = "the ROI could not be selected: " + processed.selection_error;
@@ -206,8 +220,9 @@ void TrackerSession::reset() {
   recall_.end("the tracker was reset");
   ++epoch_;
   tracker_.reset();
+  reference_.reset();
   believed_stamp_.reset();
-  start_roi_pending_ = start_roi_in_force_ = false;
+  start_roi_pending_ = false;
 }
 
 }  // namespace laparoscope_servo::skin

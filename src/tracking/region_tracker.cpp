@@ -149,7 +149,7 @@ const TrackResult& RegionTracker::Implementation::track(const cv::Mat& image, do
     why << "time jumped back by " << last_stamp_ - stamp << " s";
   } else if (image.size() != image_size_) {
     why << "image size changed from " << image_size_.width << " x " << image_size_.height << " to " << image.cols
-        << " x " << image.rows << " px";
+        << " x " << image.rows << " px: select the ROI again";
   }
   if (!why.str().empty()) {
     reset();

@@ -31,7 +31,7 @@ struct OfflineSummary {
   std::size_t refused = 0;            // not processed, or lost: each was reported
   std::string source_error;           // the input could not be read to its end: why
   bool stopped = false;               // by OfflineOptions::stopped; without an image there are no outputs
-  std::vector<std::string> notes;     // of the source
+  std::vector<std::string> notes;     // of the source, and what the results lack for the camera's sake
   std::vector<std::size_t> by_state;  // images in each state, indexed by tracking::State
   std::vector<double> times;          // s, of the tracker, per image
 };

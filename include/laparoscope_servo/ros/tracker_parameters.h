@@ -9,7 +9,9 @@
 
 #include "laparoscope_servo/geometry/homography.h"
 #include "laparoscope_servo/ros/camera_info.h"
+#include "laparoscope_servo/ros/image_conversion.h"
 #include "laparoscope_servo/ros/robot_motion.h"
+#include "laparoscope_servo/tracking/input_config.h"
 #include "laparoscope_servo/tracking/tracker_config.h"
 #include "laparoscope_servo/tracking/view_config.h"
 
@@ -17,6 +19,8 @@ namespace laparoscope_servo::skin {
 
 struct TrackerParameters {
   tracking::TrackerConfig tracking;
+  tracking::InputConfig input;
+  ImageFormat image{0, YuvRange::kLimited};  // a bit depth of 0: found out
   std::optional<geometry::Rectangle> roi;  // px, selected in the first image
   ImageKind image_kind = ImageKind::kRaw;
   RobotMotionConfig robot_motion;
@@ -25,7 +29,7 @@ struct TrackerParameters {
 };
 
 // Reads `tree`, called `name` in errors; what is absent keeps its default. Every error is appended to `errors`: the
-// result may be used only when there is none. A parameter under tracking/ or views/ that does not exist is an error,
+// result may be used only when there is none. A parameter under tracking/, input/ or views/ that does not exist is an error,
 // too.
 TrackerParameters readTrackerParameters(const XmlRpc::XmlRpcValue& tree, const std::string& name,
                                         std::vector<std::string>& errors);

@@ -16,9 +16,12 @@
 
 #include "laparoscope_servo/geometry/camera.h"
 #include "laparoscope_servo/geometry/homography.h"
+#include "laparoscope_servo/image/repeat_watch.h"
 #include "laparoscope_servo/ros/camera_info.h"
+#include "laparoscope_servo/ros/image_gate.h"
 #include "laparoscope_servo/ros/tracker_parameters.h"
 #include "laparoscope_servo/ros/view_recall.h"
+#include "laparoscope_servo/tracking/frozen_feed.h"
 #include "laparoscope_servo/tracking/region_tracker.h"
 
 namespace laparoscope_servo::skin {
@@ -41,14 +44,16 @@ struct Processed {
   std::string motion_error;                       // why it was not given
   std::string selection_error;                    // a ROI should have been selected in this image and was not: why
   std::string recall = "none";                    // of a stored view: see ViewRecall::text
+  image::Repeats repeats;                         // of the picture
+  double period = 0.0;                            // s since the image before
   double processing_time = 0.0;                   // s, from the decoded image to the result
 };
 
 class TrackerSession {
  public:
   // `parameters` without errors; throws std::invalid_argument otherwise. The ROI of the parameters is selected in the
-  // first image where that is possible, and again after the time has jumped back (a looped bag), until another one is
-  // selected or reset() is called.
+  // first image where that is possible, until another one is selected or reset() is called. When time begins again (a
+  // looped bag), the region is looked for as it was when it was selected.
   explicit TrackerSession(const TrackerParameters& parameters);
 
   // Holds for the images that follow. While the tracker rectifies, a lens that differs from the one before ends
@@ -62,8 +67,8 @@ class TrackerSession {
   void setCameraMotion(const CameraMotion& motion) { camera_motion_ = motion; }
 
   // Processes the next image; `request` is a ROI to select in it. Throws ImageError or std::invalid_argument when the
-  // image cannot be used: the session then goes on as if it had not come. The message has to outlive the result's
-  // image.
+  // image cannot be used, or is not the next one (see ImageGate): the session then goes on as if it had not come. The
+  // message has to outlive the result's image. A picture that repeats (see FrozenFeed) is never TRACKING.
   Processed process(const sensor_msgs::Image& message,
                     const std::optional<geometry::Rectangle>& request = std::nullopt);
   // The same for an image that OpenCV decoded.
@@ -77,6 +82,9 @@ class TrackerSession {
   // from.
   std::string recall(const RecallRoute& route);
 
+  // ROS time has jumped back: a loop is believed with its first image.
+  void clockJumpedBack() { gate_.clockJumpedBack(); }
+
   // Forgets the ROI, also that of the parameters, and ends a recall.
   void reset();
 
@@ -87,11 +95,21 @@ class TrackerSession {
   const TrackerParameters& parameters() const { return parameters_; }
 
  private:
+  // The image that the region was selected in, for when it has to be found again.
+  struct Reference {
+    cv::Mat image;
+    geometry::Rectangle roi;
+    ros::Time stamp;
+  };
+
+  void passGate(const Processed& processed, double& period);
+  void lookForReference(const std::string& why);
+  void watchPicture(Processed& processed, const tracking::TrackResult& before);
   tracking::TrackResult track(Processed& processed, const std::optional<geometry::Rectangle>& request,
                               bool& new_reference);
-  bool takeDueView(double stamp);
+  bool takeDueView(double time);
   void updateLens(const cv::Size& size);
-  std::optional<Eigen::Matrix3d> motionBefore(Processed& processed) const;
+  std::optional<Eigen::Matrix3d> motionBefore(Processed& processed);
   void complete(Processed& processed, const std::optional<geometry::Rectangle>& request);
 
   TrackerParameters parameters_;
@@ -103,12 +121,19 @@ class TrackerSession {
   std::shared_ptr<const image::Lens> lens_;  // in force
   std::string lens_error_;                   // why the newest camera_info gives none, and nothing can be selected
   bool start_roi_pending_ = false;           // the parameters' ROI waits for its image
-  bool start_roi_in_force_ = false;          // nobody has chosen another one
-  std::optional<ros::Time> last_stamp_;
+  BitDepth depth_;
+  ImageGate gate_;
+  image::RepeatWatch repeats_;
+  tracking::FrozenFeed feed_;
+  double time_offset_ = 0.0;  // s, from stamps to the tracker's time, which never goes back
+  double time_ = 0.0;         // s, the tracker's
+  std::optional<Reference> reference_;
+  tracking::TrackResult before_;  // the tracker's word of the image before
+  double robot_step_ = 0.0;       // px, see FrozenFeed
   cv::Size image_size_;
   ros::Time reference_stamp_;
   CameraMotion camera_motion_;
-  std::optional<ros::Time> believed_stamp_;  // of the last image that the state was TRACKING in
+  std::optional<ros::Time> believed_stamp_;  // of the last new picture that the state was TRACKING in
 };
 
 }  // namespace laparoscope_servo::skin

@@ -96,8 +96,16 @@ class CameraBench {
 
   // Publishes an image and waits for the tracker's answer; null when there is none.
   HomographyConstPtr track(const cv::Mat& image, const ros::Time& stamp) {
-    images_.publish(cv_bridge::CvImage(header(stamp), image.channels() == 1 ? "mono8" : "bgr8", image).toImageMsg());
+    send(image, stamp);
     return homographies.waitFor(stamp);
+  }
+
+  // Publishes an image with noise of one grey level, without which it would be one that repeats.
+  void send(const cv::Mat& image, const ros::Time& stamp) {
+    cv::Mat noise(image.size(), image.type());
+    random_.fill(noise, cv::RNG::UNIFORM, 0, 2);
+    noise += image;
+    images_.publish(cv_bridge::CvImage(header(stamp), image.channels() == 1 ? "mono8" : "bgr8", noise).toImageMsg());
   }
 
   void publishInfo(double focal_length, unsigned width = 0, unsigned height = 0) {
@@ -153,6 +161,7 @@ class CameraBench {
   Inbox<TaskError> task_errors;
 
  private:
+  cv::RNG random_{7};
   ros::Publisher images_;
   ros::Publisher infos_;
 };

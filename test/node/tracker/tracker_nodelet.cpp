@@ -1,5 +1,8 @@
 // The tracker nodelet in a manager that it shares with others.
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <limits>
@@ -51,6 +54,17 @@ class TrackerNodelet : public testing::Test {
       if (!left().track(image, nextStamp())) break;
     }
     return answer.get();
+  }
+
+  // Images until one is not refused.
+  HomographyConstPtr trackUntilAnswered(const cv::Mat& image) {
+    HomographyConstPtr answer;
+    waitFor([&] {
+      const ros::Time stamp = nextStamp();
+      left().send(image, stamp);
+      return waitFor([&] { return (answer = left().homographies.at(stamp)) != nullptr; }, 0.3);
+    });
+    return answer;
   }
 
   // Camera info and images come over two connections: an image after which it has arrived.
@@ -157,13 +171,17 @@ TEST_F(TrackerNodelet, TellsTheClientWhatIsWrongWithTheImages) {
   EXPECT_NE(response.message.find("image_proc"), std::string::npos) << response.message;
 }
 
-TEST_F(TrackerNodelet, ForgetsTheRoiWhenTheImagesChangeTheirSize) {
+TEST_F(TrackerNodelet, RefusesAnOddSizeAndForgetsTheRoiWhenItLasts) {
   ASSERT_TRUE(selectWhileRunning(image_, kRoi).success);
   const cv::Mat other = test_support::texture(cv::Size(160, 120));
-  const HomographyConstPtr homography = left().track(other, nextStamp());
+  left().send(other, nextStamp());
+  EXPECT_EQ(left().track(image_, nextStamp())->state, Homography::TRACKING);
+  for (int k = 0; k < 2; ++k) left().send(other, nextStamp());
+  const HomographyConstPtr homography = trackUntilAnswered(other);
   ASSERT_TRUE(homography);
   EXPECT_EQ(homography->state, Homography::IDLE);
   EXPECT_TRUE(selectWhileRunning(other, {40.0, 30.0, 60.0, 60.0}).success);
+  ASSERT_TRUE(trackUntilAnswered(image_)) << "the size of the other tests";
 }
 
 TEST_F(TrackerNodelet, HasATaskErrorOnlyWithUsableIntrinsics) {
@@ -216,12 +234,86 @@ TEST_F(TrackerNodelet, RefusesIntrinsicsOfAnotherSize) {
   EXPECT_TRUE(trackUntilIntrinsics(false));
 }
 
-TEST_F(TrackerNodelet, ResetsWhenTimeJumpsBack) {
+TEST_F(TrackerNodelet, DropsImagesOfAnotherTimeAndKeepsTheRegion) {
+  left().publishInfo(kFocalLength);
+  ASSERT_TRUE(trackUntilIntrinsics(true));
   ASSERT_TRUE(selectWhileRunning(image_, kRoi).success);
-  EXPECT_EQ(left().track(image_, ros::Time(500, 0))->state, Homography::IDLE);
+  DiagnosticsListener diagnostics(left().node(), "left/tracker");
+  const ros::Time last = nextStamp();
+  ASSERT_TRUE(left().track(image_, last));
+  const cv::Mat other = test_support::texture(cv::Size(320, 240), 5);
+  for (const ros::Time& outlier :
+       {ros::Time(500, 0), last - ros::Duration(0.005), ros::Time(0, 0), ros::Time::now() + ros::Duration(5.0)}) {
+    left().send(other, outlier);
+    const ros::Time stamp = nextStamp();
+    const HomographyConstPtr homography = left().track(image_, stamp);
+    ASSERT_TRUE(homography) << outlier;
+    EXPECT_EQ(homography->state, Homography::TRACKING) << outlier;
+    EXPECT_FALSE(left().homographies.at(outlier)) << "it is answered";
+  }
+  EXPECT_TRUE(waitFor([&] {
+    for (const auto& entry : diagnostics.last().values) {
+      if (entry.key == "images refused, by cause") return entry.value.find("stamp 0") == std::string::npos;
+    }
+    return false;
+  }));
 }
 
-TEST_F(TrackerNodelet, SelectsTheParametersRoiByItselfAndAgainWhenTimeJumpsBack) {
+TEST_F(TrackerNodelet, HasNoTaskErrorOfPicturesThatRepeat) {
+  left().publishInfo(kFocalLength);
+  ASSERT_TRUE(trackUntilIntrinsics(true));
+  ASSERT_TRUE(selectWhileRunning(image_, kRoi).success);
+  DiagnosticsListener diagnostics(left().node(), "left/tracker");
+  sensor_msgs::Image picture = *cv_bridge::CvImage(CameraBench::header(nextStamp()), "bgr8", image_).toImageMsg();
+  for (int k = 0; k < 10; ++k) {
+    picture.header.stamp = nextStamp();
+    left().publish(picture);
+    const HomographyConstPtr homography = left().homographies.waitFor(picture.header.stamp);
+    const TaskErrorConstPtr error = left().task_errors.waitFor(picture.header.stamp);
+    ASSERT_TRUE(homography && error) << k;
+    if (k < 3) continue;
+    EXPECT_EQ(homography->state, Homography::SEARCHING) << k;
+    EXPECT_FALSE(error->valid) << k;
+  }
+  EXPECT_TRUE(diagnostics.waitForMessage(diagnostic_msgs::DiagnosticStatus::WARN, "the picture repeats"))
+      << diagnostics.last();
+  left().track(image_, nextStamp());
+  const ros::Time stamp = nextStamp();
+  EXPECT_EQ(left().track(image_, stamp)->state, Homography::TRACKING);
+  EXPECT_TRUE(left().task_errors.waitFor(stamp)->valid);
+}
+
+// A node of its own sends the second camera's images: within one process nobody could tell them apart.
+TEST_F(TrackerNodelet, RefusesASecondPublisher) {
+  ASSERT_TRUE(selectWhileRunning(image_, kRoi).success);
+  DiagnosticsListener diagnostics(left().node(), "left/tracker");
+  const pid_t other = fork();
+  ASSERT_GE(other, 0);
+  if (other == 0) {
+    execlp("rostopic", "rostopic", "pub", "-r", "25", "/left/image", "sensor_msgs/Image",
+           "{header: {stamp: {secs: 990}}, height: 1, width: 1, encoding: mono8, step: 1, data: [7]}", nullptr);
+    _exit(1);
+  }
+  bool named = false;
+  EXPECT_TRUE(waitFor(
+      [&] {
+        // The other camera's image may take the place of this one in the queue of one.
+        const ros::Time stamp = nextStamp();
+        left().send(image_, stamp);
+        HomographyConstPtr homography;
+        waitFor([&] { return (homography = left().homographies.at(stamp)) != nullptr; }, 0.1);
+        EXPECT_TRUE(!homography || homography->state == Homography::TRACKING);
+        named =
+            named || diagnostics.last().message.find("2 publishers of image: those of /rostopic") != std::string::npos;
+        return named;
+      },
+      20.0))
+      << diagnostics.last();
+  kill(other, SIGINT);
+  waitpid(other, nullptr, 0);
+}
+
+TEST_F(TrackerNodelet, SelectsTheParametersRoiByItselfAndFindsItAgainInALoop) {
   ASSERT_TRUE(right().ready());
   const HomographyConstPtr first = right().track(image_, ros::Time(2000, 7));
   ASSERT_TRUE(first);
@@ -230,15 +322,21 @@ TEST_F(TrackerNodelet, SelectsTheParametersRoiByItselfAndAgainWhenTimeJumpsBack)
   const HomographyConstPtr second = right().track(image_, ros::Time(2001, 0));
   ASSERT_TRUE(second);
   EXPECT_EQ(second->reference_stamp, ros::Time(2000, 7));
-  const HomographyConstPtr looped = right().track(image_, ros::Time(1500, 3));
-  ASSERT_TRUE(looped);
-  EXPECT_EQ(looped->state, Homography::TRACKING);
-  EXPECT_EQ(looped->reference_stamp, ros::Time(1500, 3));
+  HomographyConstPtr looped;
+  ros::Time stamp(1500, 3);
+  EXPECT_TRUE(waitFor([&] {
+    stamp += ros::Duration(0.04);
+    right().send(image_, stamp);
+    waitFor([&] { return (looped = right().homographies.at(stamp)) != nullptr; }, 0.3);
+    return looped && looped->state == Homography::TRACKING;
+  }));
+  EXPECT_EQ(looped->reference_stamp, ros::Time(2000, 7)) << "it is the same region";
 }
 
 TEST_F(TrackerNodelet, TwoInOneManagerDoNotMeet) {
   ASSERT_TRUE(right().ready());
-  ASSERT_TRUE(right().track(image_, ros::Time(3000, 0)));
+  right().send(image_, ros::Time(2999, 960000000));
+  ASSERT_TRUE(right().track(image_, ros::Time(3000, 0))) << "one image confirms a pause";
   EXPECT_EQ(left().track(image_, nextStamp())->state, Homography::IDLE);
   EXPECT_EQ(right().track(image_, ros::Time(3000, 40000000))->state, Homography::TRACKING);
 }

@@ -92,6 +92,56 @@ TEST(CameraFromInfo, FollowsBinningAndTheDriversRegion) {
   EXPECT_EQ(camera.cy, 90.0);
 }
 
+TEST(CameraFromInfo, RefusesARegionThatIsNotOnTheSensorAndBinningThatDoesNotFit) {
+  const std::vector<std::pair<std::function<void(sensor_msgs::CameraInfo&)>, std::string>> cases = {
+      {[](auto& m) { m.roi.x_offset = 400; }, "roi ends at x = 1680, the sensor has 1600 px"},
+      {[](auto& m) { m.roi.y_offset = 4000000000u; }, "roi ends at y = 4000000960"},
+      {[](auto& m) { m.roi.width = 4294967295u; }, "roi ends at x"},
+      {[](auto& m) { m.roi.width = m.roi.height = 0; }, "roi begins at x = 100 and has no size"},
+      {[](auto& m) { m.binning_x = 3; }, "images of 426x480 (binning 3x2), the image has 640x480"},
+      {[](auto& m) { m.binning_x = m.binning_y = 1; }, "images of 1280x960, the image has 640x480"},
+      {[](auto& m) { m.binning_x = 4294967295u; }, "images of 0x480"},
+      {[](auto& m) { m.width = m.height = 0, m.binning_x = 1; }, "images of 1280x480"},
+  };
+  for (const auto& [spoil, expected] : cases) {
+    sensor_msgs::CameraInfo message = info();
+    message.width = 1600;
+    message.height = 1200;
+    message.binning_x = message.binning_y = 2;
+    message.roi.x_offset = 100;
+    message.roi.y_offset = 60;
+    message.roi.width = 1280;
+    message.roi.height = 960;
+    ASSERT_EQ(errorOf(message), "");
+    spoil(message);
+    EXPECT_NE(errorOf(message).find(expected), std::string::npos) << errorOf(message);
+  }
+}
+
+TEST(CameraFromInfo, RefusesNumbersThatNoCameraOfThisSizeHas) {
+  const std::vector<std::pair<std::function<void(sensor_msgs::CameraInfo&)>, std::string>> cases = {
+      {[](auto& m) { m.K[0] = 1.0; }, "K: fx = 1, expected a focal length of 25.6 to 64000 px"},
+      {[](auto& m) { m.K[4] = 1e9; }, "K: fy = 1e+09"},
+      {[](auto& m) { m.K[2] = 2000.0; }, "K: cx = 2000, expected a principal point from -320 to 960 px"},
+      {[](auto& m) { m.K[5] = -500.0; }, "K: cy = -500"},
+      {[](auto& m) { m.P[0] = 1200.0; }, "fx is 400 in K, but 1200 in P"},
+      {[](auto& m) { m.P[5] = -395.0; }, "fy is 410 in K, but -395 in P"},
+      {[](auto& m) { m.P[0] = std::numeric_limits<double>::quiet_NaN(); }, "but nan in P"},
+  };
+  for (const auto& [spoil, expected] : cases) {
+    sensor_msgs::CameraInfo message = info();
+    spoil(message);
+    EXPECT_NE(errorOf(message).find(expected), std::string::npos) << errorOf(message);
+  }
+  sensor_msgs::CameraInfo without_p = info();
+  without_p.P.fill(0.0);
+  EXPECT_EQ(errorOf(without_p), "");
+  sensor_msgs::CameraInfo bad_p = info();
+  bad_p.P[2] = 1e6;
+  EXPECT_EQ(errorOf(bad_p), "") << "K is asked for";
+  EXPECT_NE(errorOf(bad_p, ImageKind::kRectified).find("P: cx = 1e+06"), std::string::npos);
+}
+
 TEST(IntrinsicsTest, SayWhyThereAreNone) {
   Intrinsics intrinsics(ImageKind::kRaw);
   intrinsics.update(kSize, false);

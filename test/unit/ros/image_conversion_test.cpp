@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <opencv2/imgproc.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace laparoscope_servo::skin {
@@ -96,6 +97,138 @@ TEST(ImageConversion, HasTheChannelsOfYuv422InTheirPlaces) {
   const cv::Vec3b pixel = trackerImage(image).at<cv::Vec3b>(0, 0);
   EXPECT_GT(pixel[2], 200);
   EXPECT_LT(pixel[0], 100);
+}
+
+// Of 4:2:0: Y of 4 x 2 pixels, then U and V of two.
+sensor_msgs::Image planes(const std::string& encoding, unsigned padding = 0) {
+  const bool two = encoding.substr(0, 2) == "nv" || encoding.substr(0, 2) == "NV";
+  const bool v_first = encoding == "nv21" || encoding == "NV21" || encoding == "yv12";
+  sensor_msgs::Image image;
+  image.encoding = encoding;
+  image.width = 4;
+  image.height = 2;
+  image.step = 4 + padding;
+  const std::uint8_t u = 90;
+  const std::uint8_t v = 240;
+  for (int row = 0; row < 2; ++row) {
+    image.data.insert(image.data.end(), 4, 100);
+    image.data.insert(image.data.end(), padding, 0xEE);
+  }
+  const std::uint8_t first = v_first ? v : u;
+  const std::uint8_t second = v_first ? u : v;
+  if (two) {
+    image.data.insert(image.data.end(), {first, second, first, second});
+    image.data.insert(image.data.end(), padding, 0xEE);
+  } else {
+    for (const std::uint8_t value : {first, second}) {
+      image.data.insert(image.data.end(), 2, value);
+      image.data.insert(image.data.end(), padding / 2, 0xEE);
+    }
+  }
+  return image;
+}
+
+TEST(ImageConversion, TakesYuvByTheNamesThatDriversUse) {
+  sensor_msgs::Image packed = message("uyvy", {0, 0});
+  packed.data = {90, 100, 240, 100, 90, 100, 240, 100};
+  const cv::Vec3b expected = trackerImage(packed).at<cv::Vec3b>(0, 0);
+  EXPECT_GT(expected[2], 200) << "much V is red";
+  const auto near = [&](const cv::Mat& image, const std::string& name) {
+    for (int column = 0; column < image.cols; ++column) {
+      for (int k = 0; k < 3; ++k) EXPECT_NEAR(image.at<cv::Vec3b>(1, column)[k], expected[k], 1) << name;
+    }
+  };
+  for (const char* name : {"yuv422", "uyvy", "UYVY"}) {
+    packed.encoding = name;
+    near(trackerImage(packed), name);
+  }
+  packed.data = {100, 90, 100, 240, 100, 90, 100, 240};
+  for (const char* name : {"yuv422_yuy2", "yuyv", "YUYV", "yuy2", "YUY2"}) {
+    packed.encoding = name;
+    near(trackerImage(packed), name);
+  }
+  packed.data = {100, 240, 100, 90, 100, 240, 100, 90};
+  packed.encoding = "YVYU";
+  near(trackerImage(packed), "YVYU");
+  for (const char* name : {"nv12", "NV12", "nv21", "NV21", "i420", "I420", "yuv420", "yuv420p", "yv12"}) {
+    for (const unsigned padding : {0u, 6u}) {
+      const cv::Mat image = trackerImage(planes(name, padding));
+      ASSERT_EQ(image.size(), cv::Size(4, 2)) << name;
+      near(image, name);
+    }
+  }
+}
+
+TEST(ImageConversion, RefusesPlanesThatDoNotFit) {
+  for (const char* name : {"nv12", "i420"}) {
+    sensor_msgs::Image image = planes(name);
+    image.data.pop_back();
+    EXPECT_NE(errorOf(image).find("11 bytes of data, expected 12"), std::string::npos) << errorOf(image);
+    image = planes(name);
+    image.height = 1;
+    EXPECT_NE(errorOf(image).find("odd height"), std::string::npos) << errorOf(image);
+    image = planes(name);
+    image.width = 3;
+    EXPECT_NE(errorOf(image).find("odd width"), std::string::npos) << errorOf(image);
+    image = planes(name);
+    image.step = 2;
+    EXPECT_NE(errorOf(image).find("step 2, expected at least 4"), std::string::npos) << errorOf(image);
+  }
+  sensor_msgs::Image odd = planes("i420", 2);
+  odd.step = 5;
+  EXPECT_NE(errorOf(odd).find("even"), std::string::npos) << errorOf(odd);
+}
+
+TEST(ImageConversion, TakesTheFullRangeOfYuvWhereToldSo) {
+  const ImageFormat full{16, YuvRange::kFull};
+  for (const int level : {0, 1, 16, 100, 200, 235, 254, 255}) {
+    const auto y = static_cast<std::uint8_t>(level);
+    sensor_msgs::Image image = message("uyvy", {0, 0});
+    image.data = {128, y, 128, y, 128, y, 128, y};
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(trackerImage(image, full).at<cv::Vec3b>(0, 0)[k], level, 1) << level;
+    image.encoding = "yuyv";
+    image.data = {y, 128, y, 128, y, 128, y, 128};
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(trackerImage(image, full).at<cv::Vec3b>(0, 0)[k], level, 1) << level;
+    sensor_msgs::Image nv12 = planes("nv12");
+    nv12.data = {y, y, y, y, y, y, y, y, 128, 128, 128, 128};
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(trackerImage(nv12, full).at<cv::Vec3b>(1, 3)[k], level, 1) << level;
+  }
+}
+
+TEST(ImageConversion, TakesTheBitsThatAreUsed) {
+  const struct {
+    int depth;
+    unsigned value;
+    int expected;
+  } cases[] = {{8, 255, 255},   {10, 1023, 255},  {10, 512, 128},   {12, 4095, 255},
+               {12, 2048, 128}, {14, 16383, 255}, {16, 65535, 255}, {10, 2000, 255}};
+  for (const auto& test : cases) {
+    const sensor_msgs::Image image =
+        message("mono16", {static_cast<std::uint8_t>(test.value & 0xFF), static_cast<std::uint8_t>(test.value >> 8)});
+    EXPECT_EQ(trackerImage(image, {test.depth, YuvRange::kLimited}).at<std::uint8_t>(0, 0), test.expected)
+        << test.depth << ": " << test.value;
+  }
+}
+
+TEST(BitDepthTest, GrowsToTheLargestValueSeenAndNeverShrinks) {
+  BitDepth depth;
+  depth.see(cv::Mat(8, 8, CV_8UC1, cv::Scalar(255)));
+  EXPECT_EQ(depth.value(), 8);
+  for (const auto& [value, expected] : {std::make_pair(10, 8),
+                                        {255, 8},
+                                        {256, 10},
+                                        {3, 10},
+                                        {1023, 10},
+                                        {1024, 12},
+                                        {4095, 12},
+                                        {9000, 14},
+                                        {65535, 16},
+                                        {0, 16}}) {
+    cv::Mat image(8, 8, CV_16UC3, cv::Scalar::all(0));
+    image.at<cv::Vec3w>(4, 7)[2] = static_cast<std::uint16_t>(value);
+    depth.see(image);
+    EXPECT_EQ(depth.value(), expected) << value;
+  }
 }
 
 TEST(ImageConversion, SharesTheDataWhereNothingHasToBeDone) {

@@ -103,6 +103,78 @@ TEST(TrackerDiagnosticsTest, CountsSinceTheLastCall) {
   EXPECT_EQ(value(third, "rate [Hz]"), "0.00");
 }
 
+TEST(TrackerDiagnosticsTest, CountsDroppedImagesByGapsOfTheStamps) {
+  TrackerDiagnostics diagnostics{tracking::TrackerConfig()};
+  double now = 10.0;
+  const auto image = [&](double period) {
+    Processed next = processed(State::kTracking);
+    next.period = period;
+    diagnostics.processed(now += period, next, false);
+  };
+  for (int k = 0; k < 50; ++k) image(0.04);
+  image(0.08);  // one is missing
+  for (int k = 0; k < 10; ++k) image(0.035 + 0.001 * k);
+  image(0.41);  // nine
+  DiagnosticStatusWrapper status;
+  diagnostics.fill(now, status);
+  EXPECT_EQ(value(status, "images dropped"), "10");
+  EXPECT_EQ(value(status, "images dropped, last minute"), "10");
+  EXPECT_EQ(value(status, "usual period [ms]"), "40.000");
+  DiagnosticStatusWrapper later;
+  diagnostics.fill(now + 61.0, later);
+  EXPECT_EQ(value(later, "images dropped"), "10");
+  EXPECT_EQ(value(later, "images dropped, last minute"), "0");
+}
+
+TEST(TrackerDiagnosticsTest, HasPercentilesOfTheLastMinute) {
+  TrackerDiagnostics diagnostics{tracking::TrackerConfig()};
+  for (int k = 1; k <= 100; ++k) {
+    Processed next = processed(State::kTracking);
+    next.processing_time = 1e-3 * k;
+    diagnostics.processed(10.0 + 0.04 * k, next, false);
+    diagnostics.answered(10.0 + 0.04 * k, 2e-3 * k);
+  }
+  DiagnosticStatusWrapper status;
+  diagnostics.fill(14.0, status);
+  EXPECT_EQ(value(status, "time per image, 95th percentile [ms]"), "95.000");
+  EXPECT_EQ(value(status, "time per image, 99th percentile [ms]"), "99.000");
+  EXPECT_EQ(value(status, "latency, stamp to result, 95th percentile [ms]"), "190.000");
+  EXPECT_EQ(value(status, "latency, stamp to result, 99th percentile [ms]"), "198.000");
+}
+
+TEST(TrackerDiagnosticsTest, CountsRefusalsByCauseAndRepeats) {
+  TrackerDiagnostics diagnostics{tracking::TrackerConfig()};
+  diagnostics.refused(1.0, "odd", Refusal::kSize);
+  diagnostics.refused(1.1, "late", Refusal::kStamp);
+  diagnostics.refused(1.2, "late", Refusal::kStamp);
+  diagnostics.refused(1.3, "other", Refusal::kSender);
+  Processed repeated = processed(State::kSearching, "the picture repeats");
+  repeated.repeats.whole = repeated.repeats.region = 3;
+  diagnostics.processed(1.4, repeated, false);
+  DiagnosticStatusWrapper status;
+  diagnostics.fill(1.5, status);
+  EXPECT_EQ(value(status, "images refused"), "4");
+  EXPECT_EQ(value(status, "images refused, by cause"), "data 0, stamp 2, size 1, sender 1");
+  EXPECT_EQ(value(status, "pictures repeated"), "1");
+  EXPECT_NE(status.message.find("the picture repeats"), std::string::npos) << status.message;
+  EXPECT_EQ(status.level, DiagnosticStatus::WARN);
+}
+
+TEST(TrackerDiagnosticsTest, WarnsOfSeveralPublishers) {
+  TrackerDiagnostics diagnostics{tracking::TrackerConfig()};
+  diagnostics.processed(1.0, processed(State::kTracking), false);
+  diagnostics.setPublishers({1, 1, "", ""});
+  DiagnosticStatusWrapper one;
+  diagnostics.fill(1.5, one);
+  EXPECT_EQ(one.level, DiagnosticStatus::OK);
+  diagnostics.setPublishers({2, 1, "those of /other are refused", ""});
+  DiagnosticStatusWrapper two;
+  diagnostics.fill(1.6, two);
+  EXPECT_EQ(two.level, DiagnosticStatus::WARN);
+  EXPECT_NE(two.message.find("2 publishers of image: those of /other are refused"), std::string::npos) << two.message;
+  EXPECT_EQ(value(two, "publishers of image"), "2");
+}
+
 TEST(TrackerDiagnosticsTest, KeepsTheReasonOfTheLastReset) {
   TrackerDiagnostics diagnostics{tracking::TrackerConfig()};
   diagnostics.processed(1.0, processed(State::kTracking), false);

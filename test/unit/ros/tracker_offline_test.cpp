@@ -115,6 +115,7 @@ TEST_F(TrackerOfflineTest, WritesALineForEveryImage) {
   EXPECT_EQ(table[0].substr(0, 17), "frame,stamp,state");
   EXPECT_EQ(table[1].substr(0, 22), "0,0,1,1,0,0,0,1,0,0,0,");
   EXPECT_EQ(table[3].substr(0, 9), "2,0.08000");
+  EXPECT_NE(summary.camera_note.find("no H"), std::string::npos) << "a folder has no camera_info";
 }
 
 TEST_F(TrackerOfflineTest, GivesTheSameNumbersTwiceAndForBagAndFolder) {
@@ -257,6 +258,7 @@ TEST_F(TrackerOfflineTest, RectifiesByACalibrationFile) {
     writeRawFolder(image::Lens(lens), options_.camera_info);
     const OfflineSummary summary = run();
     EXPECT_EQ(summary.by_state[1], static_cast<std::size_t>(kImages));
+    EXPECT_EQ(summary.camera_note, "");
     const std::vector<std::string> table = lines(options_.csv);
     ASSERT_EQ(table.size(), kImages + 1u);
     const auto motion = test_support::motion(kImages, kRoi, 5.0);
@@ -272,6 +274,13 @@ TEST_F(TrackerOfflineTest, RectifiesByACalibrationFile) {
       }
     }
   }
+}
+
+TEST_F(TrackerOfflineTest, SaysThatDistortionIsNotCorrected) {
+  options_.camera_info = out_.file("scope.yaml");
+  writeRawFolder(image::Lens(test::laparoscope(cv::Size(320, 240), 220.0)), options_.camera_info);
+  options_.parameters.image_kind = ImageKind::kRaw;
+  EXPECT_NE(run().camera_note.find("distortion"), std::string::npos);
 }
 
 TEST_F(TrackerOfflineTest, SaysWhatIsMissingToRectify) {

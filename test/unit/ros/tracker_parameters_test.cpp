@@ -42,6 +42,16 @@ TEST(DefaultFile, EqualsTheDefaultsOfTheStructs) {
   EXPECT_EQ(file.views.min_visible_fraction, code.views.min_visible_fraction);
   EXPECT_EQ(file.views.arrival_centre, code.views.arrival_centre);
   EXPECT_EQ(file.views.arrival_scale, code.views.arrival_scale);
+  EXPECT_EQ(file.image.bit_depth, code.image.bit_depth);
+  EXPECT_EQ(file.image.yuv_range, code.image.yuv_range);
+  EXPECT_EQ(file.input.max_repeats, code.input.max_repeats);
+  EXPECT_EQ(file.input.max_still_repeats, code.input.max_still_repeats);
+  EXPECT_EQ(file.input.moving, code.input.moving);
+  EXPECT_EQ(file.input.moved, code.input.moved);
+  EXPECT_EQ(file.input.restart_images, code.input.restart_images);
+  EXPECT_EQ(file.input.loop_step, code.input.loop_step);
+  EXPECT_EQ(file.input.max_gap, code.input.max_gap);
+  EXPECT_EQ(file.input.max_ahead, code.input.max_ahead);
   const tracking::TrackerConfig& f = file.tracking;
   const tracking::TrackerConfig& c = code.tracking;
   EXPECT_EQ(f.velocity_damping, c.velocity_damping);
@@ -82,6 +92,16 @@ TEST(DefaultFile, NamesEveryParameter) {
                            "views/min_visible_fraction",
                            "views/arrival_centre",
                            "views/arrival_scale",
+                           "image/bit_depth",
+                           "image/yuv_range",
+                           "input/max_repeats",
+                           "input/max_still_repeats",
+                           "input/moving",
+                           "input/moved",
+                           "input/restart_images",
+                           "input/loop_step",
+                           "input/max_gap",
+                           "input/max_ahead",
                            "tracking/velocity_damping",
                            "tracking/min_roi_side",
                            "tracking/min_texture",

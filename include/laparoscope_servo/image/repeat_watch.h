@@ -1,0 +1,51 @@
+// Notices pictures that have been seen before: a grabber that goes on with its last picture, or with the few that its
+// buffers still hold. The noise of a sensor makes every true picture another one, to the last digit.
+//
+// A picture is cut into tiles, and of each tile two fingerprints are kept, of its even and of its odd rows: a picture
+// of which one field stands still stands still. Pixels between the rows that are looked at are not compared: every
+// block of 4 x 4 px, the smallest that a video codec changes, has at least one such row.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <opencv2/core.hpp>
+#include <vector>
+
+namespace laparoscope_servo::image {
+
+// How many pictures in a row, up to this one, were seen before. 0: this one is new.
+struct Repeats {
+  int whole = 0;   // in each of its pixels
+  int region = 0;  // in the region alone; at least `whole`
+};
+
+class RepeatWatch {
+ public:
+  // Pictures that are remembered: more than the buffers of a driver (V4L2's usual number is 4), so that old pictures
+  // which come in turn are found, too.
+  static constexpr int kMemory = 8;
+  static constexpr int kTile = 32;  // px
+
+  // The next picture, of 8 bit, and the region of interest in it [px]; an empty one: none, as if it were new.
+  Repeats see(const cv::Mat& image, const cv::Rect& region);
+  void clear();
+
+ private:
+  struct Print {
+    std::array<std::uint64_t, 2> field{};  // of even, of odd rows
+  };
+  using Prints = std::vector<Print>;  // row by row of tiles
+
+  void take(const cv::Mat& image, Prints& prints) const;
+  bool repeats(const cv::Rect& tiles) const;
+
+  cv::Size size_;
+  int type_ = -1;
+  cv::Size tiles_;
+  std::array<Prints, kMemory + 1> ring_;  // of this picture and those before
+  int newest_ = 0;
+  int known_ = 0;  // pictures before the newest
+  Repeats counts_;
+};
+
+}  // namespace laparoscope_servo::image

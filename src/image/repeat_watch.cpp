@@ -1,0 +1,113 @@
+#include "laparoscope_servo/image/repeat_watch.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace laparoscope_servo::image {
+
+namespace {
+
+// Of every 8 rows one of each field: a quarter of the pixels, and no gap of 4 rows that begins at a multiple of 4.
+constexpr int kPeriod = 8;
+constexpr int kFieldRow[2] = {0, 5};
+
+// Multiplication by an odd number loses nothing, and the shift brings its high bits down: two rows that differ
+// anywhere have the same fingerprint by a chance of 2^-64.
+std::uint64_t mixed(std::uint64_t hash, std::uint64_t word) {
+  hash = (hash ^ word) * 0x9E3779B97F4A7C15ULL;
+  return hash ^ (hash >> 29);
+}
+
+std::uint64_t mixedRow(std::uint64_t hash, const unsigned char* row, int bytes) {
+  // Four sums at once: the processor need not wait for one multiplication after the other.
+  std::uint64_t lanes[4] = {hash, ~hash, hash + 1, hash + 2};
+  int at = 0;
+  for (; at + 32 <= bytes; at += 32) {
+    std::uint64_t words[4];
+    std::memcpy(words, row + at, 32);
+    for (int k = 0; k < 4; ++k) lanes[k] = mixed(lanes[k], words[k]);
+  }
+  for (; at < bytes; at += 8) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, row + at, static_cast<std::size_t>(std::min(8, bytes - at)));
+    lanes[0] = mixed(lanes[0], word);
+  }
+  return mixed(lanes[0] + 3 * lanes[1], lanes[2] + 5 * lanes[3]);
+}
+
+// The tiles that lie in the region; those that touch it where it is too small to hold one.
+cv::Rect tilesOf(const cv::Rect& region, const cv::Size& tiles) {
+  constexpr int kTile = RepeatWatch::kTile;
+  const auto up = [](int value) { return (value + kTile - 1) / kTile; };
+  const cv::Rect all(cv::Point(0, 0), tiles);
+  const cv::Point first(up(region.x), up(region.y));
+  const cv::Point end(region.br().x / kTile, region.br().y / kTile);
+  if (end.x > first.x && end.y > first.y) return cv::Rect(first, end) & all;
+  return cv::Rect(cv::Point(region.x / kTile, region.y / kTile), cv::Point(up(region.br().x), up(region.br().y))) & all;
+}
+
+}  // namespace
+
+Repeats RepeatWatch::see(const cv::Mat& image, const cv::Rect& region) {
+  if (image.size() != size_ || image.type() != type_) {
+    clear();
+    size_ = image.size();
+    type_ = image.type();
+    tiles_ = cv::Size((size_.width + kTile - 1) / kTile, (size_.height + kTile - 1) / kTile);
+  }
+  newest_ = (newest_ + 1) % static_cast<int>(ring_.size());
+  take(image, ring_[static_cast<std::size_t>(newest_)]);
+  const cv::Rect in_image = region & cv::Rect(cv::Point(0, 0), size_);
+  counts_.whole = repeats(cv::Rect(cv::Point(0, 0), tiles_)) ? counts_.whole + 1 : 0;
+  counts_.region = !in_image.empty() && repeats(tilesOf(in_image, tiles_)) ? counts_.region + 1 : 0;
+  counts_.region = std::max(counts_.region, counts_.whole);
+  known_ = std::min(known_ + 1, kMemory);
+  return counts_;
+}
+
+void RepeatWatch::clear() {
+  known_ = 0;
+  counts_ = Repeats();
+}
+
+void RepeatWatch::take(const cv::Mat& image, Prints& prints) const {
+  prints.assign(static_cast<std::size_t>(tiles_.area()), Print());
+  const int pixel = static_cast<int>(image.elemSize());
+  for (int block = 0; block < image.rows; block += kPeriod) {
+    Print* const row_of_tiles = &prints[static_cast<std::size_t>(block / kTile) * tiles_.width];
+    for (int field = 0; field < 2; ++field) {
+      // An image that ends within the block has its last row of that field looked at.
+      int row = block + kFieldRow[field];
+      while (row >= image.rows) row -= 2;
+      if (row < block) continue;
+      const unsigned char* const pixels = image.ptr(row);
+      for (int tile = 0; tile < tiles_.width; ++tile) {
+        std::uint64_t& hash = row_of_tiles[tile].field[static_cast<std::size_t>(field)];
+        const int left = tile * kTile;
+        hash = mixedRow(hash, pixels + left * pixel, std::min(kTile, image.cols - left) * pixel);
+      }
+    }
+  }
+}
+
+bool RepeatWatch::repeats(const cv::Rect& tiles) const {
+  const Prints& now = ring_[static_cast<std::size_t>(newest_)];
+  const int places = static_cast<int>(ring_.size());
+  for (int back = 1; back <= known_; ++back) {
+    const Prints& then = ring_[static_cast<std::size_t>((newest_ - back + places) % places)];
+    bool same[2] = {true, size_.height > 1};
+    for (int y = tiles.y; y < tiles.br().y && (same[0] || same[1]); ++y) {
+      for (int x = tiles.x; x < tiles.br().x; ++x) {
+        const std::size_t tile = static_cast<std::size_t>(y) * tiles_.width + x;
+        for (int field = 0; field < 2; ++field) {
+          same[field] = same[field] && now[tile].field[field] == then[tile].field[field];
+        }
+        if (!same[0] && !same[1]) break;
+      }
+    }
+    if (same[0] || same[1]) return true;
+  }
+  return false;
+}
+
+}  // namespace laparoscope_servo::image

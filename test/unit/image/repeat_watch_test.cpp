@@ -1,0 +1,112 @@
+#include "laparoscope_servo/image/repeat_watch.h"
+
+#include <gtest/gtest.h>
+
+#include <opencv2/core.hpp>
+
+namespace laparoscope_servo::image {
+namespace {
+
+const cv::Size kSize(200, 150);
+const cv::Rect kRegion(70, 40, 90, 70);
+
+class RepeatWatchTest : public testing::Test {
+ protected:
+  cv::Mat noise(int type = CV_8UC3) {
+    cv::Mat image(kSize, type);
+    random_.fill(image, cv::RNG::UNIFORM, 0, 256);
+    return image;
+  }
+
+  cv::RNG random_{5};
+  RepeatWatch watch_;
+};
+
+TEST_F(RepeatWatchTest, CountsPicturesThatRepeatUntilANewOneComes) {
+  const cv::Mat first = noise();
+  EXPECT_EQ(watch_.see(first, kRegion).whole, 0);
+  for (int k = 1; k <= 5; ++k) {
+    EXPECT_EQ(watch_.see(first, kRegion).whole, k);
+  }
+  const Repeats fresh = watch_.see(noise(), kRegion);
+  EXPECT_EQ(fresh.whole, 0);
+  EXPECT_EQ(fresh.region, 0);
+}
+
+TEST_F(RepeatWatchTest, SeesOneGreyLevelInAnyBlockOf4x4) {
+  const cv::Mat first = noise();
+  watch_.see(first, kRegion);
+  for (int v = 0; v + 4 <= kSize.height; v += 4) {
+    for (int u = 0; u + 4 <= kSize.width; u += 4) {
+      cv::Mat other = first.clone();
+      other(cv::Rect(u, v, 4, 4)) ^= cv::Scalar::all(1);
+      RepeatWatch watch;
+      watch.see(first, kRegion);
+      ASSERT_LE(watch.see(other, kRegion).whole, 1);
+      // A block of 4 rows holds a row of one field at least; that the other field alone repeats shows by its own count.
+      cv::Mat both = first.clone();
+      both(cv::Rect(u, v - v % 8, 4, std::min(8, kSize.height - (v - v % 8)))) ^= cv::Scalar::all(1);
+      RepeatWatch strict;
+      strict.see(first, kRegion);
+      ASSERT_EQ(strict.see(both, kRegion).whole, 0) << u << ", " << v;
+    }
+  }
+}
+
+TEST_F(RepeatWatchTest, FindsOldPicturesThatComeInTurn) {
+  for (int period = 2; period <= RepeatWatch::kMemory; ++period) {
+    RepeatWatch watch;
+    std::vector<cv::Mat> buffers;
+    for (int k = 0; k < period; ++k) buffers.push_back(noise());
+    for (const cv::Mat& buffer : buffers) EXPECT_EQ(watch.see(buffer, kRegion).whole, 0);
+    int count = 0;
+    for (int k = 0; k < 3 * period; ++k) {
+      EXPECT_EQ(watch.see(buffers[static_cast<std::size_t>(k % period)], kRegion).whole, ++count);
+    }
+  }
+}
+
+TEST_F(RepeatWatchTest, FindsARegionThatRepeatsInALivePicture) {
+  cv::Mat image = noise();
+  watch_.see(image, kRegion);
+  for (int k = 1; k <= 4; ++k) {
+    cv::Mat live = noise();
+    image(kRegion).copyTo(live(kRegion));
+    const Repeats repeats = watch_.see(live, kRegion);
+    EXPECT_EQ(repeats.region, k);
+    EXPECT_EQ(repeats.whole, 0);
+  }
+  EXPECT_EQ(watch_.see(noise(), kRegion).region, 0);
+}
+
+TEST_F(RepeatWatchTest, FindsAFieldThatStandsStill) {
+  const cv::Mat first = noise();
+  for (const int still : {0, 1}) {
+    RepeatWatch watch;
+    watch.see(first, kRegion);
+    cv::Mat woven = noise();
+    for (int row = still; row < kSize.height; row += 2) first.row(row).copyTo(woven.row(row));
+    EXPECT_EQ(watch.see(woven, kRegion).whole, 1) << still;
+  }
+}
+
+TEST_F(RepeatWatchTest, TakesAnyPlaceOfTheRegionAndAnySizeAndType) {
+  const cv::Mat grey = noise(CV_8UC1);
+  for (const cv::Rect& region : {cv::Rect(), cv::Rect(-50, -50, 60, 60), cv::Rect(190, 140, 100, 100),
+                                 cv::Rect(1000, 1000, 5, 5), cv::Rect(33, 33, 3, 3)}) {
+    RepeatWatch watch;
+    watch.see(grey, region);
+    EXPECT_EQ(watch.see(grey, region).region, 1);
+  }
+  const cv::Mat pixel(1, 1, CV_8UC3, cv::Scalar(1, 2, 3));
+  RepeatWatch watch;
+  watch.see(pixel, kRegion);
+  EXPECT_EQ(watch.see(pixel, kRegion).whole, 1);
+  EXPECT_EQ(watch.see(grey, kRegion).whole, 0) << "another size";
+  cv::Mat part = noise()(kRegion);  // rows with gaps between them
+  EXPECT_EQ(watch.see(part, kRegion).whole, 0);
+  EXPECT_EQ(watch.see(part.clone(), kRegion).whole, 1);
+}
+
+}  // namespace
+}  // namespace laparoscope_servo::image
