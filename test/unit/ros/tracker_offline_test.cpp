@@ -115,7 +115,8 @@ TEST_F(TrackerOfflineTest, WritesALineForEveryImage) {
   EXPECT_EQ(table[0].substr(0, 17), "frame,stamp,state");
   EXPECT_EQ(table[1].substr(0, 22), "0,0,1,1,0,0,0,1,0,0,0,");
   EXPECT_EQ(table[3].substr(0, 9), "2,0.08000");
-  EXPECT_NE(summary.camera_note.find("no H"), std::string::npos) << "a folder has no camera_info";
+  ASSERT_EQ(summary.notes.size(), 1u);
+  EXPECT_NE(summary.notes[0].find("no H"), std::string::npos) << "a folder has no camera_info";
 }
 
 TEST_F(TrackerOfflineTest, GivesTheSameNumbersTwiceAndForBagAndFolder) {
@@ -258,7 +259,7 @@ TEST_F(TrackerOfflineTest, RectifiesByACalibrationFile) {
     writeRawFolder(image::Lens(lens), options_.camera_info);
     const OfflineSummary summary = run();
     EXPECT_EQ(summary.by_state[1], static_cast<std::size_t>(kImages));
-    EXPECT_EQ(summary.camera_note, "");
+    EXPECT_TRUE(summary.notes.empty());
     const std::vector<std::string> table = lines(options_.csv);
     ASSERT_EQ(table.size(), kImages + 1u);
     const auto motion = test_support::motion(kImages, kRoi, 5.0);
@@ -280,7 +281,9 @@ TEST_F(TrackerOfflineTest, SaysThatDistortionIsNotCorrected) {
   options_.camera_info = out_.file("scope.yaml");
   writeRawFolder(image::Lens(test::laparoscope(cv::Size(320, 240), 220.0)), options_.camera_info);
   options_.parameters.image_kind = ImageKind::kRaw;
-  EXPECT_NE(run().camera_note.find("distortion"), std::string::npos);
+  const OfflineSummary summary = run();
+  ASSERT_EQ(summary.notes.size(), 1u);
+  EXPECT_NE(summary.notes[0].find("distortion"), std::string::npos);
 }
 
 TEST_F(TrackerOfflineTest, SaysWhatIsMissingToRectify) {
