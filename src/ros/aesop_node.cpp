@@ -16,7 +16,7 @@ namespace laparoscope_servo::skin {
 namespace {
 
 constexpr std::chrono::milliseconds kPeriod{5};
-constexpr std::uint32_t kQueue = 100;      // commands
+constexpr std::uint32_t kQueue = 1000;     // commands: 0.1 s of a stranger that floods the topic with 10 kHz
 constexpr double kReportPause = 1.0;       // s, between two warnings of a command that was refused
 constexpr double kStrangerPause = 10.0;    // s, between two of a publisher that is not the master
 constexpr double kDiagnosticsPause = 1.0;  // s
@@ -37,7 +37,7 @@ AesopNode::AesopNode(const ros::NodeHandle& node, const ros::NodeHandle& private
       tip_R_optical_(servo::obliqueOptics(parameters.optics_angle, parameters.optics_roll).transpose()),
       driver_(parameters.driver),
       reconnect_(parameters.reconnect),
-      master_(node.resolveName(parameters.publisher, false)),
+      master_(node.resolveName(parameters.publisher, false), "commands", "command/publisher"),
       callers_(resolved(node, parameters.service_callers)),
       calibration_(private_node, parameters, callers_, service_errors_, driver_),
       reported_(parameters.port, aesop::lineWarning(parameters.driver.session, parameters.baud_rate)),
@@ -113,6 +113,7 @@ void AesopNode::step() {
   if (!driver_.session().isEnabled()) master_.release();
   watchRecording();
   publishStatus();
+  countEnables();
   publishState(now);
   if (now >= next_diagnostics_) {
     next_diagnostics_ = now + kDiagnosticsPause;
@@ -183,14 +184,14 @@ void AesopNode::onCommand(const ros::MessageEvent<ScopeVelocity const>& event) {
   const double now = steadyNow();
   const ScopeVelocity& message = *event.getConstMessage();
   switch (master_.judge(event.getPublisherName(), event.getConnectionHeaderPtr(), now)) {
-    case CommandMaster::Verdict::kStranger:
+    case InputOwner::Verdict::kStranger:
       return report(master_.complaint(now), next_stranger_, kStrangerPause, now);
-    case CommandMaster::Verdict::kNewConnection:
+    case InputOwner::Verdict::kNewConnection:
       // Restarted, replaced by another process of its name, or joined by one: which of them shall move the arm is for
       // somebody to say who sees it stand.
       driver_.pause(master_.name() + " has connected anew; resume when it may command the arm");
       return;
-    case CommandMaster::Verdict::kMaster:
+    case InputOwner::Verdict::kOwner:
       break;
   }
   const aesop::ScopeVelocity velocity = fromMessage(message);
@@ -227,6 +228,14 @@ aesop::OperatingState AesopNode::state(double now) const {
   return state;
 }
 
+// A pause is none: who relies on the arm goes on after it.
+void AesopNode::countEnables() {
+  const aesop::OperatingMode mode = driver_.session().state().mode;
+  const bool on = mode == aesop::OperatingMode::kEnabled || mode == aesop::OperatingMode::kPaused;
+  if (on && !was_on_) ++enables_;
+  was_on_ = on;
+}
+
 void AesopNode::publishState(double now) {
   const aesop::OperatingState state = this->state(now);
   // Repeated, so that who relies on it notices when it ends.
@@ -237,7 +246,9 @@ void AesopNode::publishState(double now) {
   }
   last_state_ = state;
   state_published_ = true;
-  state_publisher_.publish(toMessage(state, ros::Time::now()));
+  OperatingState message = toMessage(state, ros::Time::now());
+  message.enables = enables_;
+  state_publisher_.publish(message);
 }
 
 void AesopNode::publishStaticFrames() {

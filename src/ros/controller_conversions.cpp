@@ -92,6 +92,8 @@ servo::RobotFacts fromMessage(const OperatingState& message) {
   servo::RobotFacts robot;
   robot.problem.clear();
   robot.enabled = message.state == "ENABLED";
+  robot.paused = message.state == "PAUSED";
+  robot.enables = message.enables;
   return robot;
 }
 
@@ -118,6 +120,7 @@ ControllerState toMessage(const servo::ControllerOutput& output) {
   message.state = name(output.state);
   message.engaged = output.engaged();
   message.reason = output.reason;
+  message.caution = output.caution;
   return message;
 }
 

@@ -13,12 +13,7 @@ namespace laparoscope_servo::skin {
 
 namespace {
 
-// s. A correction of the machine's clock by less is no jump.
-constexpr double kClockCorrection = 0.1;
-
-constexpr double kWarningPeriod = 5.0;  // s
-// s. A velocity that was measured so long before, or after, has no place among the commands.
-constexpr double kOldestReport = 0.3;
+constexpr double kCautionPause = 1.0;  // s, between two of them on the screen
 
 const char* doing(servo::Task task) {
   return task == servo::Task::kManual ? "is driven by hand" : "follows the region of interest";
@@ -32,28 +27,15 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
       future_transforms_(config.control.safety.max_depth_age),
       last_now_(ros::Time::now()),
       tf_listener_(tf_),
+      inputs_(node, private_node, config, tf_,
+              {[this] { checkTime(); }, [this](const std::string& sender) { onStop(sender); }}),
       diagnostics_(node, private_node),
       command_publisher_(node.advertise<ScopeVelocity>("servo_command", 1)),
       state_publisher_(private_node.advertise<ControllerState>("state", 1, true)) {
   diagnostics_.setHardwareID("none");
   diagnostics_.add("control", this, &ControllerNode::report);
   publish(controller_.update(input()));
-  // Only the newest message counts, and it must not wait for a full packet.
-  const ros::TransportHints at_once = ros::TransportHints().tcpNoDelay();
-  task_error_subscriber_ = node.subscribe("task_error", 1, &ControllerNode::onTaskError, this, at_once);
-  if (config_.control.safety.robot_required) {
-    operating_state_subscriber_ =
-        node.subscribe("operating_state", 1, &ControllerNode::onOperatingState, this, at_once);
-  }
-  if (config_.control.safety.dead_man_required) {
-    dead_man_subscriber_ = node.subscribe("dead_man", 1, &ControllerNode::onDeadMan, this, at_once);
-  }
-  manual_subscriber_ = private_node.subscribe("manual", 1, &ControllerNode::onManual, this, at_once);
   select_task_service_ = private_node.advertiseService("select_task", &ControllerNode::onSelectTask, this);
-  if (config_.control.predictor.measure_delay) {
-    measured_velocity_subscriber_ =
-        node.subscribe("measured_cv", 1, &ControllerNode::onMeasuredVelocity, this, at_once);
-  }
   engage_service_ = private_node.advertiseService("engage", &ControllerNode::onEngage, this);
   tick_timer_ =
       node.createSteadyTimer(ros::WallDuration(1.0 / config_.rate), [this](const ros::SteadyTimerEvent&) { onTick(); });
@@ -67,69 +49,29 @@ void ControllerNode::stop() {
   publish(controller_.update(input()));
 }
 
-void ControllerNode::onTaskError(const TaskError& message) {
-  checkTime();
-  const StampWatch::Arrival arrival = task_error_watch_.arrived(message.header.stamp, steadyNow());
-  if (arrival == StampWatch::Arrival::kRepeated) return;
-  const bool counts = controller_.task() == servo::Task::kHoldView;
-  if (arrival == StampWatch::Arrival::kBack && counts) clock_jump_ = "stamps of the task error jumped back";
-  task_error_ = fromMessage(message);
-  // Once for each image: the two clocks need not agree on it later.
-  task_error_.image_time = steadyNow() - task_error_watch_.stampAge(ros::Time::now());
-}
-
-// A message without a stamp counts from when it came: whoever sends it repeats it.
-void ControllerNode::onOperatingState(const OperatingState& message) {
-  robot_ = fromMessage(message);
-  robot_arrival_ = steadyNow();
-}
-
-void ControllerNode::onDeadMan(const std_msgs::Bool& message) {
-  dead_man_.pressed = message.data != 0;
-  dead_man_arrival_ = steadyNow();
-}
-
-void ControllerNode::onManual(const ScopeVelocity& message) {
-  manual_ = message;
-  manual_arrival_ = steadyNow();
-  if (!servoVelocity(message).vector().allFinite()) {
-    ROS_WARN_STREAM_THROTTLE(kWarningPeriod, "The manual command counts as zero: pan "
-                                                 << message.pan << ", tilt " << message.tilt << ", spin "
-                                                 << message.spin << ", insertion " << message.insertion
-                                                 << ", expected finite numbers.");
-  }
-}
-
-// Only the delay is measured with it: what is missing or wrong here is left out.
-void ControllerNode::onMeasuredVelocity(const geometry_msgs::TwistStamped& message) {
-  const double age = (ros::Time::now() - message.header.stamp).toSec();
-  if (message.header.stamp.isZero() || !(age > -kClockCorrection && age < kOldestReport)) return;
-  try {
-    const auto rotation = tf_.lookupTransform(config_.shaft, message.header.frame_id, ros::Time(0)).transform.rotation;
-    robot_report_.velocity =
-        fromTwist(message.twist, Eigen::Quaterniond(rotation.w, rotation.x, rotation.y, rotation.z).normalized());
-  } catch (const tf2::TransformException&) {
-    return;
-  }
-  robot_report_.present = true;
-  robot_report_arrival_ = steadyNow() - age;
+// A fault stays, it is for somebody to look at.
+void ControllerNode::onStop(const std::string& sender) {
+  if (!controller_.engaged()) return;
+  controller_.disengage("stopped by " + sender);
+  onTick();
 }
 
 void ControllerNode::onTick() {
   checkTime();
   last_input_ = input();
   clock_jump_.clear();
+  inputs_.taken();
   publish(controller_.update(last_input_));
+  inputs_.know(controller_.engaged(), controller_.task());
 }
 
 // A looped bag, a restarted simulation: nothing that was known holds, and nobody expects the arm to go on.
 void ControllerNode::checkTime() {
   const ros::Time now = ros::Time::now();
-  const bool back = (last_now_ - now).toSec() > kClockCorrection;
+  const bool back = (last_now_ - now).toSec() > config_.control.safety.max_clock_difference;
   last_now_ = now;
   if (!back) return;
-  task_error_ = servo::TaskErrorInput();
-  task_error_watch_.clear();
+  inputs_.forgetStamps();
   depth_watch_.clear();
   tf_.clear();
   clock_jump_ = "ROS time jumped back";
@@ -142,29 +84,8 @@ servo::ControllerInput ControllerNode::input() {
   // Poses are counted in this frame, and d2 from it.
   if (insertion_point_watch_.moved(tf_, config_.insertion_point)) clock_jump_ = "the insertion point is another one";
   input.clock_jump = clock_jump_;
-  input.robot = robot_;
-  input.robot.age = steady_now - robot_arrival_;
-  input.dead_man = dead_man_;
-  input.dead_man.age = steady_now - dead_man_arrival_;
-  input.manual.velocity = servoVelocity(manual_);
-  input.manual.age = steady_now - manual_arrival_;
-  // Sliders and command lines set no stamp. One that is set tells what waited on its way.
-  if (!manual_.header.stamp.isZero()) {
-    input.manual.age = std::max(input.manual.age, (ros::Time::now() - manual_.header.stamp).toSec());
-  }
-  input.task_error = task_error_;
-  if (!task_error_watch_.empty()) {
-    const ros::Time now = ros::Time::now();
-    input.task_error.age = task_error_watch_.silence(steady_now);
-    input.task_error.image_age = task_error_watch_.stampAge(now);
-    if (task_error_watch_.isAhead(now, config_.control.safety.max_task_error_age)) {
-      input.task_error.problem = "task error is stamped in the future, compare the clocks of the machines";
-    }
-  }
+  inputs_.fill(input, steady_now);
   input.depth = depth(steady_now);
-  input.robot_report = robot_report_;
-  input.robot_report.age = steady_now - robot_report_arrival_;
-  robot_report_.present = false;
   return input;
 }
 
@@ -203,10 +124,14 @@ void ControllerNode::publish(const servo::ControllerOutput& output) {
   command_publisher_.publish(command);
   const bool changed =
       output.state != last_output_.state || output.reason != last_output_.reason || output.task != last_output_.task;
+  const bool same_caution = output.caution == last_output_.caution;
   const servo::ControllerState before = last_output_.state;
   last_output_ = output;
-  if (!changed && state_published_) return;
+  if (changed) said_caution_.clear();
+  if (!changed) warn(output.caution);
+  if (!changed && same_caution && state_published_) return;
   publishState(output);
+  if (!changed) return;
   if (output.state == servo::ControllerState::kServo) {
     ROS_INFO("The scope %s.", doing(output.task));
   } else if (output.state == servo::ControllerState::kFault) {
@@ -214,6 +139,13 @@ void ControllerNode::publish(const servo::ControllerOutput& output) {
   } else if (before != servo::ControllerState::kIdle || output.engaged()) {
     ROS_WARN("The scope stands still: %s.", output.reason.c_str());
   }
+}
+
+void ControllerNode::warn(const std::string& caution) {
+  if (caution == said_caution_ || steadyNow() < next_caution_) return;
+  said_caution_ = caution;
+  next_caution_ = steadyNow() + kCautionPause;
+  if (!caution.empty()) ROS_WARN("The scope: %s.", caution.c_str());
 }
 
 void ControllerNode::publishState(const servo::ControllerOutput& output) {
@@ -236,6 +168,7 @@ void ControllerNode::report(diagnostic_updater::DiagnosticStatusWrapper& status)
     status.summary(is_bad ? DiagnosticStatus::WARN : DiagnosticStatus::OK, state.state + ": " + state.reason);
     if (last_output_.state == State::kFault) status.level = DiagnosticStatus::ERROR;
   }
+  inputs_.describe(status);
   status.add("task", state.task);
   status.add("state", state.state);
   status.add("reason", state.reason);

@@ -14,6 +14,7 @@ bool ControllerNode::onEngage(std_srvs::SetBool::Request& request, std_srvs::Set
     response.success = true;
     response.message = "was engaged already, " + toMessage(last_output_).state + ": " + last_output_.reason;
   } else {
+    inputs_.engaging();
     const std::string problem = controller_.engage(input());
     response.success = problem.empty();
     response.message = problem.empty() ? "engaged" : "not engaged: " + problem;

@@ -1,5 +1,7 @@
 #include "laparoscope_servo/ros/controller_parameters.h"
 
+#include <ros/names.h>
+
 #include <limits>
 
 namespace laparoscope_servo::skin {
@@ -83,6 +85,10 @@ void readSafety(ParameterReader& reader, servo::SafetyConfig& safety) {
   reader.read("safety/robot_required", safety.robot_required);
   readNumber(reader, "safety/max_robot_state_age", safety.max_robot_state_age);
   readNumber(reader, "safety/max_manual_age", safety.max_manual_age);
+  readNumber(reader, "safety/max_manual_repeat", safety.max_manual_repeat);
+  readNumber(reader, "safety/manual_neutral", safety.manual_neutral);
+  reader.read("safety/max_repeated_errors", safety.max_repeated_errors, 1, 100);
+  readNumber(reader, "safety/max_clock_difference", safety.max_clock_difference);
 }
 
 void readFrame(ParameterReader& reader, const std::string& path, std::string& frame) {
@@ -90,6 +96,13 @@ void readFrame(ParameterReader& reader, const std::string& path, std::string& fr
   if (frame.empty() || frame.front() == '/') {
     reader.addError(path + " = '" + frame + "', expected the name of a tf frame, without a leading slash");
   }
+}
+
+void readOwner(ParameterReader& reader, const std::string& path, std::string& name) {
+  reader.read(path, name);
+  std::string why;
+  if (name.empty() || (name[0] != '~' && ros::names::validate(name, why))) return;
+  reader.addError(path + " = '" + name + "', expected the name of a node, e.g. tracker or /tracker, or ''");
 }
 
 }  // namespace
@@ -145,6 +158,10 @@ ControllerNodeConfig controllerNodeConfig(ParameterReader& reader) {
   readFrame(reader, "frames/insertion_point", config.insertion_point);
   readFrame(reader, "frames/camera", config.camera);
   readFrame(reader, "frames/shaft", config.shaft);
+  readOwner(reader, "owners/task_error", config.owners.task_error);
+  readOwner(reader, "owners/operating_state", config.owners.operating_state);
+  readOwner(reader, "owners/manual", config.owners.manual);
+  readOwner(reader, "owners/dead_man", config.owners.dead_man);
   config.control = controllerConfig(reader);
   double diagnostic_period = 1.0;  // read again by diagnostic_updater
   reader.read("diagnostic_period", diagnostic_period, 0.1, 60.0);

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "laparoscope_servo/ros/command_master.h"
+#include "laparoscope_servo/ros/input_owner.h"
 
 namespace laparoscope_servo::skin {
 

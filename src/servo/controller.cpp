@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <stdexcept>
 
 namespace laparoscope_servo::servo {
@@ -15,6 +14,9 @@ ControllerConfig checked(const ControllerConfig& config) {
   if (!text.empty()) throw std::invalid_argument("controller: " + text);
   return config;
 }
+
+// s, beyond the delay, after which a motion shows in the image: the command's acceleration, an image's exposure.
+constexpr double kShows = 0.1;
 
 // Of a tracker that nobody looks at.
 TrackerFacts nothingMissing() {
@@ -37,6 +39,8 @@ Controller::Controller(const ControllerConfig& config)
     : config_(checked(config)),
       servo_(config),
       machine_(config.safety),
+      stick_(config.safety, config.limits.velocity),
+      repeats_(config.safety.max_repeated_errors),
       insertion_point_(config.insertion_point.estimator, priorOf(config.insertion_point)),
       d2_correction_(config.insertion_point.correction_rate) {}
 
@@ -44,6 +48,7 @@ SafetyFacts Controller::facts(const ControllerInput& input) const {
   SafetyFacts facts;
   facts.time = input.time;
   facts.clock_jump = input.clock_jump;
+  facts.ended = input.ended;
   facts.residual = insertion_point_.residualLevel();
   facts.robot = input.robot;
   facts.pose = {input.depth.problem, input.depth.age, d2(input), input.depth.lateral_offset,
@@ -56,7 +61,12 @@ SafetyFacts Controller::facts(const ControllerInput& input) const {
   const TaskErrorInput& task = input.task_error;
   facts.tracker = {task.problem,          task.age,         task.image_age, task.valid, task.region,
                    task.visible_fraction, task.corner_error};
-  if (task.problem.empty() && task.valid && !isFinite(task.error)) facts.tracker.problem = "task error is not finite";
+  if (!task.problem.empty() || !task.valid) return facts;
+  facts.tracker.problem = implausible(task);
+  if (facts.tracker.problem.empty() && repeats_.repeats()) {
+    facts.tracker.problem =
+        "the picture repeats: the task error stays the same to the last digit while the scope moves";
+  }
   return facts;
 }
 
@@ -85,6 +95,7 @@ std::string Controller::engage(const ControllerInput& input) {
   has_time_ = false;  // the pause since the last step is no step
   last_time_ = input.time;
   servo_.reset();
+  stick_.restart();
   return "";
 }
 
@@ -101,6 +112,7 @@ void Controller::select(Task task) {
   if (task == task_) return;
   task_ = task;
   task_changed_ = true;
+  stick_.restart();
   servo_.restart(last_time_);
 }
 
@@ -120,12 +132,15 @@ ControllerOutput Controller::update(const ControllerInput& input) {
     insertion_point_.update(input.time, {tip.translation(), tip.linear().col(2)});
   }
   correctDepth(input);
+  watchRepetition(input.task_error);
   SafetyFacts known = facts(input);
   SafetyOutput safety = machine_.step(known);
   ControllerOutput output;
-  if (safety.state == ControllerState::kServo && !task_changed_) {
+  const bool moves = safety.state == ControllerState::kServo && !task_changed_;
+  const std::string stick = stick_.update(input.manual, moves && task_ == Task::kManual, input.time);
+  if (moves) {
     output.command = task_ == Task::kManual
-                         ? drive(input)
+                         ? drive(input, stick)
                          : servo_.command(servoInput(input), {safety.speed_scale, safety.insertion_allowed});
     known.command_finite = output.command.vector().allFinite();
     if (!known.command_finite) {
@@ -134,25 +149,33 @@ ControllerOutput Controller::update(const ControllerInput& input) {
     }
   }
   if (safety.reset_history) servo_.stop(input.time);
+  const bool noticed = (output.command.vector().cwiseAbs().array() > config_.dead_zone.width.vector().array()).any();
+  if (!noticed) moves_since_.reset();
+  if (noticed && !moves_since_) moves_since_ = input.time;
   last_time_ = input.time;
   has_time_ = true;
   task_changed_ = false;
   output.task = task_;
   output.state = safety.state;
   output.reason = safety.reason;
-  output.caution = safety.caution;
-  if (output.caution.empty() && safety.state == ControllerState::kServo && servo_.atBound()) {
-    output.caution = "the scope is at a bound of its range: depths or cone";
-  }
-  if (output.caution.empty() && safety.state == ControllerState::kServo && servo_.blocked()) {
-    output.caution = "the robot does not do what it is told";
-  }
+  output.caution = caution(safety, stick);
   output.speed_scale = safety.speed_scale;
-  if (safety.state == ControllerState::kServo && task_ == Task::kManual) {
-    const std::string problem = manualProblem(input.manual);
-    if (!problem.empty()) output.caution += (output.caution.empty() ? "" : "; ") + problem;
-  }
   return output;
+}
+
+std::string Controller::caution(const SafetyOutput& safety, const std::string& stick) const {
+  if (safety.state != ControllerState::kServo) return safety.caution;
+  std::string text = safety.caution;
+  if (text.empty() && servo_.atBound()) text = "the scope is at a bound of its range: depths or cone";
+  if (text.empty() && servo_.blocked()) text = "the robot does not do what it is told";
+  if (!stick.empty()) text += (text.empty() ? "" : "; ") + stick;
+  return text;
+}
+
+void Controller::watchRepetition(const TaskErrorInput& task_error) {
+  if (!task_error.problem.empty() || !task_error.valid || !task_error.image_time) return;
+  const bool moves = moves_since_ && *task_error.image_time - *moves_since_ > servo_.delay() + kShows;
+  repeats_.take(*task_error.image_time, task_error.error, moves && task_ == Task::kHoldView);
 }
 
 ServoInput Controller::servoInput(const ControllerInput& input) const {
@@ -168,22 +191,12 @@ ServoInput Controller::servoInput(const ControllerInput& input) const {
   return servo;
 }
 
-ScopeVelocity Controller::drive(const ControllerInput& input) {
-  if (!manualProblem(input.manual).empty()) {
+ScopeVelocity Controller::drive(const ControllerInput& input, const std::string& problem) {
+  if (!problem.empty()) {
     servo_.stop(input.time);
     return ScopeVelocity();
   }
   return servo_.drive(servoInput(input), input.manual.velocity);
-}
-
-// Empty when it can be used.
-std::string Controller::manualProblem(const ManualInput& manual) const {
-  if (!(manual.age >= 0.0 && manual.age <= config_.safety.max_manual_age)) {
-    std::ostringstream text;
-    text << "stands: no manual command for " << config_.safety.max_manual_age << " s";
-    return text.str();
-  }
-  return manual.velocity.vector().allFinite() ? "" : "stands: the manual command is not finite";
 }
 
 }  // namespace laparoscope_servo::servo

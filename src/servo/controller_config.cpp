@@ -154,6 +154,10 @@ void checkSafety(const SafetyConfig& config, Checker& check) {
   check.range("safety/max_dead_man_age", config.max_dead_man_age, 0.01, 1.0, "s");
   check.range("safety/max_robot_state_age", config.max_robot_state_age, 0.01, 2.0, "s");
   check.range("safety/max_manual_age", config.max_manual_age, 0.01, 1.0, "s");
+  check.range("safety/max_manual_repeat", config.max_manual_repeat, 0.5, 3600.0, "s");
+  check.range("safety/manual_neutral", config.manual_neutral, 0.0, 0.5);
+  check.range("safety/max_repeated_errors", config.max_repeated_errors, 1, 100);
+  check.range("safety/max_clock_difference", config.max_clock_difference, 0.001, 1.0, "s");
 }
 
 }  // namespace

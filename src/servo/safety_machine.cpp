@@ -49,6 +49,7 @@ std::string when(bool holds, const std::string& reason) {
 // One screen. A row that leads to the state itself keeps it, with its reason.
 const std::vector<SafetyTransition>& safetyTransitions() {
   static const char* const by_itself = "by itself";
+  static const char* const resume = "resume the robot";
   static const char* const dead_man = "press the dead-man switch";
   static const char* const engage = "engage again";
   static const char* const disengage = "disengage, then engage again";
@@ -59,10 +60,12 @@ const std::vector<SafetyTransition>& safetyTransitions() {
       {kEngaged, Condition::kResidualStop, State::kFault, disengage},
       {kEngaged, Condition::kShaftOffInsertionPoint, State::kFault, disengage},
       {kEngaged | kLost | kFault, Condition::kDisengaged, State::kIdle, engage},
+      {kEngaged, Condition::kEnded, State::kLost, engage},
+      {kEngaged, Condition::kRobotStopped, State::kLost, engage},
       {kHold, Condition::kHeldTooLong, State::kLost, engage},
       {kHold, Condition::kRegionChanged, State::kLost, engage},
       {kEngaged, Condition::kRobotSilent, State::kHold, by_itself},
-      {kEngaged, Condition::kRobotNotEnabled, State::kHold, by_itself},
+      {kEngaged, Condition::kRobotPaused, State::kHold, resume},
       {kEngaged, Condition::kPoseUnknown, State::kHold, by_itself},
       {kEngaged, Condition::kPoseOld, State::kHold, by_itself},
       {kEngaged, Condition::kDepthOutOfRange, State::kHold, by_itself},
@@ -98,7 +101,7 @@ std::string SafetyMachine::refusal(const SafetyFacts& facts) const {
   // What would end motion does not let it begin.
   for (const SafetyTransition& transition : safetyTransitions()) {
     if (!transition.contains(State::kServo)) continue;
-    if (transition.to != State::kFault && transition.to != State::kHold) continue;
+    if (transition.to == State::kIdle || transition.to == State::kArmed) continue;
     const std::string why = cause(transition.condition, facts);
     if (!why.empty()) return why;
   }
@@ -112,6 +115,7 @@ void SafetyMachine::enter(const SafetyTransition& transition, const std::string&
     held_for_arm_ = false;
   }
   if (transition.to == State::kHold && !isOfTracker(transition.condition)) held_for_arm_ = true;
+  if (!isEngaged(state_)) enables_ = facts.robot.enables;
   const bool needs_somebody = transition.to == State::kLost || transition.to == State::kFault;
   reason_ = needs_somebody ? cause + "; " + transition.way_on : cause;
   state_ = transition.to;
@@ -133,6 +137,8 @@ std::string SafetyMachine::cause(SafetyCondition condition, const SafetyFacts& f
   switch (condition) {
     case Condition::kDisengaged:
       return when(facts.request == EngageRequest::kOff, facts.off_reason);
+    case Condition::kEnded:
+      return facts.ended;
     case Condition::kClockJump:
       if (!facts.clock_jump.empty()) return facts.clock_jump;
       return when(clockJumped(facts.time),
@@ -154,8 +160,12 @@ std::string SafetyMachine::cause(SafetyCondition condition, const SafetyFacts& f
       if (!robot.problem.empty()) return robot.problem;
       return when(!isFresh(robot.age, c.max_robot_state_age),
                   text("the robot's operating state is older than ", c.max_robot_state_age, " s"));
-    case Condition::kRobotNotEnabled:
-      return when(c.robot_required && !robot.enabled, "the robot is not enabled");
+    case Condition::kRobotStopped:
+      if (!c.robot_required || !robot.problem.empty()) return "";
+      if (!robot.enabled && !robot.paused) return "the robot is not enabled";
+      return when(isEngaged(state_) && robot.enables != enables_, "the robot was stopped, and enabled again");
+    case Condition::kRobotPaused:
+      return when(c.robot_required && robot.paused, "the robot is paused");
     case Condition::kPoseUnknown:
       return pose.problem;
     case Condition::kPoseOld:
@@ -184,6 +194,7 @@ std::string SafetyMachine::cause(SafetyCondition condition, const SafetyFacts& f
     case Condition::kEngaged:
       return when(facts.request == EngageRequest::kOn && refusal(facts).empty(), "engaged, nothing is missing");
     case Condition::kDeadManReleased:
+      if (released && !facts.dead_man.problem.empty()) return facts.dead_man.problem;
       return when(released, text("the dead-man switch is not pressed, or silent for ", c.max_dead_man_age, " s"));
     case Condition::kNothingMissing:
       return "engaged, nothing is missing";

@@ -7,13 +7,13 @@
 #include <string>
 
 #include "laparoscope_servo/aesop/driver.h"
-#include "laparoscope_servo/ros/command_master.h"
+#include "laparoscope_servo/ros/input_owner.h"
 
 namespace laparoscope_servo::skin {
 
 // What the node knows beside the driver.
 struct AesopReport {
-  const CommandMaster& master;
+  const InputOwner& master;
   std::uint32_t publishers = 0;  // connections that carry commands
   double next_attempt = 0.0;     // s until the port is tried again, while it is closed
 };

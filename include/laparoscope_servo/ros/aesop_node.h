@@ -19,7 +19,7 @@
 #include "laparoscope_servo/ros/aesop_diagnostics.h"
 #include "laparoscope_servo/ros/aesop_parameters.h"
 #include "laparoscope_servo/ros/calibration_services.h"
-#include "laparoscope_servo/ros/command_master.h"
+#include "laparoscope_servo/ros/input_owner.h"
 #include "laparoscope_servo/ros/service_callers.h"
 #include "laparoscope_servo/ros/service_errors.h"
 
@@ -66,6 +66,7 @@ class AesopNode {
   // The driver's, with what it does not know: whose commands were refused.
   aesop::OperatingState state(double now) const;
   void publishState(double now);
+  void countEnables();
   void publishStaticFrames();
 
   AesopParameters parameters_;
@@ -74,7 +75,7 @@ class AesopNode {
   bool recording_ended_ = false;                   // and was reported
   aesop::Driver driver_;
   aesop::Reconnect reconnect_;
-  CommandMaster master_;
+  InputOwner master_;
   ServiceCallers callers_;
   ServiceErrors service_errors_;
   aesop::SerialTransport transport_;
@@ -87,7 +88,9 @@ class AesopNode {
   std::uint64_t published_ = 0;  // statuses received when the last one was published
   aesop::OperatingState last_state_;
   bool state_published_ = false;
-  double state_time_ = 0.0;  // s, steady, of the last publication
+  std::uint32_t enables_ = 0;  // see OperatingState.msg
+  bool was_on_ = false;        // ENABLED or PAUSED in the last step
+  double state_time_ = 0.0;    // s, steady, of the last publication
 
   ros::NodeHandle node_;
   ros::NodeHandle private_node_;

@@ -8,11 +8,21 @@
 
 namespace laparoscope_servo::skin {
 
+// Which node may say what, by its name: relative to the controller's namespace, or with a leading slash. Empty: whoever
+// speaks first.
+struct InputOwners {
+  std::string task_error = "tracker";
+  std::string operating_state = "aesop";  // also of measured_cv
+  std::string manual;
+  std::string dead_man;
+};
+
 struct ControllerNodeConfig {
   double rate = 50.0;                               // Hz, of the commands
   std::string insertion_point = "insertion_point";  // tf frame, O_A
   std::string camera = "laparoscope_optical";       // tf frame, O_C
   std::string shaft = "scope_tip";                  // tf frame with its z axis along the shaft, into the body
+  InputOwners owners;
   servo::ControllerConfig control;
 };
 

@@ -10,9 +10,12 @@
 
 #include "laparoscope_servo/servo/controller_config.h"
 #include "laparoscope_servo/servo/insertion_point_estimator.h"
+#include "laparoscope_servo/servo/manual_stick.h"
+#include "laparoscope_servo/servo/repeat_watch.h"
 #include "laparoscope_servo/servo/safety_machine.h"
 #include "laparoscope_servo/servo/scope_servo.h"
 #include "laparoscope_servo/servo/slow_correction.h"
+#include "laparoscope_servo/servo/task_error_input.h"
 
 namespace laparoscope_servo::servo {
 
@@ -20,18 +23,6 @@ namespace laparoscope_servo::servo {
 enum class Task {
   kHoldView,  // the control law, so that the region of interest stays where it is
   kManual,    // somebody, by four velocities. Nothing that comes from a camera counts
-};
-
-struct TaskErrorInput {
-  std::string problem = "no task error was received";  // why there is none that could be used; empty: there is
-  bool valid = false;                                  // the tracker's own word
-  double region = 0.0;                                 // another number is another region of interest
-  TaskError error;
-  double age = std::numeric_limits<double>::infinity();        // s, since the message came
-  double image_age = std::numeric_limits<double>::infinity();  // s, since the image was taken
-  std::optional<double> image_time;  // s, when that was, on the clock of ControllerInput::time
-  double visible_fraction = 0.0;     // 0 to 1, of the region of interest
-  double corner_error = std::numeric_limits<double>::infinity();  // px, expected of the worst corner
 };
 
 struct DepthInput {
@@ -52,16 +43,12 @@ struct RobotReport {
   ScopeVelocity velocity;  // of the scope
 };
 
-struct ManualInput {
-  ScopeVelocity velocity;
-  double age = std::numeric_limits<double>::infinity();  // s
-};
-
 struct ControllerInput {
   double time = 0.0;       // s, on a clock that never jumps
   std::string clock_jump;  // which other clock jumped since the last step, in words; empty: none
+  std::string ended;       // what has ended the engagement since the last step, in words; empty: nothing
   TaskErrorInput task_error;
-  ManualInput manual;  // too old or not finite: the scope stands, at once
+  ManualInput manual;  // see manual_stick.h: what cannot be used lets the scope stand, at once
   DepthInput depth;
   RobotReport robot_report;
   RobotFacts robot;       // where the configuration requires it
@@ -114,14 +101,18 @@ class Controller {
   double d2(const ControllerInput& input) const;
   void correctDepth(const ControllerInput& input);
   ServoInput servoInput(const ControllerInput& input) const;
-  ScopeVelocity drive(const ControllerInput& input);
-  std::string manualProblem(const ManualInput& manual) const;
+  void watchRepetition(const TaskErrorInput& task_error);
+  ScopeVelocity drive(const ControllerInput& input, const std::string& problem);
+  std::string caution(const SafetyOutput& safety, const std::string& stick) const;
 
   ControllerConfig config_;
   ScopeServo servo_;
   SafetyMachine machine_;
   Task task_ = Task::kHoldView;
   bool task_changed_ = false;  // since the last step
+  ManualStick stick_;
+  RepeatWatch repeats_;
+  std::optional<double> moves_since_;  // s; nothing: the command is within the dead zone
   InsertionPointEstimator insertion_point_;
   SlowCorrection d2_correction_;  // m
   bool has_time_ = false;

@@ -20,11 +20,15 @@ struct SafetyConfig {
   double min_visible_for_insertion = 0.5;
   double max_corner_error_for_insertion = 1.0;  // px, expected error of the worst corner
 
-  bool dead_man_required = false;    // a switch that has to be pressed while the arm moves
-  double max_dead_man_age = 0.2;     // s, since its last word; a silent one counts as released
-  bool robot_required = true;        // the robot has to say that it is enabled
-  double max_robot_state_age = 0.5;  // s, since its last word
-  double max_manual_age = 0.2;       // s, a manual command that is older is none: the arm stands
+  bool dead_man_required = false;     // a switch that has to be pressed while the arm moves
+  double max_dead_man_age = 0.2;      // s, since its last word; a silent one counts as released
+  bool robot_required = true;         // the robot has to say that it is enabled
+  double max_robot_state_age = 0.5;   // s, since its last word
+  double max_manual_age = 0.2;        // s, a manual command that is older is none: the arm stands
+  double max_manual_repeat = 5.0;     // s, one that is not zero and repeats for longer is of a pad out of reach
+  double manual_neutral = 0.02;       // share of the limits on velocity, up to which a stick is taken to be released
+  int max_repeated_errors = 3;        // task errors that repeat to the last digit while the scope moves
+  double max_clock_difference = 0.1;  // s, by which the clocks of two machines may differ
 };
 
 }  // namespace laparoscope_servo::servo

@@ -5,14 +5,15 @@
 //   SERVO  the only state in which the scope moves
 //   HOLD   engaged, but something that motion relies on is missing for now; goes on by itself when it comes back within
 //          `resume_time`, so that an instrument may cross the region
-//   LOST   was missing for longer, or another region was selected while it was the arm that was waited for: engaged no
-//          more, somebody has to look at the arm and engage again
+//   LOST   was missing for longer, or another region was selected while it was the arm that was waited for, or somebody
+//          has stopped the robot: engaged no more, somebody has to look at the arm and engage again
 //   FAULT  something that must not be: only disengaging clears it
 //
 // Whatever is not SERVO commands exactly zero, at once. One table holds all transitions, see safetyTransitions(). Pure:
 // no clock, the same facts give the same states.
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <string>
@@ -40,6 +41,8 @@ struct RobotFacts {
   std::string problem = "no operating state of the robot was received";  // empty: there is one
   bool enabled = false;
   double age = std::numeric_limits<double>::infinity();
+  bool paused = false;        // enabled, but paused: somebody resumes it. Neither of the two: it was stopped
+  std::uint32_t enables = 0;  // how often it was enabled: another number, and it was stopped meanwhile
 };
 
 struct PoseFacts {
@@ -63,6 +66,7 @@ struct TrackerFacts {
 struct DeadManFacts {
   bool pressed = false;
   double age = std::numeric_limits<double>::infinity();
+  std::string problem = {};  // why a switch that says "pressed" does not count; empty: it counts, or is not pressed
 };
 
 // What is known in one step.
@@ -71,6 +75,7 @@ struct SafetyFacts {
   EngageRequest request = EngageRequest::kNone;
   std::string off_reason = "not engaged";  // of the state IDLE that kOff leads to
   std::string clock_jump;                  // what jumped since the last step, in words; empty: nothing did
+  std::string ended;                       // what has ended the engagement since the last step; empty: nothing
   bool command_finite = true;              // the control law's last velocity
   ResidualLevel residual = ResidualLevel::kOk;
   RobotFacts robot;
@@ -92,6 +97,7 @@ struct SafetyOutput {
 // What can lead from one state to another.
 enum class SafetyCondition {
   kDisengaged,
+  kEnded,
   kClockJump,
   kCommandNotFinite,
   kResidualStop,
@@ -99,7 +105,8 @@ enum class SafetyCondition {
   kHeldTooLong,
   kRegionChanged,
   kRobotSilent,
-  kRobotNotEnabled,
+  kRobotStopped,
+  kRobotPaused,
   kPoseUnknown,
   kPoseOld,
   kDepthOutOfRange,
@@ -153,6 +160,7 @@ class SafetyMachine {
   double last_time_ = 0.0;   // s, of the last step while engaged
   double hold_since_ = 0.0;  // s
   std::optional<double> held_region_;
+  std::uint32_t enables_ = 0;  // of the robot, when engaged
   bool held_for_arm_ = false;  // not for the tracker alone, which says nothing while it learns another region
 };
 

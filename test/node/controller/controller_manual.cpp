@@ -95,10 +95,27 @@ class ControllerManual : public ::testing::Test {
 
   // Waits for a command that is driven to the right, at full speed or nearly so.
   void engageAndDrive() {
-    sliders_.set(velocity(0.5, 0.0));
     ASSERT_TRUE(cart_.engageWhenReady());
     ASSERT_TRUE(cart_.waitForState(ControllerState::SERVO)) << cart_.state().reason;
+    ASSERT_TRUE(drive(velocity(0.5, 0.0)));
     ASSERT_TRUE(waitFor([this] { return command().pan > 0.0999; }));
+  }
+
+  // From rest: what is deflected from the beginning does not count.
+  bool drive(const ScopeVelocity& wanted) {
+    return waitFor([&] {
+      sliders_.set(velocity(0.0, 0.0));
+      cart_.nextCommands(3);
+      sliders_.set(wanted);
+      return cart_.moves() || cart_.moves();
+    });
+  }
+
+  void expectStandingUntilReleased() {
+    ASSERT_TRUE(waitFor([this] { return cart_.state().caution.find("release the stick") != std::string::npos; }))
+        << cart_.state().caution;
+    EXPECT_TRUE(cart_.stands());
+    EXPECT_EQ(cart_.state().state, ControllerState::SERVO);
   }
 
   FakeCart& cart_ = cart();
@@ -135,16 +152,37 @@ TEST_F(ControllerManual, SilentSlidersStopAndNeedNoEngagingAgain) {
   EXPECT_TRUE(cart_.stands());
   EXPECT_EQ(cart_.state().state, ControllerState::SERVO);
   sliders_.set(velocity(0.05, 0.0));
-  EXPECT_TRUE(waitFor([this] { return cart_.moves(); }));
+  expectStandingUntilReleased();
+  EXPECT_TRUE(drive(velocity(0.05, 0.0)));
 }
 
-TEST_F(ControllerManual, AnOldStampCountsAsSilence) {
-  engageAndDrive();
-  ScopeVelocity late = velocity(0.05, 0.0);
-  late.header.stamp = ros::Time::now() - ros::Duration(0.3);
-  sliders_.set(late);
-  ASSERT_TRUE(waitFor([this] { return isZero(command()); }));
-  EXPECT_TRUE(cart_.stands());
+TEST_F(ControllerManual, AStickThatIsHeldSetsNothingInMotion) {
+  sliders_.set(velocity(0.05, 0.0));
+  ASSERT_TRUE(cart_.engageWhenReady());
+  expectStandingUntilReleased();
+  EXPECT_TRUE(drive(velocity(0.05, 0.0)));
+  cart_.strike([](Feed& feed) { feed.robot_state = "PAUSED"; });
+  ASSERT_TRUE(cart_.waitForState(ControllerState::HOLD));
+  cart_.strike([](Feed& feed) { feed.robot_state = "ENABLED"; });
+  ASSERT_TRUE(cart_.waitForState(ControllerState::SERVO));
+  expectStandingUntilReleased();
+  EXPECT_TRUE(drive(velocity(0.05, 0.0)));
+  cart_.strike([](Feed& feed) { feed.pressed = false; });
+  ASSERT_TRUE(cart_.waitForState(ControllerState::ARMED));
+  cart_.strike([](Feed& feed) { feed.pressed = true; });
+  ASSERT_TRUE(cart_.waitForState(ControllerState::SERVO));
+  expectStandingUntilReleased();
+}
+
+TEST_F(ControllerManual, AnOldStampAndOneFromTheFutureCountAsSilence) {
+  for (const double offset : {-0.3, 1.0, 1e6}) {
+    engageAndDrive();
+    ScopeVelocity off = velocity(0.05, 0.0);
+    off.header.stamp = ros::Time::now() + ros::Duration(offset);
+    sliders_.set(off);
+    ASSERT_TRUE(waitFor([this] { return isZero(command()); })) << offset;
+    EXPECT_TRUE(cart_.stands()) << offset;
+  }
 }
 
 TEST_F(ControllerManual, WhatIsNotFiniteStops) {
@@ -164,6 +202,7 @@ TEST_F(ControllerManual, StopsForTheSameReasons) {
   };
   const std::vector<Case> cases{{[](Feed& feed) { feed.pressed = false; }, "ARMED"},
                                 {[](Feed& feed) { feed.robot_state = "PAUSED"; }, "HOLD"},
+                                {[](Feed& feed) { feed.robot_state = "DISABLED"; }, "LOST"},
                                 {[](Feed& feed) { feed.tf = false; }, "HOLD"},
                                 {[](Feed& feed) { feed.lateral = 0.03; }, "FAULT"}};
   for (const Case& one : cases) {
@@ -182,6 +221,7 @@ TEST_F(ControllerManual, AnotherTaskStartsFromRest) {
   cart_.strike([](Feed& feed) { feed.stamp_offset = -0.1; });
   EXPECT_GT(command().pan, 0.0);
   cart_.strike([](Feed& feed) { feed.message.x = feed.message.e_v.x = -0.5; });  // the region is on the left
+  cart_.nextCommands(15);  // until its stamps are newer than those before the step back
   for (const char* task : {"HOLD_VIEW", "MANUAL"}) {
     cart_.takeCommands();
     bool success = false;
@@ -190,6 +230,13 @@ TEST_F(ControllerManual, AnotherTaskStartsFromRest) {
     EXPECT_NE(message.find(task), std::string::npos) << message;
     EXPECT_NE(message.find("SERVO"), std::string::npos) << message;
     const double sign = std::string(task) == "MANUAL" ? 1.0 : -1.0;
+    if (sign > 0.0) {
+      expectStandingUntilReleased();
+      cart_.takeCommands();
+      sliders_.set(velocity(0.0, 0.0));
+      ASSERT_TRUE(waitFor([this] { return cart_.state().caution.empty(); }));
+      sliders_.set(velocity(0.5, 0.0));
+    }
     std::vector<ScopeVelocity> commands;
     ASSERT_TRUE(waitFor([&] {
       for (const ScopeVelocity& one : cart_.takeCommands()) commands.push_back(one);
@@ -197,8 +244,9 @@ TEST_F(ControllerManual, AnotherTaskStartsFromRest) {
     }));
     EXPECT_EQ(cart_.state().task, task);
     // Between the one task and the other there is a zero, and what follows it begins slowly.
-    std::size_t rest = 0;
-    while (rest + 1 < commands.size() && !isZero(commands[rest])) ++rest;
+    std::size_t rest = commands.size() - 1;
+    while (rest > 0 && !isZero(commands[rest])) --rest;
+    ASSERT_TRUE(isZero(commands[rest]));
     ASSERT_LT(rest + 1, commands.size());
     for (std::size_t k = 0; k < commands.size(); ++k) EXPECT_EQ(sign * commands[k].pan > 0.0, k > rest) << k;
     EXPECT_LT(std::abs(commands[rest + 1].pan), 0.05);
@@ -215,7 +263,7 @@ TEST_F(ControllerManual, HoldsAViewOnlyWithATracker) {
   EXPECT_TRUE(cart_.stands());
   select("MANUAL", success);
   ASSERT_TRUE(cart_.waitForState(ControllerState::SERVO));
-  EXPECT_TRUE(waitFor([this] { return cart_.moves(); }));
+  EXPECT_TRUE(drive(velocity(0.05, 0.0)));
 }
 
 TEST_F(ControllerManual, RefusesATaskThatItDoesNotKnow) {

@@ -15,7 +15,9 @@ namespace {
 class Process {
  public:
   explicit Process(const std::vector<std::string>& arguments) {
-    std::vector<std::string> words{"rosrun", "laparoscope_servo", "controller"};
+    std::vector<std::string> words{"rosrun", "laparoscope_servo", "controller",
+                                   "_owners/task_error:=controller_process",
+                                   "_owners/operating_state:=controller_process"};
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char*> argv;
     for (std::string& word : words) argv.push_back(&word[0]);
@@ -65,18 +67,19 @@ TEST(ControllerProcess, ListsAllBadParametersAndRefusesToStart) {
   node.setParam("/bad/limits/velocity/insertion", 5.0);
   node.setParam("/bad/safety/min_depth", std::vector<double>{0.1});
   node.setParam("/bad/frames/camera", "");
+  node.setParam("/bad/owners/manual", "my joystick");
   node.setParam("/bad/frames/insertion_point", "/insertion_point");
   int status = 0;
   const std::string output = runToEnd("__name:=bad", status);
   EXPECT_EQ(status, 1);
   for (const char* name :
        {"rate", "gains/pan = -0.3", "gain/pan is no parameter", "dead_zone/inverse", "limits/velocity/insertion",
-        "safety/min_depth", "frames/camera", "frames/insertion_point"}) {
+        "safety/min_depth", "frames/camera", "frames/insertion_point", "owners/manual"}) {
     EXPECT_NE(output.find(name), std::string::npos) << name << " is not in:\n" << output;
   }
 }
 
-TEST(ControllerProcess, StartsWithoutParameters) {
+TEST(ControllerProcess, StartsWithoutFurtherParameters) {
   Process process({"__name:=plain", "servo_command:=plain/servo_command"});
   FakeCart cart("/plain", "/plain/servo_command");
   ASSERT_TRUE(cart.waitForController());

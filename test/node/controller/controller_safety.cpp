@@ -1,4 +1,6 @@
 // The ways between the safety states, where all that can be asked for is asked for.
+#include <std_msgs/Empty.h>
+
 #include "controller_fixture.h"
 
 namespace laparoscope_servo {
@@ -42,6 +44,81 @@ TEST_F(ControllerSafety, ARobotThatStaysDisabledIsLost) {
   EXPECT_TRUE(cart_.stands());
   EXPECT_EQ(cart_.state().state, ControllerState::LOST);
   engageAndMove();
+}
+
+// A disable, an emergency stop, that is over before the controller's next step.
+TEST_F(ControllerSafety, AStopBetweenTwoStepsIsLost) {
+  for (const char* stop : {"DISABLED", "FAULT"}) {
+    for (int k = 0; k < 4; ++k) {
+      engageAndMove();
+      std::this_thread::sleep_for(std::chrono::milliseconds(5 * k));
+      cart_.once([=](Feed& feed) { feed.robot_state = stop; });
+      cart_.once([](Feed&) {});
+      ASSERT_TRUE(cart_.waitForState(ControllerState::LOST)) << cart_.state().reason;
+      EXPECT_NE(cart_.state().reason.find(stop), std::string::npos) << cart_.state().reason;
+      EXPECT_TRUE(cart_.stands());
+    }
+  }
+}
+
+TEST_F(ControllerSafety, AStopWhoseMessageWasLostIsLost) {
+  engageAndMove();
+  cart_.set([](Feed& feed) { feed.robot = false; });
+  ASSERT_TRUE(cart_.waitForState(ControllerState::HOLD)) << cart_.state().reason;
+  cart_.strike([](Feed& feed) { feed.robot = true, ++feed.enables; });
+  ASSERT_TRUE(cart_.waitForState(ControllerState::LOST)) << cart_.state().reason;
+  EXPECT_TRUE(cart_.stands());
+}
+
+TEST_F(ControllerSafety, APauseGoesOnByAResume) {
+  engageAndMove();
+  cart_.once([](Feed& feed) { feed.robot_state = "PAUSED"; });
+  ASSERT_TRUE(waitFor([this] { return cart_.moves(); }));
+  EXPECT_EQ(cart_.state().state, ControllerState::SERVO);
+  cart_.strike([](Feed& feed) { feed.robot_state = "PAUSED"; });
+  ASSERT_TRUE(cart_.waitForState(ControllerState::LOST)) << "paused for longer than resume_time";
+  EXPECT_NE(cart_.state().reason.find("paused"), std::string::npos) << cart_.state().reason;
+}
+
+// Engaged with the switch held down: nobody has shown yet that it can be let go.
+TEST_F(ControllerSafety, ASwitchThatIsHeldHasToBeLetGoOnce) {
+  bool success = false;
+  ASSERT_TRUE(waitFor([&] {
+    cart_.engage(true, success);
+    return success;
+  })) << cart_.answer();
+  ASSERT_TRUE(waitFor([this] { return cart_.state().reason.find("release it once") != std::string::npos; }))
+      << cart_.state().reason;
+  EXPECT_EQ(cart_.state().state, ControllerState::ARMED);
+  EXPECT_TRUE(cart_.stands());
+  cart_.letGoOnce();
+  EXPECT_TRUE(cart_.waitForState(ControllerState::SERVO));
+}
+
+// Whoever may reach the topic may stop the arm; no master is asked.
+TEST_F(ControllerSafety, ATopicStops) {
+  ros::NodeHandle node;
+  ros::Publisher stop = node.advertise<std_msgs::Empty>("/controller/stop", 1);
+  ASSERT_TRUE(waitFor([&] { return stop.getNumSubscribers() > 0; }));
+  for (const bool holding : {false, true}) {
+    engageAndMove();
+    if (holding) {
+      cart_.strike([](Feed& feed) { feed.message.valid = false; });
+      ASSERT_TRUE(cart_.waitForState(ControllerState::HOLD));
+    }
+    stop.publish(std_msgs::Empty());
+    ASSERT_TRUE(cart_.waitForState(ControllerState::IDLE));
+    EXPECT_EQ(cart_.state().reason, "stopped by " + ros::this_node::getName());
+    cart_.strike([](Feed& feed) { feed.message.valid = true; });
+    EXPECT_TRUE(cart_.stands());
+  }
+  // A fault is for somebody to look at.
+  engageAndMove();
+  cart_.strike([](Feed& feed) { feed.lateral = 0.03; });
+  ASSERT_TRUE(cart_.waitForState(ControllerState::FAULT));
+  stop.publish(std_msgs::Empty());
+  EXPECT_TRUE(cart_.stands());
+  EXPECT_EQ(cart_.state().state, ControllerState::FAULT);
 }
 
 TEST_F(ControllerSafety, DoesNotEngageADisabledRobot) {

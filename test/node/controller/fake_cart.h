@@ -20,8 +20,8 @@
 #include <thread>
 #include <vector>
 
-#include "laparoscope_servo/ros/clocks.h"
 #include "feed.h"
+#include "laparoscope_servo/ros/clocks.h"
 
 namespace laparoscope_servo {
 
@@ -85,6 +85,15 @@ class FakeCart {
     const double time = steadyNow();
     publish(0);
     return time;
+  }
+
+  // Sends everything once with this change, and goes on without it.
+  void once(const std::function<void(Feed&)>& change) {
+    const std::lock_guard<std::mutex> one_at_a_time(publish_mutex_);
+    Feed before;
+    set([&](Feed& feed) { before = feed, change(feed); });
+    publish(0);
+    set([&](Feed& feed) { feed = before; });
   }
 
   // Sends everything once more as it was, then changes it: for what falls silent. The time of the last words.
@@ -162,18 +171,33 @@ class FakeCart {
   // The last one of engage().
   const std::string& answer() const { return answer_; }
 
-  // Engages as soon as the controller has all it needs.
+  // Engages as soon as the controller has all it needs, and lets go of a dead-man switch that is held, once.
   bool engageWhenReady(double seconds = 5.0) {
-    return waitFor(
-        [this] {
-          bool success = false;
-          engage(true, success);
-          return success;
-        },
-        seconds);
+    const auto engaged = [this] {
+      bool success = false;
+      engage(true, success);
+      return success;
+    };
+    if (!waitFor(engaged, seconds)) return false;
+    const auto known = [this] {
+      return state().state == ControllerState::ARMED || state().state == ControllerState::SERVO;
+    };
+    if (waitFor(known, 1.0) && state().state == ControllerState::ARMED && pressed()) letGoOnce();
+    return true;
+  }
+
+  void letGoOnce() {
+    strike([](Feed& feed) { feed.pressed = false; });
+    waitFor([this] { return state().reason.find("is not pressed") != std::string::npos; });
+    strike([](Feed& feed) { feed.pressed = true; });
   }
 
  private:
+  bool pressed() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return feed_.pressed;
+  }
+
   void onCommand(const ScopeVelocity& command) {
     const std::lock_guard<std::mutex> lock(mutex_);
     const bool stands = isZero(command);
@@ -208,13 +232,17 @@ class FakeCart {
     if (feed.robot && k % 5 == 0) {
       OperatingState robot;
       robot.header.stamp = now;
+      robot.header.stamp += ros::Duration(feed.robot_stamp_offset);
       robot.state = feed.robot_state;
+      robot.enables = feed.enables;
       robot_publisher_.publish(robot);
     }
     if (feed.tf) publishTransforms(feed, now);
     if (feed.task_error && k % 2 == 0) {
       last_image_ = feed.images_stop ? last_image_ + ros::Duration(0.001) : now + ros::Duration(feed.stamp_offset);
       feed.message.header.stamp = feed.fixed_stamp.isZero() ? last_image_ : feed.fixed_stamp;
+      if (feed.without_stamp) feed.message.header.stamp = ros::Time();
+      feed.message.x += 1e-9 * ++images_;  // no two pictures are the same
       task_error_publisher_.publish(feed.message);
     }
   }
@@ -255,6 +283,7 @@ class FakeCart {
 
   std::mutex publish_mutex_;  // locked before mutex_
   ros::Time last_image_;
+  int images_ = 0;
   std::mutex mutex_;
   Feed feed_;
   bool stood_ = true;

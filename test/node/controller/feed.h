@@ -5,6 +5,7 @@
 #include <ros/time.h>
 
 #include <cmath>
+#include <cstdint>
 #include <string>
 
 namespace laparoscope_servo {
@@ -18,12 +19,15 @@ struct Feed {
   bool pressed = true;
   bool images_stop = false;      // the tracker goes on, over images that are hardly newer each time
   double stamp_offset = 0.0;     // s, added to the stamps of task errors
+  bool without_stamp = false;    // task errors have none
   ros::Time fixed_stamp;         // not zero: every task error has this stamp
   double tf_stamp_offset = 0.0;  // s
   double d2 = 0.1;               // m
   double lateral = 0.0;          // m
   double optics = 0.0;           // rad, of the camera on the scope, about its x axis
   std::string robot_state = "ENABLED";
+  std::uint32_t enables = 1;
+  double robot_stamp_offset = 0.0;  // s
   TaskError message;
 };
 

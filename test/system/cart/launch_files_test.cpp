@@ -62,6 +62,15 @@ TEST(LaunchFiles, ControllerOfACartAsksForTheRobotAndForADeadManThatIsGiven) {
   EXPECT_NE(demo.find("/controller/safety/dead_man_required: true"), std::string::npos) << demo;
 }
 
+// A nodelet publishes under its manager's name.
+TEST(LaunchFiles, TheControllerListensToTheTrackerWhereverItRuns) {
+  const std::string cart = parametersOf("cart.launch port:=/dev/ttyX rviz:=false");
+  EXPECT_NE(cart.find("/controller/owners/task_error: tracker"), std::string::npos) << cart;
+  EXPECT_NE(cart.find("/controller/owners/operating_state: aesop"), std::string::npos) << cart;
+  const std::string managed = parametersOf("cart.launch port:=/dev/ttyX rviz:=false manager:=camera_manager");
+  EXPECT_NE(managed.find("/controller/owners/task_error: camera_manager"), std::string::npos) << managed;
+}
+
 TEST(LaunchFiles, CalibrationIsWrittenWhereTheCartReadsIt) {
   const std::string calibrate = parametersOf("calibrate.launch port:=/dev/ttyX file:=/x.yaml");
   EXPECT_NE(calibrate.find("/aesop/calibration/file: /x.yaml"), std::string::npos) << calibrate;

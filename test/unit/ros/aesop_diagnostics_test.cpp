@@ -51,7 +51,7 @@ class AesopDiagnosticsTest : public ::testing::Test {
   double now_ = 100.0;
   aesop::Driver driver_{aesop::DriverConfig()};
   sim::Emulator emulator_{sim::EmulatorConfig(), now_};
-  CommandMaster master_{"/controller"};
+  InputOwner master_{"/controller", "commands", "command/publisher"};
   AesopDiagnostics diagnostics_{"/dev/aesop", ""};
 };
 

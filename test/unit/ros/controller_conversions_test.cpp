@@ -157,11 +157,14 @@ TEST(ControllerConversions, OnlyAnEnabledRobotIsEnabled) {
     OperatingState message;
     message.state = state;
     EXPECT_FALSE(fromMessage(message).enabled) << state;
+    EXPECT_EQ(fromMessage(message).paused, std::string(state) == "PAUSED") << state;
     EXPECT_EQ(fromMessage(message).problem, "");
   }
   OperatingState message;
   message.state = "ENABLED";
+  message.enables = 3;
   EXPECT_TRUE(fromMessage(message).enabled);
+  EXPECT_EQ(fromMessage(message).enables, 3u);
 }
 
 TEST(ControllerConversions, StatesHaveTheirNames) {

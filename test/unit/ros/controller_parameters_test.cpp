@@ -98,6 +98,10 @@ std::vector<double> numbers(const ControllerNodeConfig& config) {
                           s.max_dead_man_age,
                           s.max_robot_state_age,
                           s.max_manual_age,
+                          s.max_manual_repeat,
+                          s.manual_neutral,
+                          static_cast<double>(s.max_repeated_errors),
+                          s.max_clock_difference,
                           s.max_corner_error_for_insertion,
                           s.dead_man_required ? 1.0 : 0.0,
                           s.robot_required ? 1.0 : 0.0};
@@ -181,7 +185,11 @@ TEST(ControllerParameters, FileEqualsTheDefaults) {
   EXPECT_EQ(config.insertion_point, ControllerNodeConfig().insertion_point);
   EXPECT_EQ(config.camera, ControllerNodeConfig().camera);
   EXPECT_EQ(config.shaft, ControllerNodeConfig().shaft);
-  EXPECT_EQ(leaves(tree), numbers(config).size() - 2 * 2 + 3);  // lists are one leaf; and the three frames
+  EXPECT_EQ(config.owners.task_error, InputOwners().task_error);
+  EXPECT_EQ(config.owners.operating_state, InputOwners().operating_state);
+  EXPECT_EQ(config.owners.manual, InputOwners().manual);
+  EXPECT_EQ(config.owners.dead_man, InputOwners().dead_man);
+  EXPECT_EQ(leaves(tree), numbers(config).size() - 2 * 2 + 3 + 4);  // lists are one leaf; the frames, the owners
 }
 
 TEST(ControllerParameters, FileOfTheSimulationEqualsTheDefaults) {
@@ -229,13 +237,34 @@ TEST(ControllerParameters, EveryNumberOfTheFileHasAFieldOfItsOwn) {
       }
     }
   }
-  EXPECT_EQ(changed, 82);
+  EXPECT_EQ(changed, 85);
 }
 
 TEST(ControllerParameters, NothingSetGivesTheDefaults) {
   ParameterReader reader(XmlRpc::XmlRpcValue(), "/controller");
   EXPECT_EQ(numbers(controllerNodeConfig(reader)), numbers(ControllerNodeConfig()));
   EXPECT_EQ(reader.report(), "");
+}
+
+TEST(ControllerParameters, OwnersAreNamesOfNodes) {
+  XmlRpc::XmlRpcValue tree;
+  tree["owners"]["task_error"] = "/theatre/camera_manager";
+  tree["owners"]["operating_state"] = "arm";
+  tree["owners"]["manual"] = "joy";
+  tree["owners"]["dead_man"] = "pedal";
+  ParameterReader reader(tree, "/controller");
+  const InputOwners owners = controllerNodeConfig(reader).owners;
+  EXPECT_EQ(reader.report(), "");
+  EXPECT_EQ(owners.task_error, "/theatre/camera_manager");
+  EXPECT_EQ(owners.operating_state, "arm");
+  EXPECT_EQ(owners.manual, "joy");
+  EXPECT_EQ(owners.dead_man, "pedal");
+  for (const char* bad : {"~tracker", "my tracker", "1st", "a\nb"}) {
+    tree["owners"]["task_error"] = bad;
+    ParameterReader refusing(tree, "/controller");
+    controllerNodeConfig(refusing);
+    EXPECT_NE(refusing.report().find("owners/task_error"), std::string::npos) << bad;
+  }
 }
 
 TEST(ControllerParameters, RefusesAnUnknownName) {

@@ -95,6 +95,8 @@ inline std::vector<Failure> failures() {
       {"no depth", [](ControllerInput& i) { i.depth = DepthInput(); }},
       {"depth's problem", [](ControllerInput& i) { i.depth.problem = "tf is silent"; }},
       {"depth stale", [](ControllerInput& i) { i.depth.age = 0.26; }},
+      {"picture beside any camera", [](ControllerInput& i) { i.task_error.error.x = 100.0; }},
+      {"robot paused", [](ControllerInput& i) { i.robot.enabled = false, i.robot.paused = true; }},
       {"depth's age NaN", [](ControllerInput& i) { i.depth.age = kNan; }},
   };
   for (const double d2 : {0.0, -0.1, 0.019, 0.251, 1e300, kNan, kInfinity, -kInfinity}) {

@@ -55,14 +55,79 @@ TEST(Controller, OnlyDisengagingClearsAFault) {
 }
 
 TEST(Controller, AVelocityThatIsNotFiniteIsAFaultAndNeverCommanded) {
-  ControllerConfig config = paper();
-  config.gains = {5.0, 5.0, 5.0, 0.5};
-  Running running(config);
+  Running running;
   ControllerInput input = good(0.0);
-  input.task_error.error.e_v.setConstant(1e308);
+  input.depth.camera_R_shaft.setConstant(kNan);
   const ControllerOutput output = running.step(input);
   EXPECT_EQ(output.state, ControllerState::kFault);
+  EXPECT_NE(output.reason.find("velocity is not finite"), std::string::npos) << output.reason;
   EXPECT_TRUE(isZero(output));
+}
+
+// Finite, and yet nothing that a tracker can have seen.
+TEST(Controller, ATaskErrorThatCannotBeIsNotFollowed) {
+  Running running(paper());
+  ControllerInput input = good(0.0);
+  input.task_error.error.e_v.setConstant(1e308);
+  EXPECT_EQ(running.step(input).state, ControllerState::kHold);
+  EXPECT_NE(running.last.reason.find("task error: "), std::string::npos) << running.last.reason;
+  EXPECT_TRUE(isZero(running.last));
+  EXPECT_EQ(running.step(good(0.0)).state, ControllerState::kServo);
+}
+
+// The grabber shows its last picture, with new stamps, while the scope moves.
+TEST(Controller, APictureThatRepeatsIsAHoldUntilAnotherIsSeen) {
+  Running running;
+  ControllerInput input = good(0.0);
+  int k = 0;
+  const auto step = [&] {  // an image every other step
+    input.task_error.image_time = 1.0 + 0.04 * (k++ / 2);
+    return running.step(input).state;
+  };
+  while (k < 100) {
+    input.task_error.error.x = 0.2 + 1e-9 * (k / 2);
+    ASSERT_EQ(step(), ControllerState::kServo) << k << running.last.reason;
+  }
+  const int last_picture = k;
+  while (k < last_picture + 20 && step() == ControllerState::kServo) {
+  }
+  EXPECT_EQ(running.last.state, ControllerState::kHold);
+  EXPECT_NE(running.last.reason.find("picture repeats"), std::string::npos) << running.last.reason;
+  EXPECT_LE(k - last_picture, 2 * 3);
+  for (int more = 0; more < 50; ++more) EXPECT_EQ(step(), ControllerState::kHold) << "standing still is no excuse";
+  EXPECT_NE(running.controller.problem(input), "");
+  input.task_error.error.x = 0.21;
+  k += 2;
+  EXPECT_EQ(step(), ControllerState::kServo);
+}
+
+TEST(Controller, ARestingScopeMaySeeTheSamePicture) {
+  Controller controller{ControllerConfig()};
+  ControllerInput input = good(0.0);
+  input.task_error.error = TaskError();
+  ASSERT_EQ(controller.engage(input), "");
+  for (int k = 0; k < 500; ++k) {
+    input.time = 0.02 * k;
+    input.task_error.image_time = 0.04 * (k / 2);
+    ASSERT_EQ(controller.update(input).state, ControllerState::kServo) << k;
+  }
+  // A target that starts to move shows nothing of the scope's own motion before its delay.
+  for (int k = 500; k < 508; ++k) {
+    input.time = 0.02 * k;
+    input.task_error.image_time = 0.04 * (k / 2);
+    input.task_error.error.x = 0.1;
+    ASSERT_EQ(controller.update(input).state, ControllerState::kServo) << k;
+  }
+}
+
+TEST(Controller, WhatEndsTheEngagementIsLost) {
+  Running running;
+  ControllerInput input = good(0.0);
+  input.ended = "/aesop has connected anew";
+  EXPECT_EQ(running.step(input).state, ControllerState::kLost);
+  EXPECT_TRUE(isZero(running.last));
+  EXPECT_NE(running.last.reason.find("connected anew"), std::string::npos) << running.last.reason;
+  EXPECT_EQ(running.step(good(0.0)).state, ControllerState::kLost);
 }
 
 TEST(Controller, ShaftsThatMissEachOtherAreAFault) {
@@ -96,7 +161,7 @@ TEST(Controller, StandsWhileTheDeadManSwitchIsReleased) {
   ASSERT_EQ(controller.engage(good(0.0)), "");
   EXPECT_EQ(controller.update(good(0.02)).state, ControllerState::kArmed);
   ControllerInput pressed = good(0.04);
-  pressed.dead_man = {true, 0.01};
+  pressed.dead_man = {true, 0.01, ""};
   controller.update(pressed);
   pressed.time = 0.06;
   EXPECT_FALSE(isZero(controller.update(pressed)));

@@ -24,6 +24,13 @@ ControllerInput driven(double time) {
   return input;
 }
 
+// The stick is let go.
+ControllerInput released(double time) {
+  ControllerInput input = driven(time);
+  input.manual.velocity = ScopeVelocity();
+  return input;
+}
+
 ControllerInput tracked(double time) {
   ControllerInput input = driven(time);
   input.task_error.problem.clear();
@@ -41,7 +48,8 @@ class Driving {
  public:
   explicit Driving(const ControllerConfig& config = ControllerConfig()) : controller(config) {
     controller.select(Task::kManual);
-    EXPECT_EQ(controller.engage(driven(0.0)), "");
+    EXPECT_EQ(controller.engage(released(0.0)), "");
+    for (int k = 0; k < 2; ++k) step(released(0.0));
     for (int k = 0; k < 25; ++k) step(driven(0.0));
     EXPECT_EQ(last.state, ControllerState::kServo);
     EXPECT_GT(last.command.pan, 0.05);
@@ -116,6 +124,9 @@ TEST(ManualDrive, SilenceIsStandstillWithoutAHold) {
       EXPECT_EQ(driving.last.state, ControllerState::kServo) << age;
     }
     EXPECT_NE(driving.last.caution.find("manual command"), std::string::npos) << driving.last.caution;
+    EXPECT_TRUE(isZero(driving.step(driven(0.0)))) << "it came back deflected";
+    EXPECT_NE(driving.last.caution.find("release the stick"), std::string::npos) << driving.last.caution;
+    EXPECT_TRUE(isZero(driving.step(released(0.0))));
     EXPECT_FALSE(isZero(driving.step(driven(0.0))));
     EXPECT_LT(driving.last.command.pan, 0.03) << "starts from rest";
   }
@@ -132,6 +143,7 @@ TEST(ManualDrive, WhatIsNotFiniteIsStandstill) {
       EXPECT_TRUE(isZero(driving.step(input)));
       EXPECT_EQ(driving.last.state, ControllerState::kServo);
       EXPECT_NE(driving.last.caution.find("not finite"), std::string::npos) << driving.last.caution;
+      EXPECT_TRUE(isZero(driving.step(released(0.0))));
       EXPECT_FALSE(isZero(driving.step(driven(0.0))));
     }
   }
@@ -145,11 +157,15 @@ TEST(ManualDrive, TheSafetyStatesAreTheSame) {
     controller.select(Task::kManual);
     ControllerInput input = driven(0.0);
     input.robot = {"", true, 0.1};
-    input.dead_man = {true, 0.01};
+    input.dead_man = {true, 0.01, ""};
     ASSERT_EQ(controller.engage(input), "");
     input.time = 0.02;
+    input.manual.velocity = ScopeVelocity();
     ASSERT_EQ(controller.update(input).state, ControllerState::kServo);
+    input.time = 0.03;
+    controller.update(input);
     input.time = 0.04;
+    input.manual.velocity = driven(0.0).manual.velocity;
     ASSERT_FALSE(isZero(controller.update(input)));
     input.time = 0.06;
     change(input);
@@ -159,7 +175,9 @@ TEST(ManualDrive, TheSafetyStatesAreTheSame) {
   };
   expect([](ControllerInput& i) { i.dead_man.pressed = false; }, ControllerState::kArmed);
   expect([](ControllerInput& i) { i.dead_man.age = 0.3; }, ControllerState::kArmed);
-  expect([](ControllerInput& i) { i.robot.enabled = false; }, ControllerState::kHold);
+  expect([](ControllerInput& i) { i.robot.enabled = false; }, ControllerState::kLost);
+  expect([](ControllerInput& i) { i.robot.enabled = false, i.robot.paused = true; }, ControllerState::kHold);
+  expect([](ControllerInput& i) { i.ended = "/aesop has connected anew"; }, ControllerState::kLost);
   expect([](ControllerInput& i) { i.robot.age = 1.0; }, ControllerState::kHold);
   expect([](ControllerInput& i) { i.depth.age = 0.3; }, ControllerState::kHold);
   expect([](ControllerInput& i) { i.depth.d2 = 0.3; }, ControllerState::kHold);
@@ -175,9 +193,16 @@ TEST(ManualDrive, AnotherTaskStartsFromRest) {
     EXPECT_FALSE(isZero(driving.last));
     driving.controller.select(task);
     EXPECT_TRUE(isZero(driving.step(tracked(0.0))));
+    EXPECT_EQ(isZero(driving.step(tracked(0.0))), task == Task::kManual) << "the stick was held";
+    if (task == Task::kManual) {
+      EXPECT_NE(driving.last.caution.find("release the stick"), std::string::npos) << driving.last.caution;
+      ControllerInput let_go = tracked(0.0);
+      let_go.manual.velocity = ScopeVelocity();
+      EXPECT_TRUE(isZero(driving.step(let_go)));
+      driving.step(tracked(0.0));
+    }
     EXPECT_EQ(driving.last.state, ControllerState::kServo);
     EXPECT_EQ(driving.last.task, task);
-    driving.step(tracked(0.0));
     EXPECT_FALSE(isZero(driving.last));
     EXPECT_EQ(driving.last.command.pan > 0.0, task == Task::kManual);  // the target is on the left
     EXPECT_TRUE((driving.last.command.vector().cwiseAbs().array() <= first.array() * (1.0 + 1e-9)).all());
@@ -197,7 +222,38 @@ TEST(ManualDrive, ATaskThatMissesSomethingHolds) {
   EXPECT_TRUE(isZero(driving.last));
   driving.controller.select(Task::kManual);
   EXPECT_TRUE(isZero(driving.step(driven(0.0))));
+  EXPECT_TRUE(isZero(driving.step(released(0.0))));
   EXPECT_FALSE(isZero(driving.step(driven(0.0))));
+}
+
+// The stick is deflected while the scope may not move, and still is when it may again.
+TEST(ManualDrive, AStickThatIsHeldSetsNothingInMotion) {
+  const std::vector<std::function<void(ControllerInput&)>> holds{
+      [](ControllerInput& i) { i.depth.age = 0.3; },
+      [](ControllerInput& i) { i.robot.enabled = false, i.robot.paused = true; }};
+  for (const auto& hold : holds) {
+    Driving driving;
+    ControllerInput input = driven(0.0);
+    hold(input);
+    EXPECT_EQ(driving.step(input).state, ControllerState::kHold);
+    for (int k = 0; k < 100; ++k) EXPECT_TRUE(isZero(driving.step(driven(0.0))));
+    EXPECT_EQ(driving.last.state, ControllerState::kServo);
+    EXPECT_NE(driving.last.caution.find("release the stick"), std::string::npos) << driving.last.caution;
+    driving.step(released(0.0));
+    EXPECT_FALSE(isZero(driving.step(driven(0.0))));
+  }
+  Driving engaging;
+  engaging.controller.disengage("not engaged");
+  EXPECT_EQ(engaging.controller.engage(driven(engaging.time)), "");
+  for (int k = 0; k < 100; ++k) EXPECT_TRUE(isZero(engaging.step(driven(0.0))));
+}
+
+TEST(ManualDrive, APadOutOfReachStops) {
+  Driving driving;
+  int moved = 0;
+  for (int k = 0; k < 500; ++k) moved += isZero(driving.step(driven(0.0))) ? 0 : 1;  // 10 s
+  EXPECT_LT(moved, 251);
+  EXPECT_NE(driving.last.caution.find("same to the last digit"), std::string::npos) << driving.last.caution;
 }
 
 TEST(ManualDrive, SelectingATaskSetsNothingInMotion) {

@@ -31,10 +31,10 @@ inline SafetyConfig strict() {
 inline SafetyFacts good(double time) {
   SafetyFacts facts;
   facts.time = time;
-  facts.robot = {"", true, 0.1};
+  facts.robot = {"", true, 0.1, false, 7};
   facts.pose = {"", 0.02, 0.1, 0.001};
   facts.tracker = {"", 0.02, 0.06, true, 1.0, 1.0, 0.1};
-  facts.dead_man = {true, 0.01};
+  facts.dead_man = {true, 0.01, ""};
   return facts;
 }
 
@@ -65,7 +65,7 @@ inline std::vector<Fact> faults() {
 inline std::vector<Fact> holds() {
   std::vector<Fact> all{
       {"no robot", [](SafetyFacts& f) { f.robot = RobotFacts(); }, "no operating state"},
-      {"robot not enabled", [](SafetyFacts& f) { f.robot.enabled = false; }, "not enabled"},
+      {"robot paused", [](SafetyFacts& f) { f.robot.enabled = false, f.robot.paused = true; }, "robot is paused"},
       {"no pose", [](SafetyFacts& f) { f.pose = PoseFacts(); }, "d2 is unknown"},
       {"tf's problem", [](SafetyFacts& f) { f.pose.problem = "tf is static"; }, "tf is static"},
       {"no task error", [](SafetyFacts& f) { f.tracker = TrackerFacts(); }, "no task error"},
@@ -91,8 +91,21 @@ inline std::vector<Fact> holds() {
   return all;
 }
 
+// A stop that somebody made.
+inline std::vector<Fact> stops() {
+  return {
+      {"robot not enabled", [](SafetyFacts& f) { f.robot.enabled = false; }, "not enabled"},
+      {"robot disabled long ago", [](SafetyFacts& f) { f.robot.enabled = false, f.robot.age = 9.0; }, "not enabled"},
+      {"ended", [](SafetyFacts& f) { f.ended = "the robot said FAULT"; }, "FAULT"}};
+}
+
 inline std::vector<Fact> releases() {
-  std::vector<Fact> all{{"released", [](SafetyFacts& f) { f.dead_man.pressed = false; }, "dead-man"}};
+  std::vector<Fact> all{{"released", [](SafetyFacts& f) { f.dead_man.pressed = false; }, "dead-man"},
+                        {"held down before",
+                         [](SafetyFacts& f) {
+                           f.dead_man = {false, 0.01, "release it once"};
+                         },
+                         "release it once"}};
   for (const double age : {-0.01, 0.21, kNan, kInfinity}) {
     all.push_back(
         {"dead-man of age " + std::to_string(age), [=](SafetyFacts& f) { f.dead_man.age = age; }, "dead-man"});
@@ -109,7 +122,7 @@ struct Reached {
       return machine.step(facts).state;
     };
     const Change nothing = [](SafetyFacts&) {};
-    const Change lost = [](SafetyFacts& f) { f.robot.enabled = false; };
+    const Change lost = [](SafetyFacts& f) { f.robot.enabled = false, f.robot.paused = true; };
     if (state == State::kIdle) step(time, nothing);
     if (state == State::kIdle) return;
     step(time - 1.0, [](SafetyFacts& f) { f.request = EngageRequest::kOn; });
@@ -143,6 +156,7 @@ class Chance {
     lasting_ = holds();
     for (int k = 0; k < 4; ++k) {  // as likely as the many holds
       for (const Fact& fact : releases()) lasting_.push_back(fact);
+      for (const Fact& fact : stops()) lasting_.push_back(fact);
     }
   }
   bool is(double probability) { return uniform() < probability; }

@@ -10,7 +10,7 @@ namespace {
 using namespace test;
 
 TEST(SafetyMachine, RefusesToEngageForTheReasonThatWouldStopIt) {
-  for (const std::vector<Fact>& facts : {holds(), faults()}) {
+  for (const std::vector<Fact>& facts : {holds(), stops(), faults()}) {
     for (const Fact& fact : facts) {
       const bool by_steps = fact.name.rfind("time 1", 0) == 0 || fact.name.rfind("time -1", 0) == 0;
       if (by_steps) continue;
@@ -65,18 +65,57 @@ TEST(SafetyMachine, AnotherRegionIsTakenOverUnlessTheArmWasWaitedFor) {
   Reached learning(State::kServo);
   EXPECT_EQ(learning.step([](SafetyFacts& f) { f.tracker.valid = false; }).state, State::kHold);
   EXPECT_EQ(learning.step(another).state, State::kServo);
-  const Change disabled = [](SafetyFacts& f) { f.robot.enabled = false; };
+  const Change paused = [](SafetyFacts& f) { f.robot.enabled = false, f.robot.paused = true; };
   for (const bool lost_before : {false, true}) {
     Reached reached(State::kServo);
     if (lost_before) reached.step([](SafetyFacts& f) { f.tracker.valid = false; });
-    EXPECT_EQ(reached.step(disabled).state, State::kHold);
+    EXPECT_EQ(reached.step(paused).state, State::kHold);
     const SafetyOutput output = reached.step(another);
     EXPECT_EQ(output.state, State::kLost);
     EXPECT_NE(output.reason.find("engage again"), std::string::npos) << output.reason;
   }
   Reached same(State::kServo);
-  same.step(disabled);
+  same.step(paused);
   EXPECT_EQ(same.step([](SafetyFacts& f) { f.tracker.region.reset(); }).state, State::kServo);
+}
+
+TEST(SafetyMachine, AStopThatSomebodyMadeEndsTheEngagement) {
+  for (const State from : {State::kArmed, State::kServo, State::kHold}) {
+    for (const Fact& stop : stops()) {
+      Reached reached(from);
+      EXPECT_EQ(reached.step(stop.apply).state, State::kLost) << stop.name;
+      EXPECT_NE(reached.step([](SafetyFacts&) {}).reason.find("engage again"), std::string::npos);
+      EXPECT_EQ(reached.machine.state(), State::kLost) << "enabled again, nobody engaged";
+    }
+  }
+}
+
+// The message that said so was lost, or came between two steps: the count tells.
+TEST(SafetyMachine, ARobotThatWasEnabledAgainIsNotTheOneThatWasEngaged) {
+  for (const std::uint32_t enables : {0u, 1u, 6u, 8u, 4294967295u}) {
+    const Change again = [=](SafetyFacts& f) { f.robot.enables = enables; };
+    for (const State from : {State::kArmed, State::kServo, State::kHold}) {
+      Reached reached(from);
+      EXPECT_EQ(reached.step(again).state, State::kLost);
+      EXPECT_EQ(reached.step([&](SafetyFacts& f) { again(f), f.request = EngageRequest::kOn; }).state, State::kServo);
+      EXPECT_EQ(reached.step(again).state, State::kServo) << "this count is the one that was engaged";
+    }
+  }
+}
+
+TEST(SafetyMachine, APauseGoesOnByAResumeWithinItsTime) {
+  const Change paused = [](SafetyFacts& f) { f.robot.enabled = false, f.robot.paused = true; };
+  Reached reached(State::kServo);
+  EXPECT_EQ(reached.step(paused).state, State::kHold);
+  EXPECT_EQ(reached.machine.step(good(10.3)).state, State::kServo);
+  Reached late(State::kHold);  // paused since 10 s
+  SafetyFacts facts = good(10.6);
+  paused(facts);
+  EXPECT_EQ(late.machine.step(facts).state, State::kLost);
+  EXPECT_EQ(late.machine.step(good(10.62)).state, State::kLost);
+  SafetyFacts request = good(0.0);
+  paused(request);
+  EXPECT_NE(SafetyMachine(strict()).refusal(request).find("paused"), std::string::npos);
 }
 
 TEST(SafetyMachine, HoldsThatFollowEachOtherDoNotAddUp) {

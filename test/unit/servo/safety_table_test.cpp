@@ -38,14 +38,17 @@ std::vector<Line> behaviour() {
       {nothing, none, {idle, servo, servo, servo, lost, fault}},
       {releases(), none, {idle, armed, armed, armed, lost, fault}},
       {holds(), none, {idle, hold, hold, hold, lost, fault}},
+      {stops(), none, {idle, lost, lost, lost, lost, fault}},
       {faults(), none, {idle, fault, fault, fault, lost, fault}},
       {nothing, on, {servo, servo, servo, servo, servo, fault}},
       {releases(), on, {armed, armed, armed, armed, armed, fault}},
       {holds(), on, {idle, hold, hold, hold, lost, fault}},
+      {stops(), on, {idle, lost, lost, lost, lost, fault}},
       {faults(), on, {idle, fault, fault, fault, lost, fault}},
       {nothing, off, {idle, idle, idle, idle, idle, idle}},
       {releases(), off, {idle, idle, idle, idle, idle, idle}},
       {holds(), off, {idle, idle, idle, idle, idle, idle}},
+      {stops(), off, {idle, idle, idle, idle, idle, idle}},
       {faults(), off, {idle, fault, fault, fault, idle, idle}},
   };
 }
@@ -85,11 +88,12 @@ std::map<Condition, Fact> conditions() {
       {Condition::kResidualStop, {"", [](SafetyFacts& f) { f.residual = ResidualLevel::kStop; }, "do not agree"}},
       {Condition::kShaftOffInsertionPoint, {"", [](SafetyFacts& f) { f.pose.lateral_offset = 0.1; }, "shaft"}},
       {Condition::kDisengaged, {"", [](SafetyFacts& f) { f.request = EngageRequest::kOff; }, "not engaged"}},
-      {Condition::kHeldTooLong,
-       {"", [](SafetyFacts& f) { f.time += 0.6; }, "held for 0.5 s: the robot is not enabled"}},
+      {Condition::kHeldTooLong, {"", [](SafetyFacts& f) { f.time += 0.6; }, "held for 0.5 s: the robot is paused"}},
       {Condition::kRegionChanged, {"", [](SafetyFacts& f) { f.tracker.region = 2.0; }, "another region"}},
       {Condition::kRobotSilent, {"", [](SafetyFacts& f) { f.robot.age = 9.0; }, "operating state"}},
-      {Condition::kRobotNotEnabled, {"", [](SafetyFacts& f) { f.robot.enabled = false; }, "not enabled"}},
+      {Condition::kEnded, {"", [](SafetyFacts& f) { f.ended = "the robot said FAULT"; }, "said FAULT"}},
+      {Condition::kRobotStopped, {"", [](SafetyFacts& f) { ++f.robot.enables; }, "stopped, and enabled again"}},
+      {Condition::kRobotPaused, {"", [](SafetyFacts& f) { f.robot.enabled = false, f.robot.paused = true; }, "paused"}},
       {Condition::kPoseUnknown, {"", [](SafetyFacts& f) { f.pose.problem = "atlantis"; }, "atlantis"}},
       {Condition::kPoseOld, {"", [](SafetyFacts& f) { f.pose.age = 9.0; }, "depth d2 is older"}},
       {Condition::kDepthOutOfRange, {"", [](SafetyFacts& f) { f.pose.d2 = 0.5; }, "depth d2 is not between"}},
@@ -162,8 +166,10 @@ TEST(SafetyMachine, TheMoreSevereConditionDecides) {
   EXPECT_GT(pairs, 200);
 }
 
-TEST(SafetyMachine, FaultsStandBeforeHoldsStandBeforeTheRest) {
-  const auto rank = [](State to) { return to == State::kFault ? 0 : to == State::kHold ? 1 : 2; };
+TEST(SafetyMachine, FaultsStandBeforeStopsBeforeHoldsBeforeTheRest) {
+  const auto rank = [](State to) {
+    return to == State::kFault ? 0 : to == State::kLost ? 1 : to == State::kHold ? 2 : 3;
+  };
   int last = 0;
   for (const SafetyTransition& row : safetyTransitions()) {
     if (!row.contains(State::kServo) || row.to == State::kIdle) continue;
