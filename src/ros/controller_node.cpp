@@ -29,9 +29,8 @@ const char* doing(servo::Task task) {
 ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_node, const ControllerNodeConfig& config)
     : config_(config),
       controller_(config.control),
-      future_transforms_(config.control.safety.max_depth_age),
+      scope_pose_(config),
       last_now_(ros::Time::now()),
-      tf_listener_(tf_),
       diagnostics_(node, private_node),
       command_publisher_(node.advertise<ScopeVelocity>("servo_command", 1)),
       state_publisher_(private_node.advertise<ControllerState>("state", 1, true)) {
@@ -104,13 +103,9 @@ void ControllerNode::onManual(const ScopeVelocity& message) {
 void ControllerNode::onMeasuredVelocity(const geometry_msgs::TwistStamped& message) {
   const double age = (ros::Time::now() - message.header.stamp).toSec();
   if (message.header.stamp.isZero() || !(age > -kClockCorrection && age < kOldestReport)) return;
-  try {
-    const auto rotation = tf_.lookupTransform(config_.shaft, message.header.frame_id, ros::Time(0)).transform.rotation;
-    robot_report_.velocity =
-        fromTwist(message.twist, Eigen::Quaterniond(rotation.w, rotation.x, rotation.y, rotation.z).normalized());
-  } catch (const tf2::TransformException&) {
-    return;
-  }
+  const std::optional<Eigen::Quaterniond> shaft_R_frame = scope_pose_.shaftFrom(message.header.frame_id);
+  if (!shaft_R_frame) return;
+  robot_report_.velocity = fromTwist(message.twist, *shaft_R_frame);
   robot_report_.present = true;
   robot_report_arrival_ = steadyNow() - age;
 }
@@ -130,8 +125,7 @@ void ControllerNode::checkTime() {
   if (!back) return;
   task_error_ = servo::TaskErrorInput();
   task_error_watch_.clear();
-  depth_watch_.clear();
-  tf_.clear();
+  scope_pose_.clear();
   clock_jump_ = "ROS time jumped back";
 }
 
@@ -139,8 +133,8 @@ servo::ControllerInput ControllerNode::input() {
   const double steady_now = steadyNow();
   servo::ControllerInput input;
   input.time = steady_now;
-  // Poses are counted in this frame, and d2 from it.
-  if (insertion_point_watch_.moved(tf_, config_.insertion_point)) clock_jump_ = "the insertion point is another one";
+  input.depth = scope_pose_.depth(controller_.engaged(), steady_now);
+  if (!scope_pose_.fault().empty()) clock_jump_ = scope_pose_.fault();
   input.clock_jump = clock_jump_;
   input.robot = robot_;
   input.robot.age = steady_now - robot_arrival_;
@@ -161,39 +155,10 @@ servo::ControllerInput ControllerNode::input() {
       input.task_error.problem = "task error is stamped in the future, compare the clocks of the machines";
     }
   }
-  input.depth = depth(steady_now);
   input.robot_report = robot_report_;
   input.robot_report.age = steady_now - robot_report_arrival_;
   robot_report_.present = false;
   return input;
-}
-
-servo::DepthInput ControllerNode::depth(double steady_now) {
-  servo::DepthInput depth;
-  const ros::Time now = ros::Time::now();
-  if (future_transforms_.found(tf_, config_.camera, config_.insertion_point, now, steady_now)) {
-    depth.problem = "tf is stamped in the future, compare the clocks of the machines";
-    return depth;
-  }
-  try {
-    const auto transform = tf_.lookupTransform(config_.camera, config_.insertion_point, ros::Time(0));
-    depth =
-        fromTransforms(transform.transform, tf_.lookupTransform(config_.camera, config_.shaft, ros::Time(0)).transform);
-    if (!depth.problem.empty()) return depth;
-    if (transform.header.stamp.isZero()) {
-      // d2 changes when the scope is inserted: a transform that cannot change says nothing about the arm.
-      depth.problem =
-          "tf from " + config_.camera + " to " + config_.insertion_point + " is static, expected the robot's";
-      return depth;
-    }
-    depth.pose_is_new = depth_watch_.arrived(transform.header.stamp, steady_now) != StampWatch::Arrival::kRepeated;
-    depth.age = depth_watch_.age(now, steady_now);
-  } catch (const tf2::ExtrapolationException&) {  // its text holds times, which change with every step
-    depth.problem = "tf from " + config_.camera + " to " + config_.insertion_point + " has no common time";
-  } catch (const tf2::TransformException& error) {
-    depth.problem = std::string("depth d2 is unknown: ") + error.what();
-  }
-  return depth;
 }
 
 void ControllerNode::publish(const servo::ControllerOutput& output) {
@@ -248,6 +213,7 @@ void ControllerNode::report(diagnostic_updater::DiagnosticStatusWrapper& status)
   status.add("corner error [px]", last_input_.task_error.corner_error);
   status.add("age of d2 [s]", last_input_.depth.age);
   status.add("d2 [m]", last_input_.depth.d2);
+  scope_pose_.describe(status);
   status.add("insertion point beside the shaft [m]", last_input_.depth.lateral_offset);
   status.add("age of the manual command [s]", last_input_.manual.age);
   const servo::InsertionPointEstimate& point = controller_.insertionPoint().estimate();

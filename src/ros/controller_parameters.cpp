@@ -1,6 +1,10 @@
 #include "laparoscope_servo/ros/controller_parameters.h"
 
+#include <ros/names.h>
+
 #include <limits>
+
+#include "laparoscope_servo/ros/frame_names.h"
 
 namespace laparoscope_servo::skin {
 
@@ -83,6 +87,9 @@ void readSafety(ParameterReader& reader, servo::SafetyConfig& safety) {
   reader.read("safety/robot_required", safety.robot_required);
   readNumber(reader, "safety/max_robot_state_age", safety.max_robot_state_age);
   readNumber(reader, "safety/max_manual_age", safety.max_manual_age);
+  readNumber(reader, "safety/max_tip_speed", safety.max_tip_speed);
+  readNumber(reader, "safety/max_tip_turn", safety.max_tip_turn);
+  readNumber(reader, "safety/max_optics_offset", safety.max_optics_offset);
 }
 
 void readFrame(ParameterReader& reader, const std::string& path, std::string& frame) {
@@ -90,6 +97,13 @@ void readFrame(ParameterReader& reader, const std::string& path, std::string& fr
   if (frame.empty() || frame.front() == '/') {
     reader.addError(path + " = '" + frame + "', expected the name of a tf frame, without a leading slash");
   }
+}
+
+void readOwner(ParameterReader& reader, const std::string& path, std::string& owner) {
+  reader.read(path, owner);
+  std::string why;
+  if (owner.empty() || (owner.front() != '~' && ros::names::validate(owner, why))) return;
+  reader.addError(path + " = '" + owner + "', expected the name of a node, e.g. aesop or /aesop, or nothing");
 }
 
 }  // namespace
@@ -145,11 +159,21 @@ ControllerNodeConfig controllerNodeConfig(ParameterReader& reader) {
   readFrame(reader, "frames/insertion_point", config.insertion_point);
   readFrame(reader, "frames/camera", config.camera);
   readFrame(reader, "frames/shaft", config.shaft);
+  reader.read("frame_prefix", config.frame_prefix);
+  readOwner(reader, "owners/tf", config.tf_owner);
   config.control = controllerConfig(reader);
   double diagnostic_period = 1.0;  // read again by diagnostic_updater
   reader.read("diagnostic_period", diagnostic_period, 0.1, 60.0);
   reader.refuseUnknown("");
   return config;
+}
+
+void resolveNames(ControllerNodeConfig& config, const ros::NodeHandle& node) {
+  config.frame_prefix = framePrefix(config.frame_prefix, node.getNamespace());
+  for (std::string* frame : {&config.insertion_point, &config.camera, &config.shaft}) {
+    *frame = prefixedFrame(config.frame_prefix, *frame);
+  }
+  if (!config.tf_owner.empty()) config.tf_owner = node.resolveName(config.tf_owner, false);
 }
 
 }  // namespace laparoscope_servo::skin

@@ -16,14 +16,12 @@
 #include <ros/ros.h>
 #include <std_msgs/Bool.h>
 #include <std_srvs/SetBool.h>
-#include <tf2_ros/transform_listener.h>
 
 #include <limits>
 
 #include "laparoscope_servo/ros/controller_parameters.h"
-#include "laparoscope_servo/ros/future_transforms.h"
+#include "laparoscope_servo/ros/scope_pose.h"
 #include "laparoscope_servo/ros/stamp_watch.h"
-#include "laparoscope_servo/ros/static_frame_watch.h"
 #include "laparoscope_servo/servo/controller.h"
 
 namespace laparoscope_servo::skin {
@@ -47,7 +45,6 @@ class ControllerNode {
   void onTick();
   void checkTime();
   servo::ControllerInput input();
-  servo::DepthInput depth(double steady_now);
   void publish(const servo::ControllerOutput& output);
   void publishState(const servo::ControllerOutput& output);
   void report(diagnostic_updater::DiagnosticStatusWrapper& status);
@@ -56,9 +53,7 @@ class ControllerNode {
   servo::Controller controller_;
   servo::TaskErrorInput task_error_;
   StampWatch task_error_watch_;
-  StampWatch depth_watch_;
-  StaticFrameWatch insertion_point_watch_;
-  FutureTransforms future_transforms_;
+  ScopePose scope_pose_;
   servo::RobotFacts robot_;
   double robot_arrival_ = 0.0;  // s, steady
   servo::DeadManFacts dead_man_;
@@ -73,8 +68,6 @@ class ControllerNode {
   servo::ControllerOutput last_output_;
   bool state_published_ = false;
 
-  tf2_ros::Buffer tf_;
-  tf2_ros::TransformListener tf_listener_;
   diagnostic_updater::Updater diagnostics_;
   ros::Publisher command_publisher_;
   ros::Publisher state_publisher_;

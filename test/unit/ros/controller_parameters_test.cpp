@@ -91,6 +91,9 @@ std::vector<double> numbers(const ControllerNodeConfig& config) {
                           c.insertion_point.estimator.stop_residual,
                           c.insertion_point.estimator.wobble,
                           s.max_clock_step,
+                          s.max_tip_speed,
+                          s.max_tip_turn,
+                          s.max_optics_offset,
                           s.slow_below,
                           s.hold_below,
                           s.release_hold_above,
@@ -181,7 +184,9 @@ TEST(ControllerParameters, FileEqualsTheDefaults) {
   EXPECT_EQ(config.insertion_point, ControllerNodeConfig().insertion_point);
   EXPECT_EQ(config.camera, ControllerNodeConfig().camera);
   EXPECT_EQ(config.shaft, ControllerNodeConfig().shaft);
-  EXPECT_EQ(leaves(tree), numbers(config).size() - 2 * 2 + 3);  // lists are one leaf; and the three frames
+  EXPECT_EQ(config.frame_prefix, ControllerNodeConfig().frame_prefix);
+  EXPECT_EQ(config.tf_owner, ControllerNodeConfig().tf_owner);
+  EXPECT_EQ(leaves(tree), numbers(config).size() - 2 * 2 + 5);  // lists are one leaf; and three frames, prefix, owner
 }
 
 TEST(ControllerParameters, FileOfTheSimulationEqualsTheDefaults) {
@@ -229,7 +234,7 @@ TEST(ControllerParameters, EveryNumberOfTheFileHasAFieldOfItsOwn) {
       }
     }
   }
-  EXPECT_EQ(changed, 82);
+  EXPECT_EQ(changed, 85);
 }
 
 TEST(ControllerParameters, NothingSetGivesTheDefaults) {
