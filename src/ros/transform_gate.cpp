@@ -184,14 +184,15 @@ void TransformGate::step(bool engaged, const ros::Time& now, double steady_now) 
 void TransformGate::takeWaiting(const ros::Time& now, double steady_now) {
   for (auto waiting = waiting_.begin(); waiting != waiting_.end();) {
     Frame news = waiting->second;
+    news.heard = steady_now;
     const auto known = frames_.find(waiting->first);
-    const bool is_due = known == frames_.end() || known->second.connection.lock() == news.connection.lock();
+    const bool is_due = known == frames_.end() || known->second.connection.lock() == news.connection.lock() ||
+                        mayReplace(known->second, news);
     if (!is_due && !news.connection.expired()) {
       ++waiting;
       continue;
     }
     waiting = waiting_.erase(waiting);
-    news.heard = steady_now;
     if (!news.connection.expired()) takeOne(news.transform, news, now);
   }
 }

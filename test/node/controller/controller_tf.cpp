@@ -265,10 +265,8 @@ TEST_P(ControllerTf, AFloodOfForeignFramesChangesNothing) {
   flood.join();
 }
 
-class TheOwner : public ControllerTf {};
-
 // Killed and started again, without a word of goodbye: its static frames were true of another process.
-TEST_P(TheOwner, TakesItsInsertionPointAlongWhenItDies) {
+TEST_P(ControllerTf, AnOwnerThatDiesTakesItsInsertionPointAlong) {
   const auto statics = [](double point) {
     tf2_msgs::TFMessage message;
     message.transforms = {fakeTransform("end_effector", "scope_tip", 0.3),
@@ -305,7 +303,6 @@ TEST_P(TheOwner, TakesItsInsertionPointAlongWhenItDies) {
   EXPECT_TRUE(d2Becomes(0.15)) << watched();
 }
 
-INSTANTIATE_TEST_SUITE_P(Dies, TheOwner, ::testing::Values(While::kServo));
 INSTANTIATE_TEST_SUITE_P(While, ControllerTf, ::testing::Values(While::kServo, While::kHold, While::kManual));
 
 // Another node: says on tf what the test tells it to.

@@ -249,6 +249,18 @@ TEST_F(TransformGateTest, AStaticTransformOfTheNewProcessWaitsForTheEndOfTheOld)
   EXPECT_NEAR(x(), 0.3, 1e-12);
 }
 
+TEST_F(TransformGateTest, AStaticTransformWaitsForTheSilenceOfOneThatMoves) {
+  start();
+  const TransformGate::Connection second = boost::make_shared<int>(0);
+  gate_.take({transform("base", "arm", 0.1)}, "/aesop", second, true, ros::Time(now_), steady_);
+  step(false);
+  EXPECT_DOUBLE_EQ(x(), 0.2);
+  step(true, 10.0);
+  EXPECT_DOUBLE_EQ(x(), 0.2) << "not while engaged";
+  step(false);
+  EXPECT_DOUBLE_EQ(x(), 0.1);
+}
+
 TEST_F(TransformGateTest, TimeThatJumpsBackLeavesWhatIsStatic) {
   start();
   gate_.clear();
