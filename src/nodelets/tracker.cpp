@@ -19,6 +19,7 @@ namespace laparoscope_servo::nodelets {
 
 namespace {
 
+constexpr double kAhead = 1.0;     // s, of tf to this machine's clock
 constexpr double kThrottle = 5.0;  // s between two lines of the log about the same kind of trouble
 
 template <class Message>
@@ -120,14 +121,22 @@ void Tracker::start(const skin::TrackerParameters& parameters) {
 }
 
 void Tracker::followRobot(const skin::RobotMotionConfig& config) {
-  tf_ = std::make_unique<tf2_ros::Buffer>();
-  tf_listener_ = std::make_unique<tf2_ros::TransformListener>(*tf_);  // in a thread of its own
-  session_->setCameraMotion([this, fixed_frame = config.fixed_frame](const std::string& frame, const ros::Time& from,
-                                                                     const ros::Time& to, std::string& why) {
-    const auto motion = skin::cameraMotion(*tf_, fixed_frame, frame, from, to, why);
-    if (!motion && future_transforms_.found(*tf_, fixed_frame, frame, ros::Time::now(), skin::steadyNow())) {
-      why = "the pose of " + frame + " in " + fixed_frame + " is stamped in the future";
-    }
+  const std::string fixed_frame = skin::fixedFrame(config, getNodeHandle().getNamespace());
+  skin::TransformGateConfig gate;
+  if (!config.owner.empty()) gate.owner = getNodeHandle().resolveName(config.owner, false);
+  gate.parameter = "robot_motion/owner";
+  gate.frames = {fixed_frame};
+  gate.max_ahead = kAhead;
+  transforms_ = std::make_unique<skin::OwnedTransforms>(gate);
+  session_->setCameraMotion([this, fixed_frame](const std::string& frame, const ros::Time& from, const ros::Time& to,
+                                                std::string& why) -> std::optional<Eigen::Isometry3d> {
+    transforms_->use(frame);
+    const skin::OwnedTransforms::Word word = transforms_->step(false, skin::steadyNow());
+    if (!word.complaint.empty()) NODELET_WARN_THROTTLE(kThrottle, "%s", word.complaint.c_str());
+    why = word.problem;
+    if (!why.empty()) return std::nullopt;
+    const auto motion = skin::cameraMotion(*transforms_->buffer(), fixed_frame, frame, from, to, why);
+    if (!motion && !word.complaint.empty()) why += "; " + word.complaint;
     return motion;
   });
 }

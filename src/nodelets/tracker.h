@@ -11,14 +11,12 @@
 #include <sensor_msgs/CameraInfo.h>
 #include <sensor_msgs/Image.h>
 #include <std_srvs/Trigger.h>
-#include <tf2_ros/buffer.h>
-#include <tf2_ros/transform_listener.h>
 
 #include <memory>
 #include <string>
 
 #include "laparoscope_servo/ros/feed_owner.h"
-#include "laparoscope_servo/ros/future_transforms.h"
+#include "laparoscope_servo/ros/owned_transforms.h"
 #include "laparoscope_servo/ros/tracker_diagnostics.h"
 #include "laparoscope_servo/ros/tracker_request.h"
 #include "laparoscope_servo/ros/tracker_session.h"
@@ -57,9 +55,7 @@ class Tracker : public nodelet::Nodelet {
   void publish(const skin::Processed& processed);
   void refuse(const std::string& error, skin::Refusal cause = skin::Refusal::kData);
 
-  std::unique_ptr<tf2_ros::Buffer> tf_;  // with robot_motion only
-  std::unique_ptr<tf2_ros::TransformListener> tf_listener_;
-  skin::FutureTransforms future_transforms_{1.0};
+  std::unique_ptr<skin::OwnedTransforms> transforms_;  // with robot_motion only
   std::unique_ptr<skin::TrackerSession> session_;
   std::unique_ptr<skin::TrackerDiagnostics> statistics_;
   std::unique_ptr<diagnostic_updater::Updater> diagnostics_;

@@ -5,6 +5,7 @@
 
 #include <exception>
 
+#include "laparoscope_servo/ros/frame_names.h"
 #include "laparoscope_servo/ros/stop_request.h"
 
 namespace {
@@ -15,11 +16,12 @@ int run() {
   const ros::NodeHandle private_node("~");
   skin::catchStopRequests();
   skin::ParameterReader reader(skin::parametersOf(private_node), private_node.getNamespace());
-  const skin::AesopParameters parameters = skin::readAesopParameters(reader);
+  skin::AesopParameters parameters = skin::readAesopParameters(reader);
   if (!reader.errors().empty()) {
     ROS_FATAL_STREAM(reader.report());
     return 1;
   }
+  parameters.frame_prefix = skin::framePrefix(parameters.frame_prefix, node.getNamespace());
   skin::AesopNode(node, private_node, parameters).run(skin::stopRequested);
   return 0;
 }

@@ -15,12 +15,13 @@ int main(int argc, char** argv) {
   skin::catchStopRequests();
 
   skin::ParameterReader reader(skin::parametersOf(private_node), private_node.getNamespace());
-  const skin::ControllerNodeConfig config = skin::controllerNodeConfig(reader);
+  skin::ControllerNodeConfig config = skin::controllerNodeConfig(reader);
   if (!reader.errors().empty()) {
     ROS_FATAL("%s", reader.report().c_str());
     return 1;
   }
 
+  skin::resolveNames(config, node);
   skin::ControllerNode controller(node, private_node, config);
   while (ros::ok() && !skin::stopRequested()) {
     ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.05));

@@ -41,9 +41,8 @@ std::string inFuture(const std::string& what) {
 }  // namespace
 
 ControllerInputs::ControllerInputs(ros::NodeHandle& node, ros::NodeHandle& private_node,
-                                   const ControllerNodeConfig& config, const tf2_ros::Buffer& tf, const Calls& calls)
+                                   const ControllerNodeConfig& config, const Calls& calls)
     : config_(config),
-      tf_(tf),
       calls_(calls),
       task_error_input_(resolved(node, config.owners.task_error), "task errors", "owners/task_error",
                         config.control.safety.max_clock_difference),
@@ -180,13 +179,9 @@ void ControllerInputs::onMeasuredVelocity(const ros::MessageEvent<geometry_msgs:
   if (message.header.stamp.isZero() || isAhead(measured_velocity_input_, message.header.stamp)) return;
   const double age = stampAge(message.header.stamp);
   if (!(age < kOldestReport)) return;
-  try {
-    const auto rotation = tf_.lookupTransform(config_.shaft, message.header.frame_id, ros::Time(0)).transform.rotation;
-    robot_report_.velocity =
-        fromTwist(message.twist, Eigen::Quaterniond(rotation.w, rotation.x, rotation.y, rotation.z).normalized());
-  } catch (const tf2::TransformException&) {
-    return;
-  }
+  const std::optional<Eigen::Quaterniond> shaft_R_frame = calls_.shaft_from(message.header.frame_id);
+  if (!shaft_R_frame) return;
+  robot_report_.velocity = fromTwist(message.twist, *shaft_R_frame);
   robot_report_.present = true;
   robot_report_arrival_ = steadyNow() - age;
 }

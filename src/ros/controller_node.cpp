@@ -24,11 +24,11 @@ const char* doing(servo::Task task) {
 ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_node, const ControllerNodeConfig& config)
     : config_(config),
       controller_(config.control),
-      future_transforms_(config.control.safety.max_depth_age),
+      scope_pose_(config),
       last_now_(ros::Time::now()),
-      tf_listener_(tf_),
-      inputs_(node, private_node, config, tf_,
-              {[this] { checkTime(); }, [this](const std::string& sender) { onStop(sender); }}),
+      inputs_(node, private_node, config,
+              {[this] { checkTime(); }, [this](const std::string& sender) { onStop(sender); },
+               [this](const std::string& frame) { return scope_pose_.shaftFrom(frame); }}),
       diagnostics_(node, private_node),
       command_publisher_(node.advertise<ScopeVelocity>("servo_command", 1)),
       state_publisher_(private_node.advertise<ControllerState>("state", 1, true)) {
@@ -72,8 +72,7 @@ void ControllerNode::checkTime() {
   last_now_ = now;
   if (!back) return;
   inputs_.forgetStamps();
-  depth_watch_.clear();
-  tf_.clear();
+  scope_pose_.clear();
   clock_jump_ = "ROS time jumped back";
 }
 
@@ -81,40 +80,11 @@ servo::ControllerInput ControllerNode::input() {
   const double steady_now = steadyNow();
   servo::ControllerInput input;
   input.time = steady_now;
-  // Poses are counted in this frame, and d2 from it.
-  if (insertion_point_watch_.moved(tf_, config_.insertion_point)) clock_jump_ = "the insertion point is another one";
+  input.depth = scope_pose_.depth(controller_.engaged(), steady_now);
+  if (!scope_pose_.fault().empty()) clock_jump_ = scope_pose_.fault();
   input.clock_jump = clock_jump_;
   inputs_.fill(input, steady_now);
-  input.depth = depth(steady_now);
   return input;
-}
-
-servo::DepthInput ControllerNode::depth(double steady_now) {
-  servo::DepthInput depth;
-  const ros::Time now = ros::Time::now();
-  if (future_transforms_.found(tf_, config_.camera, config_.insertion_point, now, steady_now)) {
-    depth.problem = "tf is stamped in the future, compare the clocks of the machines";
-    return depth;
-  }
-  try {
-    const auto transform = tf_.lookupTransform(config_.camera, config_.insertion_point, ros::Time(0));
-    depth =
-        fromTransforms(transform.transform, tf_.lookupTransform(config_.camera, config_.shaft, ros::Time(0)).transform);
-    if (!depth.problem.empty()) return depth;
-    if (transform.header.stamp.isZero()) {
-      // d2 changes when the scope is inserted: a transform that cannot change says nothing about the arm.
-      depth.problem =
-          "tf from " + config_.camera + " to " + config_.insertion_point + " is static, expected the robot's";
-      return depth;
-    }
-    depth.pose_is_new = depth_watch_.arrived(transform.header.stamp, steady_now) != StampWatch::Arrival::kRepeated;
-    depth.age = depth_watch_.age(now, steady_now);
-  } catch (const tf2::ExtrapolationException&) {  // its text holds times, which change with every step
-    depth.problem = "tf from " + config_.camera + " to " + config_.insertion_point + " has no common time";
-  } catch (const tf2::TransformException& error) {
-    depth.problem = std::string("depth d2 is unknown: ") + error.what();
-  }
-  return depth;
 }
 
 void ControllerNode::publish(const servo::ControllerOutput& output) {
@@ -181,6 +151,7 @@ void ControllerNode::report(diagnostic_updater::DiagnosticStatusWrapper& status)
   status.add("corner error [px]", last_input_.task_error.corner_error);
   status.add("age of d2 [s]", last_input_.depth.age);
   status.add("d2 [m]", last_input_.depth.d2);
+  scope_pose_.describe(status);
   status.add("insertion point beside the shaft [m]", last_input_.depth.lateral_offset);
   status.add("age of the manual command [s]", last_input_.manual.age);
   const servo::InsertionPointEstimate& point = controller_.insertionPoint().estimate();

@@ -4,6 +4,8 @@
 
 #include <limits>
 
+#include "laparoscope_servo/ros/frame_names.h"
+
 namespace laparoscope_servo::skin {
 
 namespace {
@@ -89,6 +91,9 @@ void readSafety(ParameterReader& reader, servo::SafetyConfig& safety) {
   readNumber(reader, "safety/manual_neutral", safety.manual_neutral);
   reader.read("safety/max_repeated_errors", safety.max_repeated_errors, 1, 100);
   readNumber(reader, "safety/max_clock_difference", safety.max_clock_difference);
+  readNumber(reader, "safety/max_tip_speed", safety.max_tip_speed);
+  readNumber(reader, "safety/max_tip_turn", safety.max_tip_turn);
+  readNumber(reader, "safety/max_optics_offset", safety.max_optics_offset);
 }
 
 void readFrame(ParameterReader& reader, const std::string& path, std::string& frame) {
@@ -158,6 +163,8 @@ ControllerNodeConfig controllerNodeConfig(ParameterReader& reader) {
   readFrame(reader, "frames/insertion_point", config.insertion_point);
   readFrame(reader, "frames/camera", config.camera);
   readFrame(reader, "frames/shaft", config.shaft);
+  reader.read("frame_prefix", config.frame_prefix);
+  readOwner(reader, "owners/tf", config.tf_owner);
   readOwner(reader, "owners/task_error", config.owners.task_error);
   readOwner(reader, "owners/operating_state", config.owners.operating_state);
   readOwner(reader, "owners/manual", config.owners.manual);
@@ -167,6 +174,14 @@ ControllerNodeConfig controllerNodeConfig(ParameterReader& reader) {
   reader.read("diagnostic_period", diagnostic_period, 0.1, 60.0);
   reader.refuseUnknown("");
   return config;
+}
+
+void resolveNames(ControllerNodeConfig& config, const ros::NodeHandle& node) {
+  config.frame_prefix = framePrefix(config.frame_prefix, node.getNamespace());
+  for (std::string* frame : {&config.insertion_point, &config.camera, &config.shaft}) {
+    *frame = prefixedFrame(config.frame_prefix, *frame);
+  }
+  if (!config.tf_owner.empty()) config.tf_owner = node.resolveName(config.tf_owner, false);
 }
 
 }  // namespace laparoscope_servo::skin

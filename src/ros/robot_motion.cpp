@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "laparoscope_servo/ros/frame_names.h"
+
 namespace laparoscope_servo::skin {
 
 namespace {
@@ -18,6 +20,10 @@ Eigen::Isometry3d toEigen(const geometry_msgs::Transform& transform) {
 }
 
 }  // namespace
+
+std::string fixedFrame(const RobotMotionConfig& config, const std::string& name_space) {
+  return prefixedFrame(framePrefix(config.frame_prefix, name_space), config.fixed_frame);
+}
 
 std::optional<Eigen::Isometry3d> cameraMotion(const tf2::BufferCore& tf, const std::string& fixed_frame,
                                               const std::string& frame, const ros::Time& from, const ros::Time& to,

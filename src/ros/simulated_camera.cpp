@@ -44,6 +44,7 @@ SimulatedCameraConfig simulatedCameraConfig(ParameterReader& reader) {
   SimulatedCameraConfig config;
   reader.require("control", "the path of the emulator's control socket");
   reader.read("control", config.control);
+  reader.read("frame_prefix", config.frame_prefix);
   reader.read("frame_id", config.frame_id);
   reader.read("base_frame", config.base_frame);
   config.scene = readSceneConfig(reader);

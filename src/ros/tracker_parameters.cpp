@@ -1,5 +1,7 @@
 #include "laparoscope_servo/ros/tracker_parameters.h"
 
+#include <ros/names.h>
+
 #include <algorithm>
 #include <cstdlib>
 #include <sstream>
@@ -126,11 +128,18 @@ void readRoi(ParameterReader& reader, const std::string& name, std::optional<geo
 void readRobotMotion(ParameterReader& reader, const std::string& name, RobotMotionConfig& config) {
   reader.read("robot_motion/enabled", config.enabled);
   reader.read("robot_motion/fixed_frame", config.fixed_frame);
+  reader.read("robot_motion/frame_prefix", config.frame_prefix);
+  reader.read("robot_motion/owner", config.owner);
   reader.read("robot_motion/depth", config.depth, 0.005, 1.0);
   reader.refuseUnknown("robot_motion");
   if (config.fixed_frame.empty() || config.fixed_frame[0] == '/') {
     reader.addError(name + "/robot_motion/fixed_frame is '" + config.fixed_frame +
                     "', expected the name of a tf frame, without a leading slash");
+  }
+  std::string why;
+  if (!config.owner.empty() && (config.owner.front() == '~' || !ros::names::validate(config.owner, why))) {
+    reader.addError(name + "/robot_motion/owner is '" + config.owner +
+                    "', expected the name of a node, e.g. aesop or /aesop, or nothing");
   }
 }
 

@@ -140,6 +140,9 @@ void checkSafety(const SafetyConfig& config, Checker& check) {
   check.range("safety/max_depth", config.max_depth, 0.005, 0.5, "m");
   check.atLeast("safety/max_depth", config.max_depth, "safety/min_depth", config.min_depth);
   check.range("safety/max_lateral_offset", config.max_lateral_offset, 0.0, 0.1, "m");
+  check.range("safety/max_tip_speed", config.max_tip_speed, 0.01, 1000.0, "m/s");
+  check.range("safety/max_tip_turn", config.max_tip_turn, 0.05, 1000.0, "rad/s");
+  check.range("safety/max_optics_offset", config.max_optics_offset, 0.0, 1.0, "m");
   check.range("safety/resume_time", config.resume_time, 0.0, 10.0, "s");
   check.range("safety/max_period", config.max_period, 0.001, 1.0, "s");
   check.range("safety/max_clock_step", config.max_clock_step, 0.01, 10.0, "s");

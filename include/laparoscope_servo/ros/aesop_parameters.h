@@ -31,7 +31,7 @@ struct AesopParameters {
   std::string insertion_point_file;    // a calibration that takes the place of insertion_point; empty: none
   std::string insertion_point_origin;  // where driver.insertion_point is from, in words
   CalibrationParameters calibration;
-  std::string frame_prefix;  // in front of every frame's name
+  std::string frame_prefix = "auto";  // in front of every frame's name; auto: see frame_names.h
   // Node whose velocity commands count; a name without a leading slash is one of the node's namespace.
   std::string publisher = "controller";
   // Nodes that may call what lets the arm move: enable, resume, clear_fault, the calibration; none: every node.

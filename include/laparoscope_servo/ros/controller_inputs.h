@@ -13,7 +13,6 @@
 #include <ros/ros.h>
 #include <std_msgs/Bool.h>
 #include <std_msgs/Empty.h>
-#include <tf2_ros/buffer.h>
 
 #include <functional>
 #include <limits>
@@ -33,11 +32,13 @@ class ControllerInputs {
   struct Calls {
     std::function<void()> check_time;                     // before a stamp is compared with ROS time
     std::function<void(const std::string& sender)> stop;  // somebody stops the arm
+    // Rotation from a frame's axes to the shaft's; nothing: unknown.
+    std::function<std::optional<Eigen::Quaterniond>(const std::string& frame)> shaft_from;
   };
 
-  // Subscribes. `tf` must outlive it.
+  // Subscribes.
   ControllerInputs(ros::NodeHandle& node, ros::NodeHandle& private_node, const ControllerNodeConfig& config,
-                   const tf2_ros::Buffer& tf, const Calls& calls);
+                   const Calls& calls);
 
   // After each step of the controller, and each request to it: what it does.
   void know(bool engaged, servo::Task task);
@@ -79,7 +80,6 @@ class ControllerInputs {
   static void describe(Input& input, diagnostic_updater::DiagnosticStatusWrapper& status);
 
   ControllerNodeConfig config_;
-  const tf2_ros::Buffer& tf_;
   Calls calls_;
   bool engaged_ = false;
   servo::Task task_ = servo::Task::kHoldView;

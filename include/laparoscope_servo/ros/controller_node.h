@@ -12,15 +12,13 @@
 #include <laparoscope_servo/SelectTask.h>
 #include <ros/ros.h>
 #include <std_srvs/SetBool.h>
-#include <tf2_ros/transform_listener.h>
 
 #include <string>
 
 #include "laparoscope_servo/ros/controller_inputs.h"
 #include "laparoscope_servo/ros/controller_parameters.h"
-#include "laparoscope_servo/ros/future_transforms.h"
+#include "laparoscope_servo/ros/scope_pose.h"
 #include "laparoscope_servo/ros/stamp_watch.h"
-#include "laparoscope_servo/ros/static_frame_watch.h"
 #include "laparoscope_servo/servo/controller.h"
 
 namespace laparoscope_servo::skin {
@@ -40,7 +38,6 @@ class ControllerNode {
   void onTick();
   void checkTime();
   servo::ControllerInput input();
-  servo::DepthInput depth(double steady_now);
   void publish(const servo::ControllerOutput& output);
   void publishState(const servo::ControllerOutput& output);
   void warn(const std::string& caution);
@@ -48,9 +45,7 @@ class ControllerNode {
 
   ControllerNodeConfig config_;
   servo::Controller controller_;
-  StampWatch depth_watch_;
-  StaticFrameWatch insertion_point_watch_;
-  FutureTransforms future_transforms_;
+  ScopePose scope_pose_;
   ros::Time last_now_;
   std::string clock_jump_;  // since the last step, in words
   servo::ControllerInput last_input_;
@@ -59,8 +54,6 @@ class ControllerNode {
   std::string said_caution_;   // on the screen
   double next_caution_ = 0.0;  // s, steady
 
-  tf2_ros::Buffer tf_;
-  tf2_ros::TransformListener tf_listener_;
   ControllerInputs inputs_;
   diagnostic_updater::Updater diagnostics_;
   ros::Publisher command_publisher_;

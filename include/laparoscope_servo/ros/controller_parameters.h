@@ -1,6 +1,8 @@
 // Parameters of the controller node, see config/controller.yaml.
 #pragma once
 
+#include <ros/node_handle.h>
+
 #include <string>
 
 #include "laparoscope_servo/ros/parameters.h"
@@ -23,11 +25,16 @@ struct ControllerNodeConfig {
   std::string camera = "laparoscope_optical";       // tf frame, O_C
   std::string shaft = "scope_tip";                  // tf frame with its z axis along the shaft, into the body
   InputOwners owners;
+  std::string frame_prefix = "auto";                // in front of frames without a slash; auto: the namespace
+  std::string tf_owner = "aesop";                   // the node that publishes them; empty: whoever is the first
   servo::ControllerConfig control;
 };
 
 // Reads what is set, keeps the defaults for the rest. Errors, also those of servo::validate, go to the reader.
 ControllerNodeConfig controllerNodeConfig(ParameterReader& reader);
+
+// Completes the names of frames and nodes, which depend on the node's namespace.
+void resolveNames(ControllerNodeConfig& config, const ros::NodeHandle& node);
 
 // The part of it that simulate_servo shares.
 servo::ControllerConfig controllerConfig(ParameterReader& reader);

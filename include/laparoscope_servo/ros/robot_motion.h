@@ -14,7 +14,12 @@ struct RobotMotionConfig {
   bool enabled = false;
   std::string fixed_frame = "aesop_base";  // that the tissue does not move in
   double depth = 0.08;  // m, 0.005 to 1: of the tissue in front of the camera, taken to be parallel to the image
+  std::string frame_prefix = "auto";  // in front of fixed_frame, unless it has a slash; auto: the namespace
+  std::string owner = "aesop";        // the node whose tf is believed; empty: whoever publishes a frame first
 };
+
+// fixed_frame by its full name.
+std::string fixedFrame(const RobotMotionConfig& config, const std::string& name_space);
 
 // The motion to_T_from of `frame` in `fixed_frame`. Does not wait: when tf does not know a pose at one of the times, or
 // knows one that is not finite, it is empty, and `why` says so.

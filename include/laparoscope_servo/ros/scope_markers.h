@@ -20,7 +20,7 @@
 namespace laparoscope_servo::skin {
 
 struct ScopeMarkersConfig {
-  std::string frame_prefix;                          // in front of every frame's name, as for the aesop node
+  std::string frame_prefix = "auto";                 // in front of every frame's name, as for the aesop node
   std::string camera_frame = "laparoscope_optical";  // without the prefix
   std::string insertion_point = "insertion_point";   // without the prefix
   double view_depth = 0.08;                          // m, > 0: how far the field of view is drawn

@@ -26,6 +26,7 @@ namespace laparoscope_servo::skin {
 
 struct SimulatedCameraConfig {
   std::string control;                           // path of the emulator's control socket; required
+  std::string frame_prefix = "auto";             // in front of frames without a slash, see frame_names.h
   std::string frame_id = "laparoscope_optical";  // of the images
   std::string base_frame = "aesop_base";         // of the markers
   sim::SceneConfig scene;                        // config/simulation.yaml

@@ -9,6 +9,9 @@ struct SafetyConfig {
   double min_depth = 0.02;            // m, d2 below it stops the arm
   double max_depth = 0.25;            // m, d2 above it stops the arm
   double max_lateral_offset = 0.015;  // m, from the insertion point to the shaft; beyond it the arm stops
+  double max_tip_speed = 0.15;        // m/s, a scope whose pose changes faster is not the arm's doing
+  double max_tip_turn = 1.0;          // rad/s, the same
+  double max_optics_offset = 0.005;   // m, from the shaft's frame to the camera's: both are at the tip
   double resume_time = 2.0;           // s, a hold that ends within it resumes by itself; a longer one disengages
   double max_period = 0.1;            // s, the most that one step counts for the limit on acceleration
   double max_clock_step = 1.0;        // s, a longer pause between two steps is a jump of the clock

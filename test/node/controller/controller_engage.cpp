@@ -123,8 +123,13 @@ TEST_F(ControllerEngage, ObliqueOpticsServoInTheShaftsAxes) {
       feed.message.alpha = 0.5;
     };
   };
-  engageAndMove();
   for (const double optics : {0.0, 0.5236}) {
+    bool success = false;
+    cart_.engage(false, success);  // nobody turns the optics while the scope is driven: that is a fault
+    ASSERT_TRUE(success);
+    cart_.strike([=](Feed& feed) { feed.optics = optics; });
+    cart_.nextCommands(10);  // until the controller has it
+    engageAndMove();
     cart_.set(turned(optics));
     const auto settled = [&] {
       const ScopeVelocity command = cart_.nextCommands(1).back();

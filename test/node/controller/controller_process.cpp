@@ -80,7 +80,7 @@ TEST(ControllerProcess, ListsAllBadParametersAndRefusesToStart) {
 }
 
 TEST(ControllerProcess, StartsWithoutFurtherParameters) {
-  Process process({"__name:=plain", "servo_command:=plain/servo_command"});
+  Process process({"__name:=plain", "servo_command:=plain/servo_command", "_owners/tf:=controller_process"});
   FakeCart cart("/plain", "/plain/servo_command");
   ASSERT_TRUE(cart.waitForController());
   EXPECT_TRUE(cart.stands());
@@ -91,7 +91,7 @@ class Ending : public ::testing::TestWithParam<int> {};
 
 TEST_P(Ending, LastCommandIsZero) {
   const std::string name = "ending_" + std::to_string(GetParam());
-  Process process({"__name:=" + name, "servo_command:=" + name + "/servo_command"});
+  Process process({"__name:=" + name, "servo_command:=" + name + "/servo_command", "_owners/tf:=controller_process"});
   FakeCart cart("/" + name, "/" + name + "/servo_command");
   ASSERT_TRUE(cart.waitForController());
   ASSERT_TRUE(cart.engageWhenReady());
@@ -118,7 +118,7 @@ INSTANTIATE_TEST_SUITE_P(ByEachWay, Ending, ::testing::Values(SIGINT, SIGTERM, 0
 
 // A machine that stood still, a debugger: nobody knows what the arm has done in between.
 TEST(ControllerProcess, APauseOfTheProcessIsAFault) {
-  Process process({"__name:=paused", "servo_command:=paused/servo_command"});
+  Process process({"__name:=paused", "servo_command:=paused/servo_command", "_owners/tf:=controller_process"});
   FakeCart cart("/paused", "/paused/servo_command");
   ASSERT_TRUE(cart.waitForController());
   ASSERT_TRUE(cart.engageWhenReady());
@@ -138,7 +138,8 @@ TEST(ControllerProcess, APauseOfTheProcessIsAFault) {
 }
 
 TEST(ControllerProcess, NamesAFrameThatDoesNotExist) {
-  Process process({"__name:=nowhere", "servo_command:=nowhere/servo_command", "_frames/insertion_point:=atlantis"});
+  Process process({"__name:=nowhere", "servo_command:=nowhere/servo_command", "_frames/insertion_point:=atlantis",
+                   "_owners/tf:=controller_process"});
   FakeCart cart("/nowhere", "/nowhere/servo_command");
   ASSERT_TRUE(cart.waitForController());
   bool success = true;
@@ -161,7 +162,7 @@ TEST(ControllerProcess, RefusesAStaticDepth) {
   broadcaster.sendTransform(transform);
   Process process({"__name:=fixed", "servo_command:=fixed/servo_command",
                    "_frames/insertion_point:=fixed_insertion_point", "_frames/camera:=fixed_camera",
-                   "_frames/shaft:=fixed_camera"});
+                   "_frames/shaft:=fixed_camera", "_owners/tf:=controller_process"});
   FakeCart cart("/fixed", "/fixed/servo_command");
   ASSERT_TRUE(cart.waitForController());
   bool success = true;

@@ -91,6 +91,9 @@ std::vector<double> numbers(const ControllerNodeConfig& config) {
                           c.insertion_point.estimator.stop_residual,
                           c.insertion_point.estimator.wobble,
                           s.max_clock_step,
+                          s.max_tip_speed,
+                          s.max_tip_turn,
+                          s.max_optics_offset,
                           s.slow_below,
                           s.hold_below,
                           s.release_hold_above,
@@ -189,7 +192,10 @@ TEST(ControllerParameters, FileEqualsTheDefaults) {
   EXPECT_EQ(config.owners.operating_state, InputOwners().operating_state);
   EXPECT_EQ(config.owners.manual, InputOwners().manual);
   EXPECT_EQ(config.owners.dead_man, InputOwners().dead_man);
-  EXPECT_EQ(leaves(tree), numbers(config).size() - 2 * 2 + 3 + 4);  // lists are one leaf; the frames, the owners
+  EXPECT_EQ(config.frame_prefix, ControllerNodeConfig().frame_prefix);
+  EXPECT_EQ(config.tf_owner, ControllerNodeConfig().tf_owner);
+  // Lists are one leaf; three frames and their prefix, five owners.
+  EXPECT_EQ(leaves(tree), numbers(config).size() - 2 * 2 + 4 + 5);
 }
 
 TEST(ControllerParameters, FileOfTheSimulationEqualsTheDefaults) {

@@ -95,7 +95,9 @@ class SessionWithRobot : public testing::Test {
   SessionWithRobot() {
     TrackerParameters parameters;
     parameters.roi = kRoi;
-    parameters.robot_motion = {true, "base", kDepth};
+    parameters.robot_motion.enabled = true;
+    parameters.robot_motion.fixed_frame = "base";
+    parameters.robot_motion.depth = kDepth;
     // What is searched for afterwards is another matter.
     parameters.tracking.search.features = parameters.tracking.search.correlation = false;
     session_ = std::make_unique<TrackerSession>(parameters);

@@ -38,6 +38,8 @@ TEST(DefaultFile, EqualsTheDefaultsOfTheStructs) {
   EXPECT_EQ(file.robot_motion.enabled, code.robot_motion.enabled);
   EXPECT_EQ(file.robot_motion.fixed_frame, code.robot_motion.fixed_frame);
   EXPECT_EQ(file.robot_motion.depth, code.robot_motion.depth);
+  EXPECT_EQ(file.robot_motion.frame_prefix, code.robot_motion.frame_prefix);
+  EXPECT_EQ(file.robot_motion.owner, code.robot_motion.owner);
   EXPECT_EQ(file.views.capacity, code.views.capacity);
   EXPECT_EQ(file.views.min_visible_fraction, code.views.min_visible_fraction);
   EXPECT_EQ(file.views.arrival_centre, code.views.arrival_centre);
@@ -87,6 +89,8 @@ TEST(DefaultFile, NamesEveryParameter) {
                            "robot_motion/enabled",
                            "robot_motion/fixed_frame",
                            "robot_motion/depth",
+                           "robot_motion/frame_prefix",
+                           "robot_motion/owner",
                            "select_timeout",
                            "views/capacity",
                            "views/min_visible_fraction",
@@ -172,10 +176,11 @@ TEST(TrackerParametersTest, NameWhatIsWrongWithTheRobotsMotion) {
   tree["robot_motion"]["enabled"] = true;
   tree["robot_motion"]["fixed_frame"] = "/aesop_base";
   tree["robot_motion"]["depth"] = 0.0;
+  tree["robot_motion"]["owner"] = "~aesop";
   tree["robot_motion"]["dept"] = 0.1;
   const std::vector<std::string> errors = errorsOf(tree);
-  EXPECT_EQ(errors.size(), 3u) << errorReport(errors);
-  for (const char* field : {"fixed_frame", "robot_motion/depth", "robot_motion/dept"})
+  EXPECT_EQ(errors.size(), 4u) << errorReport(errors);
+  for (const char* field : {"fixed_frame", "robot_motion/owner", "robot_motion/depth", "robot_motion/dept"})
     EXPECT_TRUE(mentions(errors, field)) << field;
 }
 

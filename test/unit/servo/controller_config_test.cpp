@@ -94,6 +94,9 @@ std::vector<Field> fields() {
        [](ControllerConfig& c, double v) { c.safety.min_visible_for_insertion = v; }},
       {"safety/max_corner_error_for_insertion",
        [](ControllerConfig& c, double v) { c.safety.max_corner_error_for_insertion = v; }},
+      {"safety/max_tip_speed", [](ControllerConfig& c, double v) { c.safety.max_tip_speed = v; }},
+      {"safety/max_tip_turn", [](ControllerConfig& c, double v) { c.safety.max_tip_turn = v; }},
+      {"safety/max_optics_offset", [](ControllerConfig& c, double v) { c.safety.max_optics_offset = v; }},
       {"safety/max_manual_age", [](ControllerConfig& c, double v) { c.safety.max_manual_age = v; }},
       {"safety/max_dead_man_age", [](ControllerConfig& c, double v) { c.safety.max_dead_man_age = v; }},
       {"safety/max_robot_state_age", [](ControllerConfig& c, double v) { c.safety.max_robot_state_age = v; }}};
