@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "laparoscope_servo/ros/clocks.h"
+#include "laparoscope_servo/ros/network_exposure.h"
 #include "laparoscope_servo/ros/overlay.h"
 #include "laparoscope_servo/ros/parameters.h"
 #include "laparoscope_servo/ros/result_messages.h"
@@ -74,6 +75,7 @@ void Tracker::onInit() {
     std::vector<std::string> errors;
     const auto parameters = skin::readTrackerParameters(skin::parametersOf(getPrivateNodeHandle()), name, errors);
     if (!errors.empty()) return standAside(skin::errorReport(errors));
+    skin::warnOfExposure();
     start(parameters);
   } catch (const std::exception& error) {
     standAside(error.what());

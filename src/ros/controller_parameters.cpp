@@ -146,6 +146,7 @@ ControllerNodeConfig controllerNodeConfig(ParameterReader& reader) {
   readFrame(reader, "frames/camera", config.camera);
   readFrame(reader, "frames/shaft", config.shaft);
   config.control = controllerConfig(reader);
+  readExternalStops(reader, config.external_stops);
   double diagnostic_period = 1.0;  // read again by diagnostic_updater
   reader.read("diagnostic_period", diagnostic_period, 0.1, 60.0);
   reader.refuseUnknown("");

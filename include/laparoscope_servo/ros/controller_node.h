@@ -21,6 +21,7 @@
 #include <limits>
 
 #include "laparoscope_servo/ros/controller_parameters.h"
+#include "laparoscope_servo/ros/external_stops.h"
 #include "laparoscope_servo/ros/future_transforms.h"
 #include "laparoscope_servo/ros/stamp_watch.h"
 #include "laparoscope_servo/ros/static_frame_watch.h"
@@ -35,6 +36,8 @@ class ControllerNode {
 
   // Disengages and publishes zeros. For the end of the process: call it while publishers are still open.
   void stop();
+  // The ROS master is not that of the start any more: the node has to end, for nobody finds it.
+  bool mustEnd() const { return stops_.mustEnd(); }
 
  private:
   void onTaskError(const TaskError& message);
@@ -46,6 +49,8 @@ class ControllerNode {
   bool onEngage(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
   void onTick();
   void checkTime();
+  // Ends what is engaged when something outside of ROS, or the end of its master, stops the arm.
+  void watchOutside();
   servo::ControllerInput input();
   servo::DepthInput depth(double steady_now);
   void publish(const servo::ControllerOutput& output);
@@ -54,6 +59,7 @@ class ControllerNode {
 
   ControllerNodeConfig config_;
   servo::Controller controller_;
+  ExternalStops stops_;
   servo::TaskErrorInput task_error_;
   StampWatch task_error_watch_;
   StampWatch depth_watch_;

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "laparoscope_servo/ros/external_stops.h"
 #include "laparoscope_servo/ros/parameters.h"
 #include "laparoscope_servo/servo/controller_config.h"
 
@@ -14,6 +15,7 @@ struct ControllerNodeConfig {
   std::string camera = "laparoscope_optical";       // tf frame, O_C
   std::string shaft = "scope_tip";                  // tf frame with its z axis along the shaft, into the body
   servo::ControllerConfig control;
+  ExternalStopsConfig external_stops;
 };
 
 // Reads what is set, keeps the defaults for the rest. Errors, also those of servo::validate, go to the reader.

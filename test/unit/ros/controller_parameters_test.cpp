@@ -100,7 +100,13 @@ std::vector<double> numbers(const ControllerNodeConfig& config) {
                           s.max_manual_age,
                           s.max_corner_error_for_insertion,
                           s.dead_man_required ? 1.0 : 0.0,
-                          s.robot_required ? 1.0 : 0.0};
+                          s.robot_required ? 1.0 : 0.0,
+                          config.external_stops.master.period,
+                          config.external_stops.master.hold,
+                          config.external_stops.master.patience,
+                          static_cast<double>(config.external_stops.stop_line.release),
+                          config.external_stops.stop_line.rate,
+                          config.external_stops.stop_line.patience};
   for (const servo::ScopeVelocity& v : {c.dead_zone.width, c.limits.velocity, c.limits.acceleration}) {
     for (const double number : numbers(v)) all.push_back(number);
   }
@@ -181,7 +187,9 @@ TEST(ControllerParameters, FileEqualsTheDefaults) {
   EXPECT_EQ(config.insertion_point, ControllerNodeConfig().insertion_point);
   EXPECT_EQ(config.camera, ControllerNodeConfig().camera);
   EXPECT_EQ(config.shaft, ControllerNodeConfig().shaft);
-  EXPECT_EQ(leaves(tree), numbers(config).size() - 2 * 2 + 3);  // lists are one leaf; and the three frames
+  EXPECT_EQ(config.external_stops.stop_line.path, "");
+  EXPECT_EQ(config.external_stops.stop_line.signal, "");
+  EXPECT_EQ(leaves(tree), numbers(config).size() - 2 * 2 + 5);  // lists are one leaf; and five texts
 }
 
 TEST(ControllerParameters, FileOfTheSimulationEqualsTheDefaults) {
@@ -229,7 +237,7 @@ TEST(ControllerParameters, EveryNumberOfTheFileHasAFieldOfItsOwn) {
       }
     }
   }
-  EXPECT_EQ(changed, 82);
+  EXPECT_EQ(changed, 87);
 }
 
 TEST(ControllerParameters, NothingSetGivesTheDefaults) {
