@@ -13,6 +13,7 @@ std::vector<std::string> validate(const CommandConfig& config) {
   validation::RangeChecker check;
   check.range("timeout", config.timeout, 0.02, 2.0);
   check.range("max_stamp_age", config.max_stamp_age, 0.02, 10.0);
+  check.range("max_stamp_lead", config.max_stamp_lead, 0.0, 2.0);
   check.range("max_pan", config.max_pan, 1e-4, 1.0);
   check.range("max_tilt", config.max_tilt, 1e-4, 1.0);
   check.range("max_spin", config.max_spin, 1e-4, 1.0);
@@ -30,11 +31,16 @@ std::string CommandGuard::describe(Refusal refusal) const {
       return "is older than the enable";
     case Refusal::kNotNewer:
       return "has a stamp that is not newer than that of the one before";
-    case Refusal::kFarFromNow:
+    case Refusal::kTooOld:
+    case Refusal::kAhead:
       break;
   }
   std::ostringstream text;
-  text << "has a stamp more than " << config_.max_stamp_age << " s from now";
+  if (refusal == Refusal::kTooOld) {
+    text << "has a stamp more than " << config_.max_stamp_age << " s old";
+  } else {
+    text << "is stamped more than " << config_.max_stamp_lead << " s ahead: compare the clocks of the machines";
+  }
   return text.str();
 }
 
@@ -48,7 +54,8 @@ std::string CommandGuard::accept(const ScopeVelocity& velocity, double stamp, do
   }
   last_ = clamp(velocity);
   accepted_at_ = now;
-  if (stamp > last_stamp_ && stamp <= stamp_now + config_.max_stamp_age) last_stamp_ = stamp;
+  // A zero may bear any stamp: one from the future would keep out all that follows.
+  if (stamp > last_stamp_ && stamp <= stamp_now + config_.max_stamp_lead) last_stamp_ = stamp;
   ++accepted_;
   return "";
 }
@@ -59,7 +66,8 @@ std::optional<Refusal> CommandGuard::judge(const ScopeVelocity& velocity, double
   if (!(stamp > 0.0)) return Refusal::kNoStamp;
   if (!(stamp > not_before_)) return Refusal::kOlderThanEnable;
   if (!(stamp > last_stamp_)) return Refusal::kNotNewer;
-  if (!(std::abs(stamp_now - stamp) <= config_.max_stamp_age)) return Refusal::kFarFromNow;
+  if (!(stamp_now - stamp <= config_.max_stamp_age)) return Refusal::kTooOld;
+  if (!(stamp - stamp_now <= config_.max_stamp_lead)) return Refusal::kAhead;
   return std::nullopt;
 }
 

@@ -75,6 +75,11 @@ std::string Driver::disable(double now) {
   return session_.disable(now);
 }
 
+std::string Driver::stop(double now, const std::string& reason) {
+  if (tap_ != nullptr) record(WireEvent::kDisable, now, payloadOf(reason));
+  return session_.stop(now, reason);
+}
+
 std::string Driver::clearFault(double now) {
   record(WireEvent::kClearFault, now);
   return session_.clearFault(now);

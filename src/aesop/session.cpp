@@ -70,8 +70,14 @@ std::string Session::enable(double now) {
   return "";
 }
 
-std::string Session::disable(double now) {
-  drop("disabled on request");
+std::string Session::stop(double now, const std::string& reason) {
+  const std::string refusal = disable(now, reason);
+  stopped_ = true;
+  return refusal;
+}
+
+std::string Session::disable(double now, const std::string& reason) {
+  drop(reason);
   stopped_ = false;
   askForDisable();
   disable_deadline_ = now + config_.request_timeout;
@@ -224,6 +230,10 @@ Bytes Session::request(bool move, const std::array<double, kDrivenJoints>& speed
   moved_ = move;
   urgent_ = false;
   return bytes;
+}
+
+bool Session::isUnconfirmed() const {
+  return reason_ == kUnconfirmed;
 }
 
 bool Session::isEnabled() const {

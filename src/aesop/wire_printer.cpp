@@ -65,7 +65,7 @@ std::string eventText(const WireRecord& record) {
     case WireEvent::kEnable:
       return "asked to enable";
     case WireEvent::kDisable:
-      return "asked to disable";
+      return "asked to disable" + (record.payload.empty() ? "" : ": " + textOf(record));
     case WireEvent::kClearFault:
       return "asked to clear a fault";
     case WireEvent::kPause:

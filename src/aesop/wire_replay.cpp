@@ -26,7 +26,11 @@ void WireReplay::feed(const WireRecord& record) {
       driver_.enable(numbersOf(record, 1)[0], now_);
       break;
     case WireEvent::kDisable:
-      driver_.disable(now_);
+      if (record.payload.empty()) {
+        driver_.disable(now_);
+      } else {
+        driver_.stop(now_, textOf(record));
+      }
       break;
     case WireEvent::kClearFault:
       driver_.clearFault(now_);

@@ -11,6 +11,7 @@
 
 #include "laparoscope_servo/ros/clocks.h"
 #include "laparoscope_servo/ros/image_gate.h"
+#include "laparoscope_servo/ros/network_exposure.h"
 #include "laparoscope_servo/ros/overlay.h"
 #include "laparoscope_servo/ros/parameters.h"
 #include "laparoscope_servo/ros/result_messages.h"
@@ -76,6 +77,7 @@ void Tracker::onInit() {
     std::vector<std::string> errors;
     const auto parameters = skin::readTrackerParameters(skin::parametersOf(getPrivateNodeHandle()), name, errors);
     if (!errors.empty()) return standAside(skin::errorReport(errors));
+    skin::warnOfExposure();
     start(parameters);
   } catch (const std::exception& error) {
     standAside(error.what());

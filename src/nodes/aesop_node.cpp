@@ -6,7 +6,9 @@
 #include <exception>
 
 #include "laparoscope_servo/ros/frame_names.h"
+#include "laparoscope_servo/ros/network_exposure.h"
 #include "laparoscope_servo/ros/stop_request.h"
+#include "laparoscope_servo/ros/unblocked_output.h"
 
 namespace {
 
@@ -22,13 +24,23 @@ int run() {
     return 1;
   }
   parameters.frame_prefix = skin::framePrefix(parameters.frame_prefix, node.getNamespace());
-  skin::AesopNode(node, private_node, parameters).run(skin::stopRequested);
-  return 0;
+  skin::AesopNode aesop(node, private_node, parameters);
+  skin::warnOfExposure();
+  int status = 0;
+  try {
+    aesop.run(skin::stopRequested);
+  } catch (const std::exception& error) {
+    ROS_FATAL_STREAM(error.what());
+    status = 1;
+  }
+  skin::limitFarewell(status);
+  return status;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+  const laparoscope_servo::skin::UnblockedOutput output;
   // No handler of ROS: the arm has to be disabled while there is still a node to do it.
   ros::init(argc, argv, "aesop", ros::init_options::NoSigintHandler);
   int status = 1;

@@ -8,8 +8,10 @@
 
 #include "laparoscope_servo/ros/parameters.h"
 #include "laparoscope_servo/ros/tracker_parameters.h"
+#include "laparoscope_servo/ros/unblocked_output.h"
 
 int main(int argc, char** argv) {
+  const laparoscope_servo::skin::UnblockedOutput output;
   ros::init(argc, argv, "tracker");
   {
     // The nodelet would stand aside to spare its manager. A node of its own says so by its exit status.

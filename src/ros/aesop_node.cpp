@@ -4,6 +4,7 @@
 #include <ros/ros.h>
 
 #include <chrono>
+#include <stdexcept>
 #include <thread>
 
 #include "laparoscope_servo/ros/aesop_conversions.h"
@@ -17,8 +18,8 @@ namespace {
 
 constexpr std::chrono::milliseconds kPeriod{5};
 constexpr std::uint32_t kQueue = 1000;     // commands: 0.1 s of a stranger that floods the topic with 10 kHz
-constexpr double kReportPause = 1.0;       // s, between two warnings of a command that was refused
-constexpr double kStrangerPause = 10.0;    // s, between two of a publisher that is not the master
+constexpr double kReportPause = 1.0;       // s, between two warnings of commands that are refused for the same reason
+constexpr double kStrangerPause = 10.0;    // s, between two of the same publisher that is not the master
 constexpr double kDiagnosticsPause = 1.0;  // s
 constexpr double kStatePeriod = 0.1;       // s, between two publications of an operating state that stays
 constexpr double kLastWord = 0.5;          // s, for the controller to confirm the disable when the node ends
@@ -41,6 +42,9 @@ AesopNode::AesopNode(const ros::NodeHandle& node, const ros::NodeHandle& private
       callers_(resolved(node, parameters.service_callers)),
       calibration_(private_node, parameters, callers_, service_errors_, driver_),
       reported_(parameters.port, aesop::lineWarning(parameters.driver.session, parameters.baud_rate)),
+      refused_lines_(kReportPause),
+      stranger_lines_(kStrangerPause),
+      stops_(parameters.external_stops),
       node_(node),
       private_node_(private_node) {
   joint_publisher_ = private_node_.advertise<sensor_msgs::JointState>("measured_js", 10);
@@ -50,6 +54,7 @@ AesopNode::AesopNode(const ros::NodeHandle& node, const ros::NodeHandle& private
   // Only the master's newest command counts, but others must not push it out of the queue.
   command_subscriber_ =
       node_.subscribe("servo_command", kQueue, &AesopNode::onCommand, this, ros::TransportHints().tcpNoDelay());
+  stop_subscriber_ = private_node_.subscribe("stop", 1, &AesopNode::onStop, this, ros::TransportHints().tcpNoDelay());
   advertise("enable", &AesopNode::enable, Callers::kNamed);
   advertise("resume", &AesopNode::resume, Callers::kNamed);
   advertise("clear_fault", &AesopNode::clearFault, Callers::kNamed);
@@ -60,6 +65,7 @@ AesopNode::AesopNode(const ros::NodeHandle& node, const ros::NodeHandle& private
   diagnostics_.add("AESOP", [this](diagnostic_updater::DiagnosticStatusWrapper& status) {
     const double now = steadyNow();
     reported_.fill(now, driver_, {master_, command_subscriber_.getNumPublishers(), reconnect_.remaining(now)}, status);
+    stops_.describe(now, status);
     calibration_.describe(status);
     if (recording_ && !recording_->problem().empty())
       status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, recording_->problem());
@@ -83,6 +89,7 @@ void AesopNode::run(const std::function<bool()>& stop) {
       ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.0));
       service_errors_.rethrow();
       step();
+      if (stops_.mustEnd()) throw std::runtime_error(stops_.masterProblem());
       std::this_thread::sleep_until(next);
     }
   } catch (const std::exception& error) {
@@ -108,6 +115,7 @@ void AesopNode::step() {
   const double now = steadyNow();
   if (calibration_.step(stampNow(), now)) publishStaticFrames();
   if (!transport_.isOpen()) connect(now);
+  watchOutside(now);
   exchange(now);
   if (driver_.session().link().isUp()) reconnect_.up(now);
   if (!driver_.session().isEnabled()) master_.release();
@@ -115,10 +123,31 @@ void AesopNode::step() {
   publishStatus();
   countEnables();
   publishState(now);
+  reportState(now);
   if (now >= next_diagnostics_) {
     next_diagnostics_ = now + kDiagnosticsPause;
     diagnostics_.force_update();
   }
+}
+
+void AesopNode::watchOutside(double now) {
+  const std::string stop = stops_.takeStop(now);
+  if (!stop.empty()) stopArm(stop, now);
+  // At every step: an enable that was under way may have been confirmed in the meantime.
+  const std::string& problem = stops_.masterProblem();
+  if (!problem.empty() && driver_.session().isEnabled()) driver_.pause(problem);
+  // What was commanded before is forgotten, and what comes in the meantime at the next step.
+  if (stops_.masterIsLate(now) && driver_.session().isEnabled()) driver_.command({}, 0.0, stampNow(), now);
+}
+
+void AesopNode::stopArm(const std::string& reason, double now) {
+  // Asked for again while it is under way, it would have to be confirmed again: a flood would never end.
+  const aesop::OperatingState state = driver_.state(now);
+  if (state.mode != aesop::OperatingMode::kDisabled || state.reason != reason) driver_.stop(now, reason);
+}
+
+void AesopNode::onStop(const ros::MessageEvent<std_msgs::Empty const>& event) {
+  stopArm("stopped by " + shownName(event.getPublisherName()), steadyNow());
 }
 
 void AesopNode::watchRecording() {
@@ -132,7 +161,6 @@ void AesopNode::connect(double now) {
   try {
     transport_.open(parameters_.port, parameters_.baud_rate);
     driver_.opened(now);
-    last_loss_.clear();
     ROS_INFO_STREAM(
         "port '" << parameters_.port << "' is open, "
                  << (transport_.lowLatency() ? "set to low latency" : "its driver has no low-latency setting"));
@@ -144,8 +172,6 @@ void AesopNode::connect(double now) {
 void AesopNode::lose(const std::string& reason, double now) {
   driver_.closed(reason);
   reconnect_.lost(now);
-  if (reason != last_loss_) ROS_ERROR_STREAM(reason << "; the arm is taken for DISABLED, trying again");
-  last_loss_ = reason;
 }
 
 bool AesopNode::repeatUntil(const std::function<bool()>& done, double seconds, const std::function<void()>& step) {
@@ -185,7 +211,8 @@ void AesopNode::onCommand(const ros::MessageEvent<ScopeVelocity const>& event) {
   const ScopeVelocity& message = *event.getConstMessage();
   switch (master_.judge(event.getPublisherName(), event.getConnectionHeaderPtr(), now)) {
     case InputOwner::Verdict::kStranger:
-      return report(master_.complaint(now), next_stranger_, kStrangerPause, now);
+      if (const auto line = stranger_lines_.take(master_.complaint(now), now)) ROS_WARN_STREAM(*line);
+      return;
     case InputOwner::Verdict::kNewConnection:
       // Restarted, replaced by another process of its name, or joined by one: which of them shall move the arm is for
       // somebody to say who sees it stand.
@@ -198,14 +225,8 @@ void AesopNode::onCommand(const ros::MessageEvent<ScopeVelocity const>& event) {
   if (calibration_.takes(velocity, now)) return;
   const std::string refusal = driver_.command(velocity, message.header.stamp.toSec(), stampNow(), now);
   // Commands that come before the arm is enabled are nobody's mistake, but one that is not finite is.
-  if (!refusal.empty() && (driver_.session().isEnabled() || !velocity.isFinite()))
-    report("a command was refused: " + refusal, next_report_, kReportPause, now);
-}
-
-void AesopNode::report(const std::string& refusal, double& next, double pause, double now) {
-  if (now < next) return;
-  next = now + pause;
-  ROS_WARN_STREAM(refusal);
+  if (refusal.empty() || (!driver_.session().isEnabled() && velocity.isFinite())) return;
+  if (const auto line = refused_lines_.take("a command was refused: " + refusal, now)) ROS_WARN_STREAM(*line);
 }
 
 void AesopNode::publishStatus() {
@@ -224,6 +245,8 @@ void AesopNode::publishStatus() {
 aesop::OperatingState AesopNode::state(double now) const {
   aesop::OperatingState state = driver_.state(now);
   const std::string complaint = master_.complaint(now);
+  if (state.mode == aesop::OperatingMode::kEnabled && stops_.masterIsLate(now))
+    state.reason = "held until the ROS master answers";
   if (!complaint.empty()) state.reason += (state.reason.empty() ? "" : "; ") + complaint;
   return state;
 }
@@ -241,14 +264,27 @@ void AesopNode::publishState(double now) {
   // Repeated, so that who relies on it notices when it ends.
   if (state_published_ && state == last_state_ && now - state_time_ < kStatePeriod) return;
   state_time_ = now;
-  if (!state_published_ || state.mode != last_state_.mode) {
-    ROS_INFO_STREAM(aesop::name(state.mode) << (state.reason.empty() ? "" : ": ") << state.reason);
-  }
   last_state_ = state;
   state_published_ = true;
   OperatingState message = toMessage(state, ros::Time::now());
   message.enables = enables_;
   state_publisher_.publish(message);
+}
+
+void AesopNode::reportState(double now) {
+  aesop::OperatingState state = driver_.state(now);
+  // Said by onCommand(), where none of them is missed.
+  if (state.mode == aesop::OperatingMode::kEnabled && state.reason.rfind("command refused: ", 0) == 0)
+    state.reason.clear();
+  const std::optional<StateLine> line = state_report_.take(state, driver_.session(), now);
+  if (!line) return;
+  if (line->severity == Severity::kError) {
+    ROS_ERROR_STREAM(line->text);
+  } else if (line->severity == Severity::kWarning) {
+    ROS_WARN_STREAM(line->text);
+  } else {
+    ROS_INFO_STREAM(line->text);
+  }
 }
 
 void AesopNode::publishStaticFrames() {

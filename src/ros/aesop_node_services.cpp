@@ -36,6 +36,8 @@ void AesopNode::advertise(const std::string& name, Action action, Callers caller
 }
 
 Response AesopNode::enable() {
+  const std::string obstacle = stops_.obstacle(steadyNow());
+  if (!obstacle.empty()) return answer(obstacle);
   if (calibration_.waits()) return answer("a new insertion point waits until the arm stands; try again");
   Response response = answer(driver_.enable(stampNow(), steadyNow()));
   if (!response.success) return response;
@@ -74,7 +76,8 @@ Response AesopNode::pause() {
 }
 
 Response AesopNode::resume() {
-  return answer(driver_.resume(stampNow()));
+  const std::string obstacle = stops_.obstacle(steadyNow());
+  return answer(obstacle.empty() ? driver_.resume(stampNow()) : obstacle);
 }
 
 }  // namespace laparoscope_servo::skin

@@ -115,6 +115,7 @@ void readCommand(ParameterReader& reader, std::string& publisher, aesop::Command
   checkNodeName(reader, "command/publisher", publisher);
   reader.read("command/timeout", config.timeout, -kLarge, kLarge);
   reader.read("command/max_stamp_age", config.max_stamp_age, -kLarge, kLarge);
+  reader.read("command/max_stamp_lead", config.max_stamp_lead, -kLarge, kLarge);
   reader.read("command/max_pan", config.max_pan, -kLarge, kLarge);
   reader.read("command/max_tilt", config.max_tilt, -kLarge, kLarge);
   reader.read("command/max_spin", config.max_spin, -kLarge, kLarge);
@@ -223,6 +224,7 @@ AesopParameters readAesopParameters(ParameterReader& reader) {
   readLink(reader, parameters.driver.session);
   readWireLog(reader, parameters.wire_log);
   readReconnect(reader, parameters.reconnect);
+  readExternalStops(reader, parameters.external_stops);
   readMonitor(reader, parameters.driver.monitor);
   readCalibration(reader, parameters.calibration);
   readInsertionPoint(reader, parameters);

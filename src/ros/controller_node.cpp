@@ -24,6 +24,7 @@ const char* doing(servo::Task task) {
 ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_node, const ControllerNodeConfig& config)
     : config_(config),
       controller_(config.control),
+      stops_(config.external_stops),
       scope_pose_(config),
       last_now_(ros::Time::now()),
       inputs_(node, private_node, config,
@@ -56,8 +57,16 @@ void ControllerNode::onStop(const std::string& sender) {
   onTick();
 }
 
+void ControllerNode::watchOutside() {
+  const double now = steadyNow();
+  std::string stop = stops_.takeStop(now);
+  if (stop.empty()) stop = stops_.obstacle(now);
+  if (!stop.empty() && controller_.engaged()) controller_.disengage(stop);
+}
+
 void ControllerNode::onTick() {
   checkTime();
+  watchOutside();
   last_input_ = input();
   clock_jump_.clear();
   inputs_.taken();
@@ -144,6 +153,7 @@ void ControllerNode::report(diagnostic_updater::DiagnosticStatusWrapper& status)
   status.add("reason", state.reason);
   status.add("speed scale", last_output_.speed_scale);
   const std::string problem = controller_.problem(last_input_);
+  stops_.describe(steadyNow(), status);
   status.add("ready to move", problem.empty() ? "yes" : "no: " + problem);
   status.add("age of the task error [s]", last_input_.task_error.age);
   status.add("age of its image [s]", last_input_.task_error.image_age);

@@ -1,4 +1,5 @@
 // The services of the controller. Each steps the control at once: its answer is what the arm does from now on.
+#include "laparoscope_servo/ros/clocks.h"
 #include "laparoscope_servo/ros/controller_conversions.h"
 #include "laparoscope_servo/ros/controller_node.h"
 
@@ -15,7 +16,8 @@ bool ControllerNode::onEngage(std_srvs::SetBool::Request& request, std_srvs::Set
     response.message = "was engaged already, " + toMessage(last_output_).state + ": " + last_output_.reason;
   } else {
     inputs_.engaging();
-    const std::string problem = controller_.engage(input());
+    std::string problem = stops_.obstacle(steadyNow());
+    if (problem.empty()) problem = controller_.engage(input());
     response.success = problem.empty();
     response.message = problem.empty() ? "engaged" : "not engaged: " + problem;
   }

@@ -170,6 +170,7 @@ ControllerNodeConfig controllerNodeConfig(ParameterReader& reader) {
   readOwner(reader, "owners/manual", config.owners.manual);
   readOwner(reader, "owners/dead_man", config.owners.dead_man);
   config.control = controllerConfig(reader);
+  readExternalStops(reader, config.external_stops);
   double diagnostic_period = 1.0;  // read again by diagnostic_updater
   reader.read("diagnostic_period", diagnostic_period, 0.1, 60.0);
   reader.refuseUnknown("");

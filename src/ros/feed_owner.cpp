@@ -1,6 +1,6 @@
 #include "laparoscope_servo/ros/feed_owner.h"
 
-#include "laparoscope_servo/ros/command_master.h"
+#include "laparoscope_servo/ros/input_owner.h"
 
 namespace laparoscope_servo::skin {
 

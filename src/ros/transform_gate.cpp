@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "laparoscope_servo/ros/command_master.h"
+#include "laparoscope_servo/ros/input_owner.h"
 
 namespace laparoscope_servo::skin {
 

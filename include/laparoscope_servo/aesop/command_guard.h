@@ -19,7 +19,8 @@ namespace laparoscope_servo::aesop {
 // Defaults are those of config/aesop.yaml, group `command`.
 struct CommandConfig {
   double timeout = 0.2;         // s, 0.02 to 2: a command that no other follows counts no longer
-  double max_stamp_age = 0.5;   // s, 0.02 to 10: between a command's stamp and now, either way
+  double max_stamp_age = 0.5;   // s, 0.02 to 10: between a command's stamp and now
+  double max_stamp_lead = 0.1;  // s, 0 to 2: a stamp may be ahead of now, as clocks of two machines differ
   double max_pan = 0.15;        // rad/s, > 0 to 1; beyond a limit all four are scaled, so that the direction is kept
   double max_tilt = 0.15;       // rad/s
   double max_spin = 0.3;        // rad/s
@@ -29,15 +30,15 @@ struct CommandConfig {
 std::vector<std::string> validate(const CommandConfig& config);
 
 // Why a command does not count.
-enum class Refusal { kNotFinite, kNoStamp, kOlderThanEnable, kNotNewer, kFarFromNow };
-constexpr std::size_t kRefusals = 5;
+enum class Refusal { kNotFinite, kNoStamp, kOlderThanEnable, kNotNewer, kTooOld, kAhead };
+constexpr std::size_t kRefusals = 6;
 
 class CommandGuard {
  public:
   explicit CommandGuard(const CommandConfig& config) : config_(config) {}
 
   // Takes a command, or says why not. One that is not finite is a zero. A zero is taken whatever its stamp. Any other
-  // needs a stamp that is newer than the last one and than the last reset, and not too far from `stamp_now`.
+  // needs a stamp that is newer than the last one and than the last reset, neither too old nor ahead of `stamp_now`.
   std::string accept(const ScopeVelocity& velocity, double stamp, double stamp_now, double now);
   // Zero until a command comes that was stamped after this moment.
   void reset(double stamp_now);

@@ -32,6 +32,7 @@ class Driver {
   // As in Session. The enable forgets all commands that were stamped before it.
   std::string enable(double stamp_now, double now);
   std::string disable(double now);
+  std::string stop(double now, const std::string& reason);
   std::string clearFault(double now);
   std::string pause(const std::string& reason = "paused on request");
   std::string resume(double stamp_now);

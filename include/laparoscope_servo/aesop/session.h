@@ -36,7 +36,9 @@ class Session {
 
   // Requests. Each returns why it cannot be, or an empty string when it is under way: state() tells how it ends.
   std::string enable(double now);
-  std::string disable(double now);
+  std::string disable(double now, const std::string& reason = "disabled on request");
+  // The same for who asks for it by something else than a service: it counts as a stop, see stopped().
+  std::string stop(double now, const std::string& reason);
   std::string clearFault(double now);
   std::string pause(const std::string& reason = "paused on request");
   std::string resume();
@@ -57,6 +59,8 @@ class Session {
   bool isMoving() const { return moved_; }
   // Something else than a request has ended the last ENABLED, or the disable is not confirmed.
   bool stopped() const { return stopped_; }
+  // The controller has not confirmed a disable in time: the arm may still move.
+  bool isUnconfirmed() const;
   const Link& link() const { return link_; }
   void setSequence(std::uint16_t sequence) { link_.setSequence(sequence); }
 

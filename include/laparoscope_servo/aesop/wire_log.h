@@ -22,7 +22,7 @@ enum class WireEvent : std::uint8_t {
   kReceived = 3,         // bytes from the controller
   kSent = 4,             // a turn of the driver; bytes to the controller, often none
   kEnable = 5,           // asked for; number: stamp_now
-  kDisable = 6,          // asked for
+  kDisable = 6,          // asked for; text: why, empty when a service did
   kClearFault = 7,       // asked for
   kPause = 8,            // asked for; text: why
   kResume = 9,           // asked for; number: stamp_now

@@ -6,6 +6,7 @@
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <ros/message_event.h>
 #include <ros/node_handle.h>
+#include <std_msgs/Empty.h>
 #include <std_srvs/Trigger.h>
 #include <tf2_ros/static_transform_broadcaster.h>
 #include <tf2_ros/transform_broadcaster.h>
@@ -19,9 +20,12 @@
 #include "laparoscope_servo/ros/aesop_diagnostics.h"
 #include "laparoscope_servo/ros/aesop_parameters.h"
 #include "laparoscope_servo/ros/calibration_services.h"
+#include "laparoscope_servo/ros/external_stops.h"
 #include "laparoscope_servo/ros/input_owner.h"
+#include "laparoscope_servo/ros/said_lines.h"
 #include "laparoscope_servo/ros/service_callers.h"
 #include "laparoscope_servo/ros/service_errors.h"
+#include "laparoscope_servo/ros/state_report.h"
 
 namespace laparoscope_servo::skin {
 
@@ -31,7 +35,8 @@ class AesopNode {
   AesopNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node, const AesopParameters& parameters);
 
   // Runs until `stop` returns true or ROS shuts down, then disables the arm and waits a moment for it to be confirmed.
-  // The same when anything throws, which is then thrown on.
+  // The same when anything throws, which is then thrown on, and when the ROS master is not that of the start any more,
+  // for which std::runtime_error is thrown.
   void run(const std::function<bool()>& stop);
 
  private:
@@ -48,7 +53,10 @@ class AesopNode {
   static bool repeatUntil(const std::function<bool()>& done, double seconds, const std::function<void()>& step);
 
   void onCommand(const ros::MessageEvent<ScopeVelocity const>& event);
-  void report(const std::string& refusal, double& next, double pause, double now);
+  // Any publisher may stop the arm: it works without a master, over connections that are open already.
+  void onStop(const ros::MessageEvent<std_msgs::Empty const>& event);
+  void stopArm(const std::string& reason, double now);
+  void watchOutside(double now);
 
   // Each returns what the service answers.
   Response enable();
@@ -67,6 +75,7 @@ class AesopNode {
   aesop::OperatingState state(double now) const;
   void publishState(double now);
   void countEnables();
+  void reportState(double now);
   void publishStaticFrames();
 
   AesopParameters parameters_;
@@ -82,9 +91,10 @@ class AesopNode {
   CalibrationServices calibration_;
   AesopDiagnostics reported_;
   double next_diagnostics_ = 0.0;  // s, steady
-  double next_report_ = 0.0;       // s, steady: of a refused command
-  double next_stranger_ = 0.0;     // s, steady: of a publisher that is not the master
-  std::string last_loss_;
+  SaidLines refused_lines_;
+  SaidLines stranger_lines_;
+  StateReport state_report_;
+  ExternalStops stops_;
   std::uint64_t published_ = 0;  // statuses received when the last one was published
   aesop::OperatingState last_state_;
   bool state_published_ = false;
@@ -99,6 +109,7 @@ class AesopNode {
   ros::Publisher twist_publisher_;
   ros::Publisher state_publisher_;
   ros::Subscriber command_subscriber_;
+  ros::Subscriber stop_subscriber_;
   std::vector<ros::ServiceServer> services_;
   tf2_ros::TransformBroadcaster broadcaster_;
   tf2_ros::StaticTransformBroadcaster static_broadcaster_;

@@ -9,6 +9,7 @@
 #include "laparoscope_servo/aesop/driver.h"
 #include "laparoscope_servo/aesop/reconnect.h"
 #include "laparoscope_servo/aesop/wire_log_file.h"
+#include "laparoscope_servo/ros/external_stops.h"
 #include "laparoscope_servo/ros/parameters.h"
 #include "laparoscope_servo/servo/insertion_point_fit.h"
 #include "laparoscope_servo/sim/emulator.h"
@@ -37,6 +38,7 @@ struct AesopParameters {
   // Nodes that may call what lets the arm move: enable, resume, clear_fault, the calibration; none: every node.
   std::vector<std::string> service_callers;
   aesop::WireLogConfig wire_log;
+  ExternalStopsConfig external_stops;
   double optics_angle = 0.0;  // rad, between the shaft and the optical axis, -1.3 to 1.3
   double optics_roll = 0.0;   // rad, of the camera about the shaft, -3.2 to 3.2
 };

@@ -17,6 +17,7 @@
 
 #include "laparoscope_servo/ros/controller_inputs.h"
 #include "laparoscope_servo/ros/controller_parameters.h"
+#include "laparoscope_servo/ros/external_stops.h"
 #include "laparoscope_servo/ros/scope_pose.h"
 #include "laparoscope_servo/ros/stamp_watch.h"
 #include "laparoscope_servo/servo/controller.h"
@@ -30,6 +31,8 @@ class ControllerNode {
 
   // Disengages and publishes zeros. For the end of the process: call it while publishers are still open.
   void stop();
+  // The ROS master is not that of the start any more: the node has to end, for nobody finds it.
+  bool mustEnd() const { return stops_.mustEnd(); }
 
  private:
   void onStop(const std::string& sender);
@@ -37,6 +40,8 @@ class ControllerNode {
   bool onEngage(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
   void onTick();
   void checkTime();
+  // Ends what is engaged when something outside of ROS, or the end of its master, stops the arm.
+  void watchOutside();
   servo::ControllerInput input();
   void publish(const servo::ControllerOutput& output);
   void publishState(const servo::ControllerOutput& output);
@@ -45,6 +50,7 @@ class ControllerNode {
 
   ControllerNodeConfig config_;
   servo::Controller controller_;
+  ExternalStops stops_;
   ScopePose scope_pose_;
   ros::Time last_now_;
   std::string clock_jump_;  // since the last step, in words

@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "laparoscope_servo/ros/external_stops.h"
 #include "laparoscope_servo/ros/parameters.h"
 #include "laparoscope_servo/servo/controller_config.h"
 
@@ -28,6 +29,7 @@ struct ControllerNodeConfig {
   std::string frame_prefix = "auto";                // in front of frames without a slash; auto: the namespace
   std::string tf_owner = "aesop";                   // the node that publishes them; empty: whoever is the first
   servo::ControllerConfig control;
+  ExternalStopsConfig external_stops;
 };
 
 // Reads what is set, keeps the defaults for the rest. Errors, also those of servo::validate, go to the reader.

@@ -5,6 +5,7 @@
 #include <sys/socket.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstdio>
 #include <cstring>
 
@@ -75,11 +76,32 @@ TEST(EnvironmentHook, keepsToLoopbackUnlessTheEnvironmentTellsOfOtherMachines) {
                             "ROS_MASTER_URI=http://127.0.0.1:11312/", "ROS_IP= ROS_HOSTNAME="}) {
     EXPECT_EQ(afterTheHook(local, "ROS_IP"), "127.0.0.1") << local;
   }
-  for (const char* spread : {"ROS_MASTER_URI=http://cart:11311", "ROS_MASTER_URI=http://localhost.example.org:11311",
-                             "ROS_HOSTNAME=cart", "ROS_HOSTNAME=localhost"}) {
+  EXPECT_EQ(afterTheHook("", "ROS_MASTER_URI"), "");
+  EXPECT_EQ(afterTheHook("ROS_MASTER_URI=http://127.0.0.1:11312/", "ROS_MASTER_URI"), "http://127.0.0.1:11312/");
+  EXPECT_EQ(afterTheHook("ROS_MASTER_URI=http://localhost:11312", "ROS_MASTER_URI"), "http://localhost:11312");
+  for (const char* spread :
+       {"ROS_MASTER_URI=http://cart:11311", "ROS_MASTER_URI=http://localhost.example.org:11311",
+        "ROS_MASTER_URI=http://127.example.org:11311", "ROS_MASTER_URI=http://192.0.2.77:11311",
+        "ROS_MASTER_URI=http://[2001:db8::77]:11311", "ROS_HOSTNAME=cart", "ROS_HOSTNAME=localhost"}) {
     EXPECT_EQ(afterTheHook(spread, "ROS_IP"), "") << spread;
   }
   EXPECT_EQ(afterTheHook("ROS_IP=10.9.0.2", "ROS_IP"), "10.9.0.2");
+}
+
+// A master that binds to 127.0.0.1 answers on no other address of the machine.
+TEST(EnvironmentHook, thisMachineInAnySpellingIsThisMachine) {
+  char name[256] = "";
+  ASSERT_EQ(::gethostname(name, sizeof(name) - 1), 0);
+  std::string upper = name;
+  std::transform(upper.begin(), upper.end(), upper.begin(), [](unsigned char c) { return std::toupper(c); });
+  const std::string node = name;
+  for (const std::string& host :
+       {std::string("LocalHost"), std::string("localhost."), std::string("127.0.1.1"), std::string("127.0.0.2"),
+        std::string("[::1]"), std::string("0.0.0.0"), node, upper, node + ".", node.substr(0, node.find('.'))}) {
+    const std::string environment = "ROS_MASTER_URI=http://" + host + ":11312/";
+    EXPECT_EQ(afterTheHook(environment, "ROS_IP"), "127.0.0.1") << host;
+    EXPECT_EQ(afterTheHook(environment, "ROS_MASTER_URI"), "http://localhost:11312/") << host;
+  }
 }
 
 TEST(EnvironmentHook, preloadsItsLibraryOnceAndKeepsOthers) {

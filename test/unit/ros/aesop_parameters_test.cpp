@@ -50,6 +50,15 @@ TEST(AesopParameters, shippedFileIsTheDefaults) {
   EXPECT_EQ(read.driver.motion.stopping_time, defaults.driver.motion.stopping_time);
   EXPECT_EQ(read.driver.command.timeout, defaults.driver.command.timeout);
   EXPECT_EQ(read.driver.command.max_stamp_age, defaults.driver.command.max_stamp_age);
+  EXPECT_EQ(read.driver.command.max_stamp_lead, defaults.driver.command.max_stamp_lead);
+  EXPECT_EQ(read.external_stops.master.period, defaults.external_stops.master.period);
+  EXPECT_EQ(read.external_stops.master.hold, defaults.external_stops.master.hold);
+  EXPECT_EQ(read.external_stops.master.patience, defaults.external_stops.master.patience);
+  EXPECT_EQ(read.external_stops.stop_line.path, defaults.external_stops.stop_line.path);
+  EXPECT_EQ(read.external_stops.stop_line.signal, defaults.external_stops.stop_line.signal);
+  EXPECT_EQ(read.external_stops.stop_line.release, defaults.external_stops.stop_line.release);
+  EXPECT_EQ(read.external_stops.stop_line.rate, defaults.external_stops.stop_line.rate);
+  EXPECT_EQ(read.external_stops.stop_line.patience, defaults.external_stops.stop_line.patience);
   EXPECT_EQ(read.driver.command.max_pan, defaults.driver.command.max_pan);
   EXPECT_EQ(read.driver.command.max_tilt, defaults.driver.command.max_tilt);
   EXPECT_EQ(read.driver.command.max_spin, defaults.driver.command.max_spin);
@@ -124,9 +133,10 @@ TEST(AesopParameters, aCalibratedInsertionPointTakesThePlaceOfTheConfiguredOne) 
 TEST(AesopParameters, everyParameterOfTheShippedFileIsRead) {
   XmlRpc::XmlRpcValue tree = shipped("aesop.yaml");
   tree["port"] = std::string("/dev/ttyUSB0");
-  for (const char* group : {"motion", "command", "link", "reconnect", "monitor", "calibration"}) {
+  for (const char* group :
+       {"motion", "command", "link", "reconnect", "monitor", "calibration", "master", "stop_line"}) {
     for (auto& member : tree[group]) {
-      if (member.first == "file") continue;  // any text is right
+      if (member.first == "file" || member.first == "path") continue;  // any text is right
       XmlRpc::XmlRpcValue changed = tree;
       changed[group][member.first] = std::string("no number, no name");
       ParameterReader reader(changed, "/aesop");

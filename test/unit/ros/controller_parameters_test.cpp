@@ -107,7 +107,13 @@ std::vector<double> numbers(const ControllerNodeConfig& config) {
                           s.max_clock_difference,
                           s.max_corner_error_for_insertion,
                           s.dead_man_required ? 1.0 : 0.0,
-                          s.robot_required ? 1.0 : 0.0};
+                          s.robot_required ? 1.0 : 0.0,
+                          config.external_stops.master.period,
+                          config.external_stops.master.hold,
+                          config.external_stops.master.patience,
+                          static_cast<double>(config.external_stops.stop_line.release),
+                          config.external_stops.stop_line.rate,
+                          config.external_stops.stop_line.patience};
   for (const servo::ScopeVelocity& v : {c.dead_zone.width, c.limits.velocity, c.limits.acceleration}) {
     for (const double number : numbers(v)) all.push_back(number);
   }
@@ -194,8 +200,10 @@ TEST(ControllerParameters, FileEqualsTheDefaults) {
   EXPECT_EQ(config.owners.dead_man, InputOwners().dead_man);
   EXPECT_EQ(config.frame_prefix, ControllerNodeConfig().frame_prefix);
   EXPECT_EQ(config.tf_owner, ControllerNodeConfig().tf_owner);
-  // Lists are one leaf; three frames and their prefix, five owners.
-  EXPECT_EQ(leaves(tree), numbers(config).size() - 2 * 2 + 4 + 5);
+  EXPECT_EQ(config.external_stops.stop_line.path, "");
+  EXPECT_EQ(config.external_stops.stop_line.signal, "");
+  // Lists are one leaf; three frames and their prefix, five owners, two texts of the stop line.
+  EXPECT_EQ(leaves(tree), numbers(config).size() - 2 * 2 + 4 + 5 + 2);
 }
 
 TEST(ControllerParameters, FileOfTheSimulationEqualsTheDefaults) {
@@ -243,7 +251,7 @@ TEST(ControllerParameters, EveryNumberOfTheFileHasAFieldOfItsOwn) {
       }
     }
   }
-  EXPECT_EQ(changed, 85);
+  EXPECT_EQ(changed, 94);
 }
 
 TEST(ControllerParameters, NothingSetGivesTheDefaults) {

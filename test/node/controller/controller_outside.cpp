@@ -1,0 +1,108 @@
+// What ends an engagement from outside of ROS: a signal, a stop line, the end of the ROS master; and a terminal that
+// nobody reads, which must not. Not a rostest: the master is the test's own.
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <iostream>
+
+#include "fake_cart.h"
+#include "support/own_master.h"
+#include "support/temporary_folder.h"
+#include "system/aesop/child_process.h"
+
+namespace laparoscope_servo {
+namespace {
+
+using test::ChildProcess;
+
+test_support::OwnMaster* own_master = nullptr;
+
+class ControllerOutside : public ::testing::Test {
+ protected:
+  ~ControllerOutside() override { own_master->start(); }  // for the next, and for those who say goodbye
+
+  void start(const std::vector<std::string>& arguments = {}, const std::string& output = "") {
+    controller_ = std::make_unique<ChildProcess>(CONTROLLER, arguments, output);
+    ASSERT_TRUE(cart_.waitForController(30.0));
+  }
+  void engageAndMove() {
+    ASSERT_TRUE(cart_.engageWhenReady(20.0)) << cart_.answer();
+    ASSERT_TRUE(waitFor([&] { return cart_.moves(); }, 20.0));
+  }
+  void expectEnded(const std::string& why) {
+    ASSERT_TRUE(cart_.waitForState(ControllerState::IDLE, 20.0)) << cart_.state().state;
+    EXPECT_NE(cart_.state().reason.find(why), std::string::npos) << cart_.state().reason;
+    EXPECT_TRUE(cart_.stands());
+  }
+
+  FakeCart cart_;
+  std::unique_ptr<ChildProcess> controller_;
+};
+
+TEST_F(ControllerOutside, aSignalDisengages) {
+  start();
+  engageAndMove();
+  controller_->kill(SIGUSR1);
+  expectEnded("SIGUSR1");
+  engageAndMove();
+  EXPECT_TRUE(controller_->isRunning());
+}
+
+TEST_F(ControllerOutside, theStopLineDisengagesAndKeepsFromEngaging) {
+  const test_support::TemporaryFolder folder;
+  const std::string line = folder.file("line");
+  std::ofstream(line) << "1\n";
+  start({"_stop_line/path:=" + line, "_stop_line/patience:=5.0"});
+  engageAndMove();
+  std::ofstream(line) << "0\n";
+  expectEnded("says stop");
+  bool success = true;
+  EXPECT_NE(cart_.engage(true, success).find("says stop"), std::string::npos) << cart_.answer();
+  EXPECT_FALSE(success);
+  std::ofstream(line) << "1\n";
+  EXPECT_TRUE(cart_.stands()) << "it does not go on by itself";
+  engageAndMove();
+}
+
+// Each engagement is two lines of the log; together they are far more than the pipe holds.
+TEST_F(ControllerOutside, aTerminalThatNobodyReadsHoldsNothingUp) {
+  int ends[2];
+  ASSERT_EQ(::pipe2(ends, O_CLOEXEC), 0);
+  ASSERT_GT(::fcntl(ends[1], F_SETPIPE_SZ, 4096), 0);
+  start({}, "/proc/self/fd/" + std::to_string(ends[1]));
+  engageAndMove();
+  for (int k = 0; k < 60; ++k) {
+    bool success = false;
+    cart_.engage(false, success);
+    ASSERT_TRUE(cart_.engageWhenReady(20.0)) << cart_.answer();
+  }
+  EXPECT_TRUE(waitFor([&] { return cart_.moves(); }, 20.0));
+  controller_->kill(SIGTERM);
+  EXPECT_EQ(controller_->exitStatus(20.0), 0);
+  for (const int end : ends) ::close(end);
+}
+
+TEST_F(ControllerOutside, itStandsWithoutAMasterAndEndsWhenThereIsAnother) {
+  start();
+  engageAndMove();
+  const double killed = steadyNow();
+  own_master->end();
+  expectEnded("is gone");
+  std::cout << "master killed: first command of zero after " << cart_.stoodAt() - killed << " s" << std::endl;
+  EXPECT_TRUE(controller_->isRunning()) << "the same master may come back";
+  own_master->start();
+  EXPECT_EQ(controller_->exitStatus(20.0), 1);
+}
+
+}  // namespace
+}  // namespace laparoscope_servo
+
+int main(int argc, char** argv) {
+  laparoscope_servo::test_support::OwnMaster master;
+  laparoscope_servo::own_master = &master;
+  testing::InitGoogleTest(&argc, argv);
+  ros::init(argc, argv, "controller_outside");
+  const ros::NodeHandle keep_alive;
+  return RUN_ALL_TESTS();
+}
