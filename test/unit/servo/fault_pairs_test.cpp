@@ -191,6 +191,24 @@ class PairRun {
   std::string reason_;
 };
 
+// The estimate of the insertion point followed it, by as much as the clock had jumped.
+TEST(FaultPairs, ADepthThatCannotBeIsForgottenWithTheJumpOfTheClock) {
+  SimulatedCart cart(ControllerConfig(), {0.1, 0.05, 0.0, 0.0}, 1);
+  cart.pass(0.5);
+  ASSERT_EQ(cart.controller.engage(cart.input()), "");
+  cart.pass(0.5);
+  cart.interference.input = [](ControllerInput& input, double) {
+    input.depth.d2 = -75.0;
+    input.time += 71.0;
+  };
+  cart.pass(0.2);
+  EXPECT_EQ(cart.output.state, ControllerState::kFault);
+  cart.interference = {};
+  cart.pass(0.2);
+  cart.controller.disengage("for a test");
+  EXPECT_EQ(cart.controller.engage(cart.input()), "");
+}
+
 TEST(FaultPairs, NoneMovesTheScopeFurtherThanItMayAndItGoesOnByTheSteps) {
   const int first = setting("CART_FAULT_SEED", 1);
   const int count = setting("CART_FAULT_RUNS", 1000);
