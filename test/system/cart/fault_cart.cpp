@@ -172,7 +172,8 @@ std::string FaultCart::go(Situation situation) {
   SelectTask task;
   task.request.task = manual ? ControllerState::MANUAL : ControllerState::HOLD_VIEW;
   if (!ros::service::call("controller/select_task", task) || !task.response.success) return task.response.message;
-  std::string problem = robot("enable");
+  // A line that is up may be lost once more on a busy machine.
+  std::string problem = waitFor("an enable", [this] { return robot("enable").empty(); });
   if (problem.empty()) problem = waitFor("ENABLED", [this] { return bench.stateIs("ENABLED"); });
   std::string refusal;
   // The controller may hear of it a moment later.
@@ -185,7 +186,7 @@ std::string FaultCart::go(Situation situation) {
   if (manual) operating.push(kStick);
   problem = waitFor("motion", [this] { return std::abs(bench.truth().motion().qdot[1]) > 0.02; });
   if (problem.empty() && situation == Situation::kHold) {
-    relay->begin(image_faults::black());
+    relay->cover();
     problem = waitFor("HOLD", [this] { return stateIs("HOLD") && !bench.jointsMove(); });
   }
   return problem.empty() ? "" : problem + " (" + state() + ": " + reason() + ")";

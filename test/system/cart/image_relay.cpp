@@ -19,15 +19,33 @@ ImageRelay::~ImageRelay() {
   spinner_.stop();
 }
 
+void ImageRelay::cover() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  faults_ = {image_faults::black()};
+  covered_ = true;
+}
+
 void ImageRelay::begin(const Fault& fault) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  fault_ = fault;
+  if (covered_) faults_.clear();
+  covered_ = false;
+  faults_.push_back(fault);
+}
+
+void ImageRelay::end() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  faults_.clear();
+  covered_ = false;
 }
 
 void ImageRelay::onImage(const sensor_msgs::ImageConstPtr& image) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  const Publish publish = [this](const sensor_msgs::Image& out) { publisher_.publish(out); };
-  fault_ ? fault_(*image, publish) : publish(*image);
+  pass(*image, 0);
+}
+
+void ImageRelay::pass(const sensor_msgs::Image& image, std::size_t fault) {
+  if (fault == faults_.size()) return publisher_.publish(image);
+  faults_[fault](image, [&](const sensor_msgs::Image& out) { pass(out, fault + 1); });
 }
 
 namespace image_faults {
@@ -46,7 +64,7 @@ ImageRelay::Fault changed(const std::function<void(cv::Mat&)>& change) {
   return [change](const Image& image, const Publish& publish) {
     Image out = image;
     cv::Mat mat = pixels(out);
-    change(mat);
+    if (mat.cols > 1) change(mat);
     publish(out);
   };
 }

@@ -8,6 +8,7 @@
 #include <functional>
 #include <mutex>
 #include <string>
+#include <vector>
 
 namespace laparoscope_servo::test {
 
@@ -21,14 +22,19 @@ class ImageRelay {
   ImageRelay(const std::string& from, const std::string& to);
   ~ImageRelay();
 
+  // Nothing is seen until a fault of another kind begins.
+  void cover();
+  // After those that have begun before.
   void begin(const Fault& fault);
-  void end() { begin(nullptr); }
+  void end();
 
  private:
   void onImage(const sensor_msgs::ImageConstPtr& image);
+  void pass(const sensor_msgs::Image& image, std::size_t fault);
 
   std::mutex mutex_;
-  Fault fault_;
+  std::vector<Fault> faults_;
+  bool covered_ = false;
   ros::CallbackQueue queue_;
   ros::NodeHandle node_;
   ros::Publisher publisher_;

@@ -111,8 +111,8 @@ Stranger::Stranger(AesopBench& bench, const std::string& topic, const std::strin
   static int count = 0;
   const std::string ready = bench.file("stranger_" + std::to_string(++count));
   process_ = std::make_unique<ChildProcess>(
-      "/proc/self/exe",
-      std::vector<std::string>{"stranger", topic, what, std::to_string(rate), ready, "__name:=stranger"});
+      "/proc/self/exe", std::vector<std::string>{"stranger", topic, what, std::to_string(rate), ready,
+                                                 "__name:=stranger_" + std::to_string(count)});
   if (!bench.waitFor([&] { return std::ifstream(ready).good(); }, 10.0)) {
     throw std::runtime_error("nobody listens to a stranger on " + topic);
   }

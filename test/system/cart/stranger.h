@@ -10,8 +10,8 @@ namespace laparoscope_servo::test {
 
 class Stranger {
  public:
-  // A node /stranger that says `what` on `topic` at `rate` Hz, once begin() is called; see stranger.cpp for the words.
-  // It is connected to who listens when the constructor returns. Throws when nobody listens within 10 s.
+  // A node /stranger_... that says `what` on `topic` at `rate` Hz, once begin() is called; see stranger.cpp for the
+  // words. It is connected to who listens when the constructor returns. Throws when nobody listens within 10 s.
   Stranger(AesopBench& bench, const std::string& topic, const std::string& what, double rate);
 
   void begin() { process_->kill(SIGUSR2); }
