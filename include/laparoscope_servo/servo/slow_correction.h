@@ -11,10 +11,11 @@ class SlowCorrection {
   // `rate` >= 0: the most that it changes in a second.
   explicit SlowCorrection(double rate) : rate_(rate) {}
 
-  // One that is not finite is none. Time that does not increase changes nothing yet.
+  // One that is not finite is none. Time that does not increase changes nothing yet, and of a clock that jumped ahead
+  // no more than a second counts.
   void update(double time, double wanted) {
     wanted_ = std::isfinite(wanted) ? wanted : 0.0;
-    const double step = has_time_ && time > time_ ? rate_ * (time - time_) : 0.0;
+    const double step = has_time_ && time > time_ ? rate_ * std::min(time - time_, kLongestStep) : 0.0;
     value_ += std::clamp(wanted_ - value_, -step, step);
     time_ = time;
     has_time_ = true;
@@ -24,6 +25,7 @@ class SlowCorrection {
   double wanted() const { return wanted_; }
 
  private:
+  static constexpr double kLongestStep = 1.0;  // s
   double rate_;
   double value_ = 0.0;
   double wanted_ = 0.0;

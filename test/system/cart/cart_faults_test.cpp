@@ -1,0 +1,189 @@
+// What stops the arm, one fault after the other on the whole cart: each in the situations that its line names, see
+// fault_table.cpp. CART_FAULTS=all tries all situations, CART_FAULT_PAIRS=N as many random pairs, from CART_FAULT_SEED
+// on. It prints what happened, for doc/what_stops_the_arm.md.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <random>
+#include <sstream>
+
+#include "fault_table.h"
+#include "stranger.h"
+
+namespace laparoscope_servo::test {
+namespace {
+
+constexpr double kCalm = 0.6;     // s of rest that are taken for standing: longer than the arm's delay
+constexpr double kWatched = 4.0;  // s; nothing that stops the arm takes so long
+
+struct Case {
+  const FaultRow* row;
+  Situation situation;
+};
+
+std::vector<Case> cases() {
+  const bool all = std::getenv("CART_FAULTS") != nullptr;
+  std::vector<Case> result;
+  for (const FaultRow& row : faultTable()) {
+    for (const Situation situation : {Situation::kServo, Situation::kHold, Situation::kManual}) {
+      const unsigned wanted = row.usually | (all ? row.otherwise : 0U);
+      if ((wanted & static_cast<unsigned>(situation)) != 0) result.push_back({&row, situation});
+    }
+  }
+  return result;
+}
+
+bool isOneOf(const std::string& words, const std::string& state) {
+  std::istringstream stream(words);
+  for (std::string word; stream >> word;) {
+    if (word == state) return true;
+  }
+  return false;
+}
+
+int setting(const char* name, int otherwise) {
+  const char* text = std::getenv(name);
+  return text == nullptr ? otherwise : std::atoi(text);
+}
+
+bool isFor(const FaultRow& row, Situation situation) {
+  return ((row.usually | row.otherwise) & static_cast<unsigned>(situation)) != 0;
+}
+
+// A fault from its beginning to its end, also where a test ends before it.
+class Trial {
+ public:
+  Trial(const FaultRow& row, FaultCart& cart) : row_(row), cart_(cart) {
+    if (!row.stranger.empty()) stranger_ = std::make_unique<Stranger>(cart.bench, row.stranger, row.says, row.rate);
+  }
+  ~Trial() {
+    stranger_.reset();
+    if (begun_) row_.end(cart_);
+  }
+  Trial(const Trial&) = delete;
+  Trial& operator=(const Trial&) = delete;
+
+  void begin() {
+    begun_ = true;
+    if (stranger_) stranger_->begin();
+    row_.begin(cart_);
+  }
+
+ private:
+  const FaultRow& row_;
+  FaultCart& cart_;
+  std::unique_ptr<Stranger> stranger_;
+  bool begun_ = false;
+};
+
+void print(const std::string& fault, Situation situation, const Reaction& r) {
+  std::printf("| %-50s | %-6s | %5.2f | %5.2f | %5.2f | %6.2f | %s: %s; robot %s\n", fault.c_str(), name(situation),
+              r.travel.degrees, r.travel.millimetres, r.travel.tip, r.stood, r.state.c_str(), r.reason.c_str(),
+              r.robot.c_str());
+  std::fflush(stdout);
+}
+
+// One for all: what a fault leaves behind, the next one would find. It starts with the first test, not without one.
+class OneCart : public testing::Environment {
+ public:
+  static FaultCart& get() {
+    if (!instance()) {
+      instance() = std::make_unique<FaultCart>();
+      std::printf("| %-50s | %-6s | %5s | %5s | %5s | %6s | %s\n", "fault", "in", "deg", "mm", "tip", "s", "state");
+    }
+    return *instance();
+  }
+  void TearDown() override { instance().reset(); }
+
+ private:
+  static std::unique_ptr<FaultCart>& instance() {
+    static std::unique_ptr<FaultCart> cart;
+    return cart;
+  }
+};
+
+class CartFaults : public testing::TestWithParam<Case> {};
+
+TEST_P(CartFaults, LeaveTheArmWhereItIsOrToItsTask) {
+  const FaultRow& row = *GetParam().row;
+  const Situation situation = GetParam().situation;
+  FaultCart& cart = OneCart::get();
+  Trial trial(row, cart);
+  ASSERT_EQ(cart.bringTo(situation), "");
+  cart.mark();
+  trial.begin();
+  const bool may_go_on = row.outcome != Outcome::kStands && situation == Situation::kServo;
+  const Reaction reaction = cart.watch(may_go_on ? 1.5 : kWatched, kCalm);
+  print(row.name, situation, reaction);
+  const bool goes_on =
+      may_go_on && reaction.nearer > 0.0 && (reaction.state == "SERVO" || row.outcome == Outcome::kEither);
+  if (goes_on) return;
+  EXPECT_NE(row.outcome, Outcome::kGoesOn) << reaction.nearer << " degrees nearer";
+  EXPECT_LT(reaction.stood, kWatched - kCalm) << "it goes on";
+  EXPECT_LE(reaction.travel.degrees, row.degrees);
+  EXPECT_LE(reaction.travel.millimetres, row.millimetres);
+  EXPECT_TRUE(row.states.empty() || isOneOf(row.states, reaction.state)) << reaction.state;
+}
+
+// The second begins up to 0.3 s after the first. What one of them stops stands, whatever the other does; where both do,
+// the second may come before the first is noticed: what counts is how far the arm goes after that one.
+void tryPair(FaultCart& cart, unsigned seed) {
+  std::mt19937 random(seed);
+  const auto draw = [&](std::size_t count) { return random() % count; };
+  const Situation situation =
+      std::array{Situation::kServo, Situation::kServo, Situation::kHold, Situation::kManual}[draw(4)];
+  std::vector<const FaultRow*> rows;
+  while (rows.size() < 2) {
+    const FaultRow& row = faultTable()[draw(faultTable().size())];
+    if (isFor(row, situation) && (rows.empty() || rows[0] != &row)) rows.push_back(&row);
+  }
+  const std::string both = std::to_string(seed) + ": " + rows[0]->name + " + " + rows[1]->name;
+  SCOPED_TRACE(both + " in " + name(situation));
+  Trial first(*rows[0], cart), second(*rows[1], cart);
+  ASSERT_EQ(cart.bringTo(situation), "");
+  cart.mark();
+  first.begin();
+  const bool stops = rows[0]->outcome == Outcome::kStands;
+  cart.bench.waitFor([] { return false; }, 0.1 * static_cast<double>(draw(4)));
+  if (rows[1]->outcome == Outcome::kStands) cart.mark();
+  second.begin();
+  const Reaction reaction = cart.watch(kWatched, kCalm);
+  print(both, situation, reaction);
+  if (!stops && rows[1]->outcome != Outcome::kStands) return;
+  EXPECT_LT(reaction.stood, kWatched - kCalm) << "it goes on";
+  EXPECT_LE(reaction.travel.degrees, std::max(rows[0]->degrees, rows[1]->degrees));
+  EXPECT_LE(reaction.travel.millimetres, std::max(rows[0]->millimetres, rows[1]->millimetres));
+}
+
+TEST(CartFaultPairs, AreNoWorse) {
+  const int first = setting("CART_FAULT_SEED", 1);
+  for (int seed = first; seed < first + setting("CART_FAULT_PAIRS", 4); ++seed) {
+    tryPair(OneCart::get(), static_cast<unsigned>(seed));
+  }
+}
+
+std::string nameOf(const testing::TestParamInfo<Case>& info) {
+  std::string text = std::string(name(info.param.situation)) + "_" + info.param.row->name;
+  for (char& c : text) {
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
+  }
+  return text;
+}
+
+void PrintTo(const Case& tried, std::ostream* stream) {
+  *stream << tried.row->name << " in " << name(tried.situation);
+}
+
+INSTANTIATE_TEST_SUITE_P(Cart, CartFaults, testing::ValuesIn(cases()), nameOf);
+
+}  // namespace
+}  // namespace laparoscope_servo::test
+
+int main(int argc, char** argv) {
+  if (argc > 1 && std::string(argv[1]) == "stranger") return laparoscope_servo::test::runStranger(argc, argv);
+  testing::AddGlobalTestEnvironment(new laparoscope_servo::test::OneCart);
+  return laparoscope_servo::test::runBenchTests(argc, argv, "cart_faults_test");
+}

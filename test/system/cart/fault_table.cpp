@@ -1,0 +1,142 @@
+#include "fault_table.h"
+
+namespace laparoscope_servo::test {
+
+namespace {
+
+constexpr unsigned kServo = static_cast<unsigned>(Situation::kServo);
+constexpr unsigned kHold = static_cast<unsigned>(Situation::kHold);
+constexpr unsigned kManual = static_cast<unsigned>(Situation::kManual);
+constexpr unsigned kAll = kServo | kHold | kManual;
+
+using Begin = std::function<void(FaultCart&)>;
+
+// Of the camera. What a task without a camera is driven by does not count, and a held scope needs a picture to go on.
+FaultRow image(const std::string& name, unsigned usually, Outcome outcome, const std::string& states,
+               const std::function<ImageRelay::Fault()>& fault) {
+  FaultRow row;
+  row.name = "images: " + name;
+  row.usually = usually;
+  row.otherwise = kServo | kHold;
+  row.outcome = outcome;
+  row.states = states;
+  row.begin = [fault](FaultCart& cart) { cart.relay->begin(fault()); };
+  return row;
+}
+
+FaultRow other(
+    const std::string& name, unsigned usually, unsigned otherwise, Outcome outcome, const std::string& states,
+    const Begin& begin, const Begin& end = [](FaultCart&) {}) {
+  FaultRow row;
+  row.name = name;
+  row.usually = usually;
+  row.otherwise = otherwise;
+  row.outcome = outcome;
+  row.states = states;
+  row.begin = begin;
+  row.end = end;
+  return row;
+}
+
+// Another publisher: `begin` is what happens beside it.
+FaultRow stranger(
+    const std::string& name, unsigned usually, unsigned otherwise, Outcome outcome, const std::string& states,
+    const std::string& topic, const std::string& says, double rate, const Begin& begin = [](FaultCart&) {}) {
+  FaultRow row = other(name, usually, otherwise, outcome, states, begin);
+  row.stranger = topic;
+  row.says = says;
+  row.rate = rate;
+  return row;
+}
+
+std::vector<FaultRow> ofImages() {
+  using namespace image_faults;
+  const std::string lost = "HOLD LOST", doubted = "HOLD LOST FAULT";
+  return {
+      image("mirrored left to right", kServo, Outcome::kStands, doubted, [] { return flipped(1); }),
+      image("of another size", kServo, Outcome::kStands, lost, [] { return resized(320, 240); }),
+      image("of one pixel", kServo, Outcome::kStands, lost, [] { return resized(1, 1); }),
+      image("late by 0.5 s", kServo, Outcome::kStands, lost, [] { return late(0.5); }),
+      image("1 in 5 stamped 30 ms early", kServo, Outcome::kEither, lost, [] { return stamped(-0.03, 5); }),
+      image("stamped 1 s ahead", kServo, Outcome::kStands, lost, [] { return stamped(1.0); }),
+      image("flickering", kServo, Outcome::kEither, lost, flickering),
+      image("black", kServo, Outcome::kStands, lost, black),
+      image("none", kServo | kHold, Outcome::kStands, lost, silent),
+      image("1 in 2 dropped", kServo, Outcome::kEither, lost, [] { return dropped(2); }),
+      image("1 in 10 dropped", 0, Outcome::kGoesOn, "", [] { return dropped(10); }),
+      image("1 in 50 dropped", 0, Outcome::kGoesOn, "", [] { return dropped(50); }),
+      image("1 in 4 of another camera", kServo, Outcome::kEither, lost, [] { return otherScene(4); }),
+      image("of another camera", kServo, Outcome::kStands, lost, [] { return otherScene(1); }),
+      image("of an encoding that they are not in", 0, Outcome::kStands, lost, mislabelled),
+  };
+}
+
+std::vector<FaultRow> ofInputs() {
+  return {
+      other("dead-man switch: released", kServo | kManual, kAll, Outcome::kStands, "ARMED HOLD LOST",
+            [](FaultCart& cart) { cart.operating.press(false); }),
+      other("dead-man switch: silent", kServo, kAll, Outcome::kStands, "ARMED HOLD LOST",
+            [](FaultCart& cart) { cart.operating.dropSwitch(); }),
+      other("stick: silent", kManual, kManual, Outcome::kStands, "SERVO",
+            [](FaultCart& cart) { cart.operating.dropStick(); }),
+      other("stick: not a number", kManual, kManual, Outcome::kStands, "SERVO HOLD",
+            [](FaultCart& cart) { cart.operating.push(std::nan("")); }),
+      other("stick: stamped a second ago", kManual, kManual, Outcome::kStands, "SERVO HOLD",
+            [](FaultCart& cart) { cart.operating.shiftStamps(-1.0); }),
+      stranger("stick: another's, not a number, 10 kHz", 0, kManual, Outcome::kEither, "SERVO HOLD",
+               "controller/manual", "velocity_nan", 1e4),
+  };
+}
+
+std::vector<FaultRow> ofRobot() {
+  return {
+      other("robot: paused", kServo, kAll, Outcome::kStands, "HOLD LOST", [](FaultCart& cart) { cart.robot("pause"); }),
+      other("robot: a motor trips", 0, kAll, Outcome::kStands, "HOLD LOST FAULT",
+            [](FaultCart& cart) { cart.bench.truth().fault("joint", 2.0); }),
+      other("robot: the port goes away", kServo, kAll, Outcome::kStands, "HOLD LOST FAULT",
+            [](FaultCart& cart) { cart.bench.truth().request("fault hangup for 1"); }),
+      other("robot: the line is silent", 0, kAll, Outcome::kStands, "HOLD LOST FAULT",
+            [](FaultCart& cart) { cart.bench.truth().request("fault stall for 1"); }),
+  };
+}
+
+FaultRow process(const std::string& name, std::unique_ptr<ChildProcess> FaultCart::*victim, int signal,
+                 const Begin& again, const std::string& states) {
+  return other(
+      name, kServo, kAll, Outcome::kStands, states, [=](FaultCart& cart) { (cart.*victim)->kill(signal); },
+      [=](FaultCart& cart) {
+        if (signal == SIGSTOP) {
+          (cart.*victim)->kill(SIGCONT);
+        } else {
+          again(cart);
+        }
+      });
+}
+
+std::vector<FaultRow> ofProcesses() {
+  std::vector<FaultRow> rows{
+      process("tracker: hangs", &FaultCart::tracker, SIGSTOP, {}, "HOLD LOST"),
+      process("controller: hangs", &FaultCart::controller, SIGSTOP, {}, ""),
+      other(
+          "robot's node: hangs", kServo, kAll, Outcome::kStands, "HOLD LOST",
+          [](FaultCart& cart) { cart.bench.node().kill(SIGSTOP); },
+          [](FaultCart& cart) { cart.bench.node().kill(SIGCONT); }),
+  };
+  rows[0].otherwise = kServo | kHold;
+  return rows;
+}
+
+}  // namespace
+
+const std::vector<FaultRow>& faultTable() {
+  static const std::vector<FaultRow> table = [] {
+    std::vector<FaultRow> all;
+    for (const auto part : {&ofImages, &ofInputs, &ofRobot, &ofProcesses}) {
+      for (const FaultRow& row : part()) all.push_back(row);
+    }
+    return all;
+  }();
+  return table;
+}
+
+}  // namespace laparoscope_servo::test

@@ -1,0 +1,217 @@
+#include "image_relay.h"
+
+#include <cmath>
+#include <deque>
+#include <memory>
+#include <opencv2/imgproc.hpp>
+#include <optional>
+
+namespace laparoscope_servo::test {
+
+ImageRelay::ImageRelay(const std::string& from, const std::string& to) : spinner_(1, &queue_) {
+  node_.setCallbackQueue(&queue_);
+  publisher_ = node_.advertise<sensor_msgs::Image>(to, 2);
+  subscriber_ = node_.subscribe(from, 2, &ImageRelay::onImage, this, ros::TransportHints().tcpNoDelay());
+  spinner_.start();
+}
+
+ImageRelay::~ImageRelay() {
+  spinner_.stop();
+}
+
+void ImageRelay::cover() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  faults_ = {image_faults::black()};
+  covered_ = true;
+}
+
+void ImageRelay::begin(const Fault& fault) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (covered_) faults_.clear();
+  covered_ = false;
+  faults_.push_back(fault);
+}
+
+void ImageRelay::end() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  faults_.clear();
+  covered_ = false;
+}
+
+void ImageRelay::onImage(const sensor_msgs::ImageConstPtr& image) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  pass(*image, 0);
+}
+
+void ImageRelay::pass(const sensor_msgs::Image& image, std::size_t fault) {
+  if (fault == faults_.size()) return publisher_.publish(image);
+  faults_[fault](image, [&](const sensor_msgs::Image& out) { pass(out, fault + 1); });
+}
+
+namespace image_faults {
+
+namespace {
+
+using Image = sensor_msgs::Image;
+using Publish = ImageRelay::Publish;
+
+// The pixels themselves, three bytes each.
+cv::Mat pixels(Image& image) {
+  return {static_cast<int>(image.height), static_cast<int>(image.width), CV_8UC3, image.data.data(), image.step};
+}
+
+ImageRelay::Fault changed(const std::function<void(cv::Mat&)>& change) {
+  return [change](const Image& image, const Publish& publish) {
+    Image out = image;
+    cv::Mat mat = pixels(out);
+    if (mat.cols > 1) change(mat);
+    publish(out);
+  };
+}
+
+cv::Rect middle(const cv::Mat& image) {
+  return {image.cols / 4, image.rows / 6, image.cols / 2, 2 * image.rows / 3};
+}
+
+cv::Mat noise(const cv::Size& size) {
+  cv::Mat coarse(size / 16, CV_8UC3), out;
+  cv::RNG random(5);
+  random.fill(coarse, cv::RNG::UNIFORM, 20, 200);
+  cv::resize(coarse, out, size, 0, 0, cv::INTER_CUBIC);
+  return out;
+}
+
+}  // namespace
+
+ImageRelay::Fault frozen() {
+  const auto first = std::make_shared<std::optional<Image>>();
+  return [first](const Image& image, const Publish& publish) {
+    if (!*first) *first = image;
+    (*first)->header = image.header;
+    publish(**first);
+  };
+}
+
+ImageRelay::Fault frozenInside() {
+  const auto first = std::make_shared<cv::Mat>();
+  return changed([first](cv::Mat& mat) {
+    if (first->empty()) *first = mat(middle(mat)).clone();
+    first->copyTo(mat(middle(mat)));
+  });
+}
+
+ImageRelay::Fault twoInTurn() {
+  const auto pictures = std::make_shared<std::vector<cv::Mat>>();
+  const auto count = std::make_shared<std::size_t>(0);
+  return changed([=](cv::Mat& mat) {
+    if (pictures->size() < 2) pictures->push_back(mat.clone());
+    (*pictures)[(*count)++ % pictures->size()].copyTo(mat);
+  });
+}
+
+ImageRelay::Fault swapped() {
+  const auto waiting = std::make_shared<std::optional<Image>>();
+  return [waiting](const Image& image, const Publish& publish) {
+    if (!*waiting) {
+      *waiting = image;
+      return;
+    }
+    publish(image);
+    publish(**waiting);
+    waiting->reset();
+  };
+}
+
+ImageRelay::Fault flipped(int code) {
+  return changed([code](cv::Mat& mat) { cv::flip(mat.clone(), mat, code); });
+}
+
+ImageRelay::Fault half() {
+  const auto first = std::make_shared<cv::Mat>();
+  return changed([first](cv::Mat& mat) {
+    cv::Mat lower = mat.rowRange(mat.rows / 2, mat.rows);
+    if (first->empty()) *first = lower.clone();
+    first->copyTo(lower);
+  });
+}
+
+ImageRelay::Fault resized(int width, int height) {
+  return [=](const Image& image, const Publish& publish) {
+    Image in = image;
+    Image out = image;
+    out.width = static_cast<std::uint32_t>(width);
+    out.height = static_cast<std::uint32_t>(height);
+    out.step = 3 * out.width;
+    out.data.assign(static_cast<std::size_t>(out.step) * out.height, 0);
+    cv::Mat mat = pixels(out);
+    cv::resize(pixels(in), mat, mat.size(), 0, 0, cv::INTER_AREA);
+    publish(out);
+  };
+}
+
+ImageRelay::Fault late(double seconds) {
+  const auto waiting = std::make_shared<std::deque<Image>>();
+  return [=](const Image& image, const Publish& publish) {
+    waiting->push_back(image);
+    while ((image.header.stamp - waiting->front().header.stamp).toSec() >= seconds) {
+      publish(waiting->front());
+      waiting->pop_front();
+    }
+  };
+}
+
+ImageRelay::Fault stamped(double offset, int period) {
+  const auto count = std::make_shared<int>(0);
+  return [=](const Image& image, const Publish& publish) {
+    Image out = image;
+    if (++*count % period == 0) out.header.stamp += ros::Duration(offset);
+    publish(out);
+  };
+}
+
+ImageRelay::Fault unstamped() {
+  return [](const Image& image, const Publish& publish) {
+    Image out = image;
+    out.header.stamp = ros::Time();
+    publish(out);
+  };
+}
+
+ImageRelay::Fault flickering() {
+  const auto count = std::make_shared<int>(0);
+  return changed([count](cv::Mat& mat) { mat *= ++*count % 2 == 0 ? 0.6 : 1.4; });
+}
+
+ImageRelay::Fault black() {
+  return changed([](cv::Mat& mat) { mat.setTo(0); });
+}
+
+ImageRelay::Fault silent() {
+  return [](const Image&, const Publish&) {};
+}
+
+ImageRelay::Fault dropped(int period) {
+  const auto count = std::make_shared<int>(0);
+  return [=](const Image& image, const Publish& publish) {
+    if (++*count % period != 0) publish(image);
+  };
+}
+
+ImageRelay::Fault otherScene(int period) {
+  const auto count = std::make_shared<int>(0);
+  return changed([=](cv::Mat& mat) {
+    if (++*count % period == 0) noise(mat.size()).copyTo(mat);
+  });
+}
+
+ImageRelay::Fault mislabelled() {
+  return [](const Image& image, const Publish& publish) {
+    Image out = image;
+    out.encoding = "bgra16";
+    publish(out);
+  };
+}
+
+}  // namespace image_faults
+
+}  // namespace laparoscope_servo::test

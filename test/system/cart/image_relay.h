@@ -1,0 +1,77 @@
+// What lies between camera and tracker: passes images on, as they are or as a broken camera, grabber or driver would.
+#pragma once
+
+#include <ros/callback_queue.h>
+#include <ros/ros.h>
+#include <sensor_msgs/Image.h>
+
+#include <functional>
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace laparoscope_servo::test {
+
+class ImageRelay {
+ public:
+  using Publish = std::function<void(const sensor_msgs::Image&)>;
+  // Called with each image in order, in the relay's thread.
+  using Fault = std::function<void(const sensor_msgs::Image&, const Publish&)>;
+
+  // From topic to topic. It runs in a thread of its own.
+  ImageRelay(const std::string& from, const std::string& to);
+  ~ImageRelay();
+
+  // Nothing is seen until a fault of another kind begins.
+  void cover();
+  // After those that have begun before.
+  void begin(const Fault& fault);
+  void end();
+
+ private:
+  void onImage(const sensor_msgs::ImageConstPtr& image);
+  void pass(const sensor_msgs::Image& image, std::size_t fault);
+
+  std::mutex mutex_;
+  std::vector<Fault> faults_;
+  bool covered_ = false;
+  ros::CallbackQueue queue_;
+  ros::NodeHandle node_;
+  ros::Publisher publisher_;
+  ros::Subscriber subscriber_;
+  ros::AsyncSpinner spinner_;
+};
+
+// Faults of images. Those that have a state begin anew with each call.
+namespace image_faults {
+
+ImageRelay::Fault frozen();
+// Only what lies in the middle, where the region is.
+ImageRelay::Fault frozenInside();
+// The last two pictures in turn.
+ImageRelay::Fault twoInTurn();
+// Each picture after its successor.
+ImageRelay::Fault swapped();
+// cv::flip's code: 0 upside down, 1 left to right, -1 both, which is a roll by 180 degrees.
+ImageRelay::Fault flipped(int code);
+// The lower half is what was there before, as of a JPEG that broke off.
+ImageRelay::Fault half();
+ImageRelay::Fault resized(int width, int height);
+// By `seconds`, with the stamps of the exposure.
+ImageRelay::Fault late(double seconds);
+// Every `period`-th stamp is off by `offset` [s]; 1: all.
+ImageRelay::Fault stamped(double offset, int period = 1);
+ImageRelay::Fault unstamped();
+ImageRelay::Fault flickering();
+ImageRelay::Fault black();
+ImageRelay::Fault silent();
+// One of `period` does not come.
+ImageRelay::Fault dropped(int period);
+// One of `period` is that of another camera; 1: all.
+ImageRelay::Fault otherScene(int period);
+// The encoding is not what the bytes are.
+ImageRelay::Fault mislabelled();
+
+}  // namespace image_faults
+
+}  // namespace laparoscope_servo::test

@@ -1,0 +1,84 @@
+// Who presses the dead-man switch and holds the stick: repeats both at 25 Hz, in a thread of its own.
+#pragma once
+
+#include <ros/ros.h>
+#include <std_msgs/Bool.h>
+
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "laparoscope_servo/ScopeVelocity.h"
+
+namespace laparoscope_servo::test {
+
+class Operator {
+ public:
+  Operator() : thread_([this] { run(); }) {}
+  ~Operator() {
+    set([this] { ends_ = true; });
+    thread_.join();
+  }
+  Operator(const Operator&) = delete;
+  Operator& operator=(const Operator&) = delete;
+
+  void press(bool pressed) {
+    set([=] { pressed_ = pressed; });
+  }
+  // Says nothing at all about the switch.
+  void dropSwitch() {
+    set([this] { pressed_.reset(); });
+  }
+  void push(double pan) {
+    set([=] {
+      stick_ = ScopeVelocity();
+      stick_->pan = pan;
+    });
+  }
+  // Says nothing at all about the stick.
+  void dropStick() {
+    set([this] { stick_.reset(); });
+  }
+  // s, added to the stick's stamps.
+  void shiftStamps(double seconds) {
+    set([=] { shift_ = seconds; });
+  }
+
+ private:
+  template <typename Change>
+  void set(const Change& change) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    change();
+  }
+
+  void run() {
+    for (ros::WallRate rate(25.0); say(); rate.sleep()) {
+    }
+  }
+
+  bool say() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (pressed_) {
+      std_msgs::Bool pressed;
+      pressed.data = static_cast<std::uint8_t>(*pressed_);
+      switch_publisher_.publish(pressed);
+    }
+    if (stick_) {
+      stick_->header.stamp = ros::Time::now() + ros::Duration(shift_);
+      stick_publisher_.publish(*stick_);
+    }
+    return !ends_;
+  }
+
+  ros::NodeHandle node_;
+  ros::Publisher switch_publisher_ = node_.advertise<std_msgs::Bool>("dead_man", 1);
+  ros::Publisher stick_publisher_ = node_.advertise<ScopeVelocity>("controller/manual", 1);
+  std::mutex mutex_;
+  bool ends_ = false;
+  std::optional<bool> pressed_ = false;
+  std::optional<ScopeVelocity> stick_;
+  double shift_ = 0.0;
+  std::thread thread_;
+};
+
+}  // namespace laparoscope_servo::test

@@ -1,0 +1,183 @@
+#include "stranger.h"
+
+#include <geometry_msgs/TwistStamped.h>
+#include <sensor_msgs/Image.h>
+#include <std_msgs/Bool.h>
+#include <tf2_msgs/TFMessage.h>
+
+#include <atomic>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <stdexcept>
+
+#include "laparoscope_servo/OperatingState.h"
+#include "laparoscope_servo/ScopeVelocity.h"
+#include "laparoscope_servo/TaskError.h"
+
+namespace laparoscope_servo::test {
+
+namespace {
+
+std::atomic<bool> begun{false};
+
+void onSignal(int) {
+  begun = true;
+}
+
+// A region that is elsewhere: far to the right, valid, fresh.
+TaskError elsewhere() {
+  TaskError error;
+  error.header.stamp = ros::Time::now();
+  error.header.frame_id = "laparoscope_optical";
+  error.valid = static_cast<std::uint8_t>(true);
+  error.reference_stamp = ros::Time(1.0);
+  error.x = 0.3;
+  error.e_v.x = 0.3;
+  error.m_star.z = 1.0;
+  error.visible_fraction = 1.0;
+  error.corner_error = 0.1;
+  return error;
+}
+
+OperatingState enabled() {
+  OperatingState state;
+  state.header.stamp = ros::Time::now();
+  state.state = OperatingState::_state_type("ENABLED");
+  state.is_homed = static_cast<std::uint8_t>(true);
+  return state;
+}
+
+ScopeVelocity velocity(double pan) {
+  ScopeVelocity message;
+  message.header.stamp = ros::Time::now();
+  message.pan = pan;
+  return message;
+}
+
+sensor_msgs::Image grey() {
+  sensor_msgs::Image image;
+  image.header.stamp = ros::Time::now();
+  image.header.frame_id = "laparoscope_optical";
+  image.width = 640;
+  image.height = 480;
+  image.encoding = "bgr8";
+  image.step = 3 * image.width;
+  image.data.resize(static_cast<std::size_t>(image.step) * image.height);
+  for (std::size_t k = 0; k < image.data.size(); ++k) image.data[k] = static_cast<std::uint8_t>(k * k / 977);
+  return image;
+}
+
+geometry_msgs::TransformStamped transform(const std::string& parent, const std::string& child, double z) {
+  geometry_msgs::TransformStamped message;
+  message.header.stamp = ros::Time::now();
+  message.header.frame_id = parent;
+  message.child_frame_id = child;
+  message.transform.translation.z = z;
+  message.transform.rotation.w = 1.0;
+  return message;
+}
+
+tf2_msgs::TFMessage frame(const std::string& parent, const std::string& child, double z) {
+  tf2_msgs::TFMessage message;
+  message.transforms.push_back(transform(parent, child, z));
+  return message;
+}
+
+geometry_msgs::TwistStamped measured(double pan) {
+  geometry_msgs::TwistStamped message;
+  message.header.stamp = ros::Time::now();
+  message.header.frame_id = "laparoscope_optical";
+  message.twist.angular.y = pan;
+  return message;
+}
+
+template <typename Message>
+int publish(const std::string& topic, double rate, const std::function<Message()>& make, const std::string& ready) {
+  ros::NodeHandle node;
+  ros::Publisher publisher = node.advertise<Message>(topic, 1);
+  ROS_INFO_STREAM("publishes on " << topic);
+  while (ros::ok() && publisher.getNumSubscribers() == 0) ros::WallDuration(0.005).sleep();
+  std::ofstream(ready) << "ready\n";
+  while (ros::ok() && !begun) ros::WallDuration(0.001).sleep();
+  for (ros::WallRate pace(rate); ros::ok(); pace.sleep()) publisher.publish(make());
+  return 0;
+}
+
+}  // namespace
+
+Stranger::Stranger(AesopBench& bench, const std::string& topic, const std::string& what, double rate) {
+  static int count = 0;
+  const std::string ready = bench.file("stranger_" + std::to_string(++count));
+  process_ = std::make_unique<ChildProcess>(
+      "/proc/self/exe", std::vector<std::string>{"stranger", topic, what, std::to_string(rate), ready,
+                                                 "__name:=stranger_" + std::to_string(count)});
+  if (!bench.waitFor([&] { return std::ifstream(ready).good(); }, 10.0)) {
+    throw std::runtime_error("nobody listens to a stranger on " + topic);
+  }
+}
+
+int runStranger(int argc, char** argv) {
+  ros::init(argc, argv, "stranger");
+  ::signal(SIGUSR2, onSignal);
+  if (argc < 6) return 2;
+  const std::string topic = argv[2], what = argv[3], ready = argv[5];
+  const double rate = std::stod(argv[4]);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::map<std::string, std::function<int()>> words{
+      {"elsewhere", [&] { return publish<TaskError>(topic, rate, elsewhere, ready); }},
+      {"enabled", [&] { return publish<OperatingState>(topic, rate, enabled, ready); }},
+      {"velocity",
+       [&] {
+         return publish<ScopeVelocity>(
+             topic, rate, [] { return velocity(-0.1); }, ready);
+       }},
+      {"velocity_nan",
+       [&] {
+         return publish<ScopeVelocity>(
+             topic, rate, [&] { return velocity(nan); }, ready);
+       }},
+      {"measured",
+       [&] {
+         return publish<geometry_msgs::TwistStamped>(
+             topic, rate, [] { return measured(-0.1); }, ready);
+       }},
+      {"pressed",
+       [&] {
+         return publish<std_msgs::Bool>(
+             topic, rate,
+             [] {
+               std_msgs::Bool pressed;
+               pressed.data = static_cast<std::uint8_t>(true);
+               return pressed;
+             },
+             ready);
+       }},
+      {"grey", [&] { return publish<sensor_msgs::Image>(topic, rate, grey, ready); }},
+      {"tip_off",
+       [&] {
+         return publish<tf2_msgs::TFMessage>(
+             topic, rate, [] { return frame("scope_tip", "laparoscope_optical", 0.05); }, ready);
+       }},
+      {"tip_nan",
+       [&] {
+         return publish<tf2_msgs::TFMessage>(
+             topic, rate, [&] { return frame("scope_tip", "laparoscope_optical", nan); }, ready);
+       }},
+      {"shaft_off",
+       [&] {
+         return publish<tf2_msgs::TFMessage>(
+             topic, rate, [] { return frame("end_effector", "scope_tip", 0.35); }, ready);
+       }},
+      {"trocar_off",
+       [&] {
+         return publish<tf2_msgs::TFMessage>(
+             topic, rate, [] { return frame("aesop_base", "insertion_point", 0.05); }, ready);
+       }},
+  };
+  const auto word = words.find(what);
+  return word == words.end() ? 2 : word->second();
+}
+
+}  // namespace laparoscope_servo::test

@@ -1,0 +1,235 @@
+// The controller through random pairs of faults, in simulated time: CART_FAULT_RUNS of them (1000 unless set), from
+// CART_FAULT_SEED on; CART_FAULT_VERBOSE prints each. The same is done to the nodes in test/system/cart.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <iostream>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+
+#include "support/cart_faults.h"
+
+namespace laparoscope_servo::servo {
+namespace {
+
+using test::CartFault;
+using test::ScopeTravel;
+using test::SimulatedCart;
+
+constexpr double kDegree = M_PI / 180.0;
+constexpr double kMostAngle = 3.0 * kDegree;
+constexpr double kMostDistance = 0.005;    // m
+constexpr double kArmDelay = 0.16 + 0.02;  // s, of the robot, and a step of the controller
+constexpr double kNoticed = 0.05;          // s, in which the controller has taken two steps
+
+int setting(const char* name, int otherwise) {
+  const char* text = std::getenv(name);
+  return text == nullptr ? otherwise : std::atoi(text);
+}
+
+ControllerConfig withDeadMan() {
+  ControllerConfig config;
+  config.safety.dead_man_required = true;
+  return config;
+}
+
+class PairRun {
+ public:
+  explicit PairRun(unsigned seed)
+      : random_(seed),
+        manual_(random_.whole(4) == 0),
+        cart_(withDeadMan(),
+              {random_.sign() * random_.real(0.08, 0.15), random_.real(-0.1, 0.1), random_.real(-0.1, 0.1),
+               random_.real(-0.006, 0.006)},
+              seed) {}
+
+  // Why the run is not as it should be; empty when it is.
+  std::string run() {
+    try {
+      begin();
+      misbehave();
+      recover();
+    } catch (const std::runtime_error& failure) {
+      return failure.what();
+    }
+    return "";
+  }
+
+  std::string text() const {
+    std::string all = manual_ ? "MANUAL" : "HOLD_VIEW";
+    for (const CartFault& fault : faults_) {
+      all += "; " + fault.name + ", " + std::to_string(fault.from - begin_) + " to " +
+             std::to_string(fault.until - begin_) + " s";
+    }
+    return all;
+  }
+  const ScopeTravel& worst() const { return worst_; }
+  const std::string& reason() const { return reason_; }
+
+ private:
+  void expect(bool holds, const std::string& otherwise) const {
+    if (holds) return;
+    std::ostringstream text;
+    text << otherwise << ", " << cart_.time() - begin_ << " s after the beginning: " << cart_.output.reason;
+    throw std::runtime_error(text.str());
+  }
+
+  void engage() {
+    cart_.pressed = false;
+    cart_.pass(0.1);
+    const std::string refusal = cart_.controller.engage(cart_.input());
+    expect(refusal.empty(), "it does not engage: " + refusal);
+    cart_.pass(0.1);
+    expect(cart_.output.state == ControllerState::kArmed, "it does not wait for the switch");
+    cart_.pressed = true;
+    expect(cart_.until([&] { return cart_.output.state == ControllerState::kServo; }, 0.5),
+           "the switch does not lead to SERVO");
+  }
+
+  void begin() {
+    cart_.pass(0.2);
+    cart_.controller.select(manual_ ? Task::kManual : Task::kHoldView);
+    engage();
+    if (manual_) cart_.manual = {random_.real(-0.1, 0.1), random_.real(-0.1, 0.1), 0.05, 0.0};
+    cart_.pass(0.4);
+    expect(!cart_.velocity().isZero(0.0), "it does not begin to move");
+    begin_ = cart_.time();
+    faults_ = random_.pair(begin_, manual_);
+    cart_.interference.picture = [this](Eigen::Matrix3d& h) {
+      for (const CartFault& fault : faults_) {
+        if (fault.lasts(cart_.time()) && fault.interference.picture) fault.interference.picture(h);
+      }
+    };
+    cart_.interference.tracker = [this](TaskErrorInput& seen) {
+      for (const CartFault& fault : faults_) {
+        if (fault.lasts(cart_.time()) && fault.interference.tracker) fault.interference.tracker(seen);
+      }
+    };
+    cart_.interference.input = [this](ControllerInput& input, double time) {
+      for (const CartFault& fault : faults_) {
+        if (fault.lasts(time) && fault.interference.input) fault.interference.input(input, time);
+      }
+    };
+  }
+
+  void misbehave() {
+    const double end = std::max(faults_[0].until, faults_[1].until) + 1.0;
+    std::vector<bool> lasted(faults_.size(), false);
+    while (cart_.time() < end) {
+      for (std::size_t k = 0; k < faults_.size(); ++k) {
+        const bool lasts = faults_[k].lasts(cart_.time());
+        if (lasts && !lasted[k] && faults_[k].begin) faults_[k].begin(cart_);
+        if (!lasts && lasted[k] && faults_[k].end) faults_[k].end(cart_);
+        lasted[k] = lasts;
+      }
+      cart_.step();
+      watch();
+    }
+  }
+
+  // Of two faults that have to stop the scope the second may come before the first is noticed: what counts is how far
+  // it goes after that one.
+  void watch() {
+    bool must_stand = false;
+    int lasting = 0;
+    for (const CartFault& fault : faults_) {
+      const double since = cart_.time() - fault.from;
+      lasting += fault.lasts(cart_.time()) ? 1 : 0;
+      must_stand |= fault.stops && fault.lasts(cart_.time());
+      if (fault.stops && since >= 0.0 && since < SimulatedCart::kTick && !cart_.velocity().isZero(0.0)) from_.reset();
+    }
+    for (const CartFault& fault : faults_) {
+      if (!fault.needs_somebody || !fault.lasts(cart_.time()) || lasting > 1) continue;
+      alone_ += SimulatedCart::kTick;
+    }
+    must_stand |= alone_ > kNoticed;
+    if (!must_stand) {
+      from_.reset();
+    } else if (!from_) {
+      from_ = cart_.pose();
+    } else {
+      const ScopeTravel travel = cart_.travel(*from_);
+      worst_.angle = std::max(worst_.angle, travel.angle);
+      worst_.distance = std::max(worst_.distance, travel.distance);
+      expect(travel.angle <= kMostAngle, "it turns too far");
+      expect(travel.distance <= kMostDistance, "it goes too far");
+    }
+    if (cart_.output.state == ControllerState::kServo) {
+      moved_until_ = cart_.time();
+    } else if (cart_.controller_stalls == 0) {
+      reason_ = cart_.output.reason;
+      expect(cart_.output.command.vector().isZero(0.0), "it commands a motion outside of SERVO");
+      expect(cart_.velocity().isZero(0.0) || cart_.time() - moved_until_ < kArmDelay, "it moves outside of SERVO");
+    }
+  }
+
+  // What the page on what stops the arm says for the worst of them: disengage, engage, press the switch.
+  void recover() {
+    cart_.interference = {};
+    cart_.controller.disengage("for a test");
+    cart_.pass(0.3);
+    engage();
+    if (manual_) {
+      expect(cart_.until([&] { return !cart_.velocity().isZero(0.0); }, 1.0), "it is not moved by hand");
+      return;
+    }
+    expect(cart_.seesRegion(), "the region is out of view");
+    expect(cart_.until([&] { return cart_.offset() < 3.0; }, 20.0), "it does not come back to the region");
+  }
+
+  test::RandomCartFaults random_;
+  bool manual_;
+  SimulatedCart cart_;
+  std::vector<CartFault> faults_;
+  double begin_ = 0.0;
+  double moved_until_ = 0.0;
+  double alone_ = 0.0;                     // s, for which a fault that needs somebody lasted while the other did not
+  std::optional<Eigen::Isometry3d> from_;  // where the scope was when it had to stop
+  ScopeTravel worst_;
+  std::string reason_;
+};
+
+// The estimate of the insertion point followed it, by as much as the clock had jumped.
+TEST(FaultPairs, ADepthThatCannotBeIsForgottenWithTheJumpOfTheClock) {
+  SimulatedCart cart(ControllerConfig(), {0.1, 0.05, 0.0, 0.0}, 1);
+  cart.pass(0.5);
+  ASSERT_EQ(cart.controller.engage(cart.input()), "");
+  cart.pass(0.5);
+  cart.interference.input = [](ControllerInput& input, double) {
+    input.depth.d2 = -75.0;
+    input.time += 71.0;
+  };
+  cart.pass(0.2);
+  EXPECT_EQ(cart.output.state, ControllerState::kFault);
+  cart.interference = {};
+  cart.pass(0.2);
+  cart.controller.disengage("for a test");
+  EXPECT_EQ(cart.controller.engage(cart.input()), "");
+}
+
+TEST(FaultPairs, NoneMovesTheScopeFurtherThanItMayAndItGoesOnByTheSteps) {
+  const int first = setting("CART_FAULT_SEED", 1);
+  const int count = setting("CART_FAULT_RUNS", 1000);
+  ScopeTravel worst;
+  int stopped = 0;
+  for (int seed = first; seed < first + count; ++seed) {
+    PairRun run(static_cast<unsigned>(seed));
+    const std::string failure = run.run();
+    worst.angle = std::max(worst.angle, run.worst().angle);
+    worst.distance = std::max(worst.distance, run.worst().distance);
+    stopped += run.reason().empty() ? 0 : 1;
+    EXPECT_EQ(failure, "") << "seed " << seed << ": " << run.text();
+    if (std::getenv("CART_FAULT_VERBOSE") != nullptr) {
+      std::cout << "seed " << seed << ": " << run.worst().angle / kDegree << " deg, " << 1e3 * run.worst().distance
+                << " mm, '" << run.reason() << "'; " << run.text() << std::endl;
+    }
+  }
+  std::cout << count << " pairs, " << stopped
+            << " of them stopped the scope; the furthest after a fault that has to: " << worst.angle / kDegree
+            << " deg, " << 1e3 * worst.distance << " mm" << std::endl;
+}
+
+}  // namespace
+}  // namespace laparoscope_servo::servo
