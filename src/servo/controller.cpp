@@ -37,6 +37,7 @@ Controller::Controller(const ControllerConfig& config)
     : config_(checked(config)),
       servo_(config),
       machine_(config.safety),
+      effect_(config.effect, {config.target.centre_noise, config.target.depth_noise, config.target.orientation_noise}),
       insertion_point_(config.insertion_point.estimator, priorOf(config.insertion_point)),
       d2_correction_(config.insertion_point.correction_rate) {}
 
@@ -57,6 +58,7 @@ SafetyFacts Controller::facts(const ControllerInput& input) const {
   facts.tracker = {task.problem,          task.age,         task.image_age, task.valid, task.region,
                    task.visible_fraction, task.corner_error};
   if (task.problem.empty() && task.valid && !isFinite(task.error)) facts.tracker.problem = "task error is not finite";
+  if (engaged()) facts.effect = {effect_.effect(), effect_.words()};
   return facts;
 }
 
@@ -75,6 +77,21 @@ void Controller::correctDepth(const ControllerInput& input) {
   d2_correction_.update(input.time, wanted);
 }
 
+// Whatever moves the scope is seen in the picture, also before it is engaged: the tissue's own motion is known then.
+void Controller::watchEffect(const ControllerInput& input) {
+  const TaskErrorInput& task = input.task_error;
+  if (task_ != Task::kHoldView || !task.problem.empty() || !task.valid || !task.image_time) return;
+  if (!input.depth.problem.empty() || !(input.depth.d2 > 0.0)) return;
+  EffectObservation image;
+  image.time = *task.image_time;
+  image.error = task.error;
+  image.scope = {input.depth.camera_R_shaft, d2(input)};
+  image.desired_depth = config_.features.desired_depth;
+  image.corner_error = task.corner_error;
+  image.breath_known = servo_.breathingRate() > 0.0;
+  effect_.observe(image, servo_.history(), servo_.delay());
+}
+
 std::string Controller::engage(const ControllerInput& input) {
   if (engaged()) return "";
   const std::string refusal = problem(input);
@@ -82,6 +99,7 @@ std::string Controller::engage(const ControllerInput& input) {
   SafetyFacts request = facts(input);
   request.request = EngageRequest::kOn;
   machine_.step(request);
+  effect_.rearm();
   has_time_ = false;  // the pause since the last step is no step
   last_time_ = input.time;
   servo_.reset();
@@ -109,7 +127,10 @@ std::string Controller::problem(const ControllerInput& input) const {
 }
 
 ControllerOutput Controller::update(const ControllerInput& input) {
-  if (input.robot_report.present) servo_.report(input.time - input.robot_report.age, input.robot_report.velocity);
+  if (input.robot_report.present) {
+    servo_.report(input.time - input.robot_report.age, input.robot_report.velocity);
+    effect_.report(input.time - input.robot_report.age, input.robot_report.velocity);
+  }
   if (!input.clock_jump.empty()) insertion_point_.reset();
   // A pose that is told again says nothing new, and one of a scope that is not in the body nothing at all.
   const bool poses_count = input.depth.problem.empty() && input.depth.pose_is_new && input.depth.d2 > 0.0 &&
@@ -120,13 +141,14 @@ ControllerOutput Controller::update(const ControllerInput& input) {
     insertion_point_.update(input.time, {tip.translation(), tip.linear().col(2)});
   }
   correctDepth(input);
+  watchEffect(input);
   SafetyFacts known = facts(input);
   SafetyOutput safety = machine_.step(known);
   ControllerOutput output;
   if (safety.state == ControllerState::kServo && !task_changed_) {
     output.command = task_ == Task::kManual
                          ? drive(input)
-                         : servo_.command(servoInput(input), {safety.speed_scale, safety.insertion_allowed});
+                         : servo_.command(servoInput(input), limits(safety));
     known.command_finite = output.command.vector().allFinite();
     if (!known.command_finite) {
       safety = machine_.step(known);
@@ -153,6 +175,14 @@ ControllerOutput Controller::update(const ControllerInput& input) {
     if (!problem.empty()) output.caution += (output.caution.empty() ? "" : "; ") + problem;
   }
   return output;
+}
+
+ServoLimits Controller::limits(const SafetyOutput& safety) const {
+  ServoLimits limits{safety.speed_scale, safety.insertion_allowed};
+  constexpr double kSeen = 0.1;  // s, until what the robot does is seen and judged
+  if (config_.effect.enabled && !effect_.confirmed())
+    limits.insertion = config_.effect.unconfirmed_insertion / (servo_.delay() + kSeen);
+  return limits;
 }
 
 ServoInput Controller::servoInput(const ControllerInput& input) const {

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "laparoscope_servo/servo/controller_config.h"
+#include "laparoscope_servo/servo/effect_guard.h"
 #include "laparoscope_servo/servo/insertion_point_estimator.h"
 #include "laparoscope_servo/servo/safety_machine.h"
 #include "laparoscope_servo/servo/scope_servo.h"
@@ -102,6 +103,7 @@ class Controller {
   // calibration is off.
   const InsertionPointEstimator& insertionPoint() const { return insertion_point_; }
   const ScopeServo& servo() const { return servo_; }
+  const EffectGuard& effect() const { return effect_; }
 
   // Why engage() would be refused, or motion ends; empty when nothing is missing.
   std::string problem(const ControllerInput& input) const;
@@ -113,6 +115,8 @@ class Controller {
   SafetyFacts facts(const ControllerInput& input) const;
   double d2(const ControllerInput& input) const;
   void correctDepth(const ControllerInput& input);
+  void watchEffect(const ControllerInput& input);
+  ServoLimits limits(const SafetyOutput& safety) const;
   ServoInput servoInput(const ControllerInput& input) const;
   ScopeVelocity drive(const ControllerInput& input);
   std::string manualProblem(const ManualInput& manual) const;
@@ -120,6 +124,7 @@ class Controller {
   ControllerConfig config_;
   ScopeServo servo_;
   SafetyMachine machine_;
+  EffectGuard effect_;
   Task task_ = Task::kHoldView;
   bool task_changed_ = false;  // since the last step
   InsertionPointEstimator insertion_point_;

@@ -18,6 +18,7 @@
 #include <string>
 #include <vector>
 
+#include "laparoscope_servo/servo/effect.h"
 #include "laparoscope_servo/servo/residual_level.h"
 #include "laparoscope_servo/servo/safety_config.h"
 
@@ -60,6 +61,11 @@ struct TrackerFacts {
   double corner_error = std::numeric_limits<double>::infinity();  // px, expected of the worst corner
 };
 
+struct EffectFacts {
+  Effect effect = Effect::kAsCommanded;
+  std::string words;  // what was seen, where it is not as commanded
+};
+
 struct DeadManFacts {
   bool pressed = false;
   double age = std::numeric_limits<double>::infinity();
@@ -76,6 +82,7 @@ struct SafetyFacts {
   RobotFacts robot;
   PoseFacts pose;
   TrackerFacts tracker;
+  EffectFacts effect;
   DeadManFacts dead_man;
 };
 
@@ -96,6 +103,7 @@ enum class SafetyCondition {
   kCommandNotFinite,
   kResidualStop,
   kShaftOffInsertionPoint,
+  kEffectWrong,
   kHeldTooLong,
   kRegionChanged,
   kRobotSilent,
@@ -108,6 +116,7 @@ enum class SafetyCondition {
   kImageOld,
   kTrackerInvalid,
   kOccluded,
+  kEffectDoubted,
   kEngagedReleased,
   kEngaged,
   kDeadManReleased,
