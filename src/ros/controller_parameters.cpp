@@ -68,6 +68,21 @@ void readTarget(ParameterReader& reader, servo::ControllerConfig& config) {
   readNumber(reader, "target/damping", config.target.damping);
 }
 
+void readEffect(ParameterReader& reader, servo::EffectConfig& effect) {
+  reader.read("effect/enabled", effect.enabled);
+  readNumber(reader, "effect/tissue_centre", effect.tissue_centre);
+  readNumber(reader, "effect/tissue_depth", effect.tissue_depth);
+  readNumber(reader, "effect/tissue_orientation", effect.tissue_orientation);
+  readNumber(reader, "effect/tissue_time", effect.tissue_time);
+  readNumber(reader, "effect/unrest_time", effect.unrest_time);
+  readNumber(reader, "effect/memory", effect.memory);
+  readNumber(reader, "effect/doubt", effect.doubt);
+  readNumber(reader, "effect/release", effect.release);
+  readNumber(reader, "effect/certain", effect.certain);
+  readNumber(reader, "effect/standing_time", effect.standing_time);
+  readNumber(reader, "effect/unconfirmed_insertion", effect.unconfirmed_insertion);
+}
+
 void readSafety(ParameterReader& reader, servo::SafetyConfig& safety) {
   readNumber(reader, "safety/max_task_error_age", safety.max_task_error_age);
   readNumber(reader, "safety/max_depth_age", safety.max_depth_age);
@@ -152,6 +167,7 @@ servo::ControllerConfig controllerConfig(ParameterReader& reader) {
   reader.read("horizon/up", config.horizon.up, 3, -kLarge, kLarge);
   readVelocity(reader, "limits/velocity", config.limits.velocity);
   readVelocity(reader, "limits/acceleration", config.limits.acceleration);
+  readEffect(reader, config.effect);
   readSafety(reader, config.safety);
   reader.addErrors(servo::validate(config));
   return config;

@@ -33,6 +33,13 @@ class Noise {
   std::mt19937 random_;
 };
 
+Eigen::Matrix3d pictureOf(const PictureConfig& config) {
+  Eigen::Vector3d mirror = Eigen::Vector3d::Ones();
+  if (config.mirror == "x") mirror.x() = -1.0;
+  if (config.mirror == "y") mirror.y() = -1.0;
+  return geometry::so3Exp({0.0, 0.0, config.roll}) * mirror.asDiagonal();
+}
+
 class Loop {
  public:
   Loop(const ControllerNodeConfig& controller, const SimulationConfig& config, unsigned seed)
@@ -43,7 +50,9 @@ class Loop {
         patient_(config.patient, {0.0, 0.0, config.tissue_distance}),
         noise_(seed),
         insertion_point_(shaft_R_camera_.transpose() * Eigen::Vector3d(0.0, 0.0, -config.depth)),
-        body_(startPose(), insertion_point_, config.scope_length, config.wrist) {}
+        body_(startPose(), insertion_point_, config.scope_length, config.wrist),
+        picture_(pictureOf(config.picture)),
+        signs_(config.signs[0], config.signs[1], config.signs[2], config.signs[3]) {}
 
   bool seesRoi(double time) const { return nearestToBorder(cornersAt(time)) >= 0.0; }
 
@@ -51,11 +60,13 @@ class Loop {
     servo::TaskErrorInput input;
     input.problem.clear();
     input.valid = false;
-    input.visible_fraction = 1.0;
-    input.corner_error = config_.corner_noise;
+    const double covered = crossing(time);
+    const double noise = config_.corner_noise * (1.0 + covered * (config_.crossing.noise - 1.0));
+    input.visible_fraction = 1.0 - covered * config_.crossing.cover;
+    input.corner_error = noise;
     geometry::Quadrilateral seen = cornersAt(time);
     if (nearestToBorder(seen) >= 0.0) {
-      for (Eigen::Vector2d& corner : seen) corner += noise_.draw(config_.corner_noise);
+      for (Eigen::Vector2d& corner : seen) corner += noise_.draw(noise);
       const Eigen::Matrix3d g = geometry::fromCorners(config_.roi.corners(), seen);
       input.error = servo::taskError(geometry::normalisedFromPixels(g, config_.camera), config_.roi, config_.camera);
       input.valid = true;
@@ -99,7 +110,9 @@ class Loop {
   // The midpoint rule: d1 changes while the scope is pushed in.
   void move(double time) {
     body_.moveInsertionPoint(insertion_point_ + patient_.trocarOffset(time));
-    const servo::ScopeVelocity executed = servo::ScopeVelocity::fromVector(actuator_.velocity(time));
+    if (time >= config_.picture.frozen_from && !frozen_) frozen_ = trueHomography(time);
+    const servo::ScopeVelocity executed = servo::ScopeVelocity::fromVector(actuator_.velocity(time).cwiseProduct(signs_));
+    moved_ += kStep * executed.vector();
     sim::ScopeBody halfway = body_;
     halfway.move(endEffectorTwist(executed, believedDepth()), 0.5 * kStep);
     body_.move(endEffectorTwist(executed, config_.believed_depth_factor * halfway.depth()), kStep);
@@ -142,8 +155,21 @@ class Loop {
                                config_.tissue_distance * normal.z());
   }
 
+  // Of the picture, which need not be what the scope's optics should show.
+  Eigen::Matrix3d seenHomography(double time) const {
+    return picture_ * (frozen_ ? *frozen_ : trueHomography(time)) * picture_.transpose();
+  }
+
   geometry::Quadrilateral cornersAt(double time) const {
-    return geometry::apply(geometry::pixelsFromNormalised(trueHomography(time), config_.camera), config_.roi.corners());
+    return geometry::apply(geometry::pixelsFromNormalised(seenHomography(time), config_.camera), config_.roi.corners());
+  }
+
+  // 0 to 1: how far an instrument is over the region.
+  double crossing(double time) const {
+    const CrossingConfig& c = config_.crossing;
+    if (!(c.period > 0.0)) return 0.0;
+    const double since = std::fmod(time, c.period) - 0.5 * c.period;  // not at the start
+    return since < 0.0 || since > c.duration ? 0.0 : std::sin(M_PI * since / c.duration);
   }
 
   // px from the corner that is nearest to the image's border; negative when one is outside, or when nothing is to be
@@ -167,7 +193,9 @@ class Loop {
     SimulationSample s;
     s.t = time;
     s.command = output.command;
-    const Eigen::Matrix3d h = trueHomography(time);
+    s.moved = moved_;
+    s.evidence = controller_.effect().evidence();
+    const Eigen::Matrix3d h = seenHomography(time);
     const Eigen::Vector2d centre =
         geometry::apply(geometry::pixelsFromNormalised(h, config_.camera), config_.roi.centre());
     s.u = centre.x();
@@ -204,6 +232,10 @@ class Loop {
   std::deque<std::pair<double, servo::TaskErrorInput>> images_;
   std::pair<double, servo::TaskErrorInput> latest_{0.0, servo::TaskErrorInput()};
   bool engaged_once_ = false;
+  Eigen::Matrix3d picture_;  // what it shows over what it should, normalised coordinates
+  Eigen::Vector4d signs_;
+  std::optional<Eigen::Matrix3d> frozen_;               // what a frozen picture shows
+  Eigen::Vector4d moved_ = Eigen::Vector4d::Zero();  // by the scope
 };
 
 }  // namespace

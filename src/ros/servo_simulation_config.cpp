@@ -52,6 +52,14 @@ void readScope(ParameterReader& reader, SimulationConfig& config) {
   reader.read(group + "pose_noise", config.pose_noise, 0.0, 0.1);
   reader.read(group + "direction_noise", config.direction_noise, 0.0, 0.5);
   reader.read(group + "robot/delay", config.robot.delay, 0.0, 2.0);
+  reader.read(group + "robot/signs", config.signs, 4, -1.0, 1.0);
+  reader.read(group + "picture/roll", config.picture.roll, -6.3, 6.3);
+  reader.read(group + "picture/mirror", config.picture.mirror, {"none", "x", "y"});
+  reader.read(group + "picture/frozen_from", config.picture.frozen_from, 0.0, 1e9);
+  reader.read(group + "crossing/period", config.crossing.period, 0.0, 1e9);
+  reader.read(group + "crossing/duration", config.crossing.duration, 0.01, 1e9);
+  reader.read(group + "crossing/cover", config.crossing.cover, 0.0, 1.0);
+  reader.read(group + "crossing/noise", config.crossing.noise, 1.0, 100.0);
   reader.read(group + "robot/dead_zone", config.robot.dead_zone, 4, 0.0, 1.0);
   reader.read(group + "robot/dead_zone_kind", config.robot.dead_zone_kind, {"subtract", "threshold"});
   for (const std::string& error : sim::validate(config.robot)) reader.addError("simulation/robot/" + error);
@@ -67,6 +75,9 @@ void readPatient(ParameterReader& reader, sim::PatientConfig& config) {
   reader.read(group + "breathing/end", config.breathing.end, -kInfinity, kInfinity);
   reader.read(group + "breathing/tissue", config.breathing.tissue, 3, -kInfinity, kInfinity);
   reader.read(group + "breathing/trocar", config.breathing.trocar, 3, -kInfinity, kInfinity);
+  reader.read(group + "pull/distance", config.pull.distance, -kInfinity, kInfinity);
+  reader.read(group + "pull/time", config.pull.time, -kInfinity, kInfinity);
+  reader.read(group + "pull/period", config.pull.period, -kInfinity, kInfinity);
   reader.read(group + "drift", config.drift, 3, -kInfinity, kInfinity);
   reader.read(group + "drift_end", config.drift_end, -kInfinity, kInfinity);
   reader.read(group + "jump", config.jump, 3, -kInfinity, kInfinity);

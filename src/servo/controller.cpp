@@ -41,6 +41,7 @@ Controller::Controller(const ControllerConfig& config)
       machine_(config.safety),
       stick_(config.safety, config.limits.velocity),
       repeats_(config.safety.max_repeated_errors),
+      effect_(config.effect, {config.target.centre_noise, config.target.depth_noise, config.target.orientation_noise}),
       insertion_point_(config.insertion_point.estimator, priorOf(config.insertion_point)),
       d2_correction_(config.insertion_point.correction_rate) {}
 
@@ -61,6 +62,7 @@ SafetyFacts Controller::facts(const ControllerInput& input) const {
   const TaskErrorInput& task = input.task_error;
   facts.tracker = {task.problem,          task.age,         task.image_age, task.valid, task.region,
                    task.visible_fraction, task.corner_error};
+  if (engaged()) facts.effect = {effect_.effect(), effect_.words()};
   if (!task.problem.empty() || !task.valid) return facts;
   facts.tracker.problem = implausible(task);
   if (facts.tracker.problem.empty() && repeats_.repeats()) {
@@ -85,6 +87,21 @@ void Controller::correctDepth(const ControllerInput& input) {
   d2_correction_.update(input.time, wanted);
 }
 
+// Whatever moves the scope is seen in the picture, also before it is engaged: the tissue's own motion is known then.
+void Controller::watchEffect(const ControllerInput& input) {
+  const TaskErrorInput& task = input.task_error;
+  if (task_ != Task::kHoldView || !task.problem.empty() || !task.valid || !task.image_time) return;
+  if (!implausible(task).empty() || !input.depth.problem.empty() || !(input.depth.d2 > 0.0)) return;
+  EffectObservation image;
+  image.time = *task.image_time;
+  image.error = task.error;
+  image.scope = {input.depth.camera_R_shaft, d2(input)};
+  image.desired_depth = config_.features.desired_depth;
+  image.corner_error = task.corner_error;
+  image.breath_known = servo_.breathingRate() > 0.0;
+  effect_.observe(image, servo_.history(), servo_.delay());
+}
+
 std::string Controller::engage(const ControllerInput& input) {
   if (engaged()) return "";
   const std::string refusal = problem(input);
@@ -92,6 +109,7 @@ std::string Controller::engage(const ControllerInput& input) {
   SafetyFacts request = facts(input);
   request.request = EngageRequest::kOn;
   machine_.step(request);
+  effect_.rearm();
   has_time_ = false;  // the pause since the last step is no step
   last_time_ = input.time;
   servo_.reset();
@@ -121,7 +139,10 @@ std::string Controller::problem(const ControllerInput& input) const {
 }
 
 ControllerOutput Controller::update(const ControllerInput& input) {
-  if (input.robot_report.present) servo_.report(input.time - input.robot_report.age, input.robot_report.velocity);
+  if (input.robot_report.present) {
+    servo_.report(input.time - input.robot_report.age, input.robot_report.velocity);
+    effect_.report(input.time - input.robot_report.age, input.robot_report.velocity);
+  }
   if (!input.clock_jump.empty()) insertion_point_.reset();
   // A pose that is told again says nothing new, and one of a scope that is not in the body nothing at all.
   const bool poses_count = input.depth.problem.empty() && input.depth.pose_is_new && input.depth.d2 > 0.0 &&
@@ -133,15 +154,14 @@ ControllerOutput Controller::update(const ControllerInput& input) {
   }
   correctDepth(input);
   watchRepetition(input.task_error);
+  watchEffect(input);
   SafetyFacts known = facts(input);
   SafetyOutput safety = machine_.step(known);
   ControllerOutput output;
   const bool moves = safety.state == ControllerState::kServo && !task_changed_;
   const std::string stick = stick_.update(input.manual, moves && task_ == Task::kManual, input.time);
   if (moves) {
-    output.command = task_ == Task::kManual
-                         ? drive(input, stick)
-                         : servo_.command(servoInput(input), {safety.speed_scale, safety.insertion_allowed});
+    output.command = task_ == Task::kManual ? drive(input, stick) : servo_.command(servoInput(input), limits(safety));
     known.command_finite = output.command.vector().allFinite();
     if (!known.command_finite) {
       safety = machine_.step(known);
@@ -176,6 +196,14 @@ void Controller::watchRepetition(const TaskErrorInput& task_error) {
   if (!task_error.problem.empty() || !task_error.valid || !task_error.image_time) return;
   const bool moves = moves_since_ && *task_error.image_time - *moves_since_ > servo_.delay() + kShows;
   repeats_.take(*task_error.image_time, task_error.error, moves && task_ == Task::kHoldView);
+}
+
+ServoLimits Controller::limits(const SafetyOutput& safety) const {
+  ServoLimits limits{safety.speed_scale, safety.insertion_allowed};
+  constexpr double kSeen = 0.1;  // s, until what the robot does is seen and judged
+  if (config_.effect.enabled && !effect_.confirmed())
+    limits.insertion = config_.effect.unconfirmed_insertion / (servo_.delay() + kSeen);
+  return limits;
 }
 
 ServoInput Controller::servoInput(const ControllerInput& input) const {

@@ -108,6 +108,23 @@ void checkInsertionPoint(const InsertionPointUse& config, Checker& check) {
   for (const std::string& error : validate(config.estimator)) check.add("insertion_point/" + error);
 }
 
+void checkEffect(const EffectConfig& config, Checker& check) {
+  // Not zero: tissue that cannot move by itself would make a fault of every breath.
+  check.range("effect/tissue_centre", config.tissue_centre, 1e-3, 10.0, "1/s");
+  check.range("effect/tissue_depth", config.tissue_depth, 1e-3, 10.0, "1/s");
+  check.range("effect/tissue_orientation", config.tissue_orientation, 1e-3, 10.0, "rad/s");
+  check.range("effect/tissue_time", config.tissue_time, 0.05, 60.0, "s");
+  check.range("effect/unrest_time", config.unrest_time, 0.0, 10.0, "s");
+  check.range("effect/memory", config.memory, 0.1, 60.0, "s");
+  check.range("effect/doubt", config.doubt, 1.0, 100.0);
+  check.range("effect/release", config.release, 0.0, 100.0);
+  check.atLeast("effect/doubt", config.doubt, "effect/release", config.release);
+  check.range("effect/certain", config.certain, 1.0, 1000.0);
+  check.atLeast("effect/certain", config.certain, "effect/doubt", config.doubt);
+  check.range("effect/standing_time", config.standing_time, 0.05, 10.0, "s");
+  check.range("effect/unconfirmed_insertion", config.unconfirmed_insertion, 1e-4, 1.0, "m");
+}
+
 void checkOscillation(const OscillationConfig& config, Checker& check) {
   check.range("oscillation/half_period", config.half_period, 0.05, 5.0, "s");
   check.range("oscillation/changes", config.changes, 1, 100);
@@ -171,6 +188,7 @@ std::vector<std::string> validate(const ControllerConfig& config) {
   checkTarget(config.target, check);
   checkBreathing(config.breathing, check);
   checkOscillation(config.oscillation, check);
+  checkEffect(config.effect, check);
   checkRange(config.range, check);
   checkInsertionPoint(config.insertion_point, check);
   checkDirection("horizon/up", config.horizon.up, check);

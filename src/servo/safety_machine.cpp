@@ -59,6 +59,7 @@ const std::vector<SafetyTransition>& safetyTransitions() {
       {kEngaged, Condition::kCommandNotFinite, State::kFault, disengage},
       {kEngaged, Condition::kResidualStop, State::kFault, disengage},
       {kEngaged, Condition::kShaftOffInsertionPoint, State::kFault, disengage},
+      {kEngaged, Condition::kEffectWrong, State::kFault, disengage},
       {kEngaged | kLost | kFault, Condition::kDisengaged, State::kIdle, engage},
       {kEngaged, Condition::kEnded, State::kLost, engage},
       {kEngaged, Condition::kRobotStopped, State::kLost, engage},
@@ -74,6 +75,7 @@ const std::vector<SafetyTransition>& safetyTransitions() {
       {kEngaged, Condition::kImageOld, State::kHold, by_itself},
       {kEngaged, Condition::kTrackerInvalid, State::kHold, by_itself},
       {kEngaged, Condition::kOccluded, State::kHold, by_itself},
+      {kEngaged, Condition::kEffectDoubted, State::kHold, by_itself},
       {kIdle | kLost, Condition::kEngagedReleased, State::kArmed, dead_man},
       {kIdle | kLost, Condition::kEngaged, State::kServo, stop},
       {kEngaged, Condition::kDeadManReleased, State::kArmed, dead_man},
@@ -150,6 +152,10 @@ std::string SafetyMachine::cause(SafetyCondition condition, const SafetyFacts& f
     case Condition::kShaftOffInsertionPoint:
       return when(pose_usable && !(pose.lateral_offset >= 0.0 && pose.lateral_offset <= c.max_lateral_offset),
                   text("the shaft passes the insertion point at more than ", c.max_lateral_offset, " m"));
+    case Condition::kEffectWrong:
+      return when(facts.effect.effect == Effect::kWrong, facts.effect.words);
+    case Condition::kEffectDoubted:
+      return when(facts.effect.effect == Effect::kDoubted, facts.effect.words);
     case Condition::kHeldTooLong:
       return when(facts.time - hold_since_ >= c.resume_time, text("held for ", c.resume_time, " s: ", reason_));
     case Condition::kRegionChanged:

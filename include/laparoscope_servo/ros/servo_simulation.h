@@ -20,6 +20,21 @@
 
 namespace laparoscope_servo::skin {
 
+// What stands between the scope and what the tracker sees.
+struct PictureConfig {
+  double roll = 0.0;            // rad: the picture is turned against the configured optics
+  std::string mirror = "none";  // "x": left for right, "y": up for down, before it is rolled
+  double frozen_from = 1e9;     // s: from then on it shows what it showed, with new noise, as another camera's would
+};
+
+// Instruments cross the region, one after the other.
+struct CrossingConfig {
+  double period = 0.0;    // s, from one to the next; 0: none
+  double duration = 2.0;  // s
+  double cover = 0.7;     // share of the region that is covered in the middle of a crossing
+  double noise = 4.0;     // times the noise of the corners there
+};
+
 struct SimulationConfig {
   double frame_rate = 25.0;                                    // Hz, of the camera
   double image_delay = 0.0;                                    // s, from the exposure to the task error
@@ -50,6 +65,9 @@ struct SimulationConfig {
   double pose_noise = 0.0005;       // m, standard deviation per axis
   double direction_noise = 0.0035;  // rad, of the shaft's direction, per axis
   sim::PatientConfig patient;
+  PictureConfig picture;
+  CrossingConfig crossing;
+  std::vector<double> signs{1.0, 1.0, 1.0, 1.0};  // of pan, tilt, spin, insertion; -1: the robot does the opposite
 };
 
 // Reads the group `simulation`; errors go to the reader.
@@ -71,7 +89,9 @@ struct SimulationSample {
   double commanded_lateral_speed = 0.0;
   double lateral_offset = 0.0;  // m, from the insertion point to the shaft
   double worst_corner = 0.0;    // px, of the ROI from the image's border, the nearest; negative: outside
-  std::string state;            // of the controller
+  Eigen::Vector4d moved = Eigen::Vector4d::Zero();  // rad, m: by the scope since the start (pan, tilt, spin, insertion)
+  double evidence = 0.0;                            // of the guard of effect
+  std::string state;                                // of the controller
 };
 
 // Whether the whole ROI is in the image where the loop starts.

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "laparoscope_servo/servo/controller_config.h"
+#include "laparoscope_servo/servo/effect_guard.h"
 #include "laparoscope_servo/servo/insertion_point_estimator.h"
 #include "laparoscope_servo/servo/manual_stick.h"
 #include "laparoscope_servo/servo/repeat_watch.h"
@@ -89,6 +90,7 @@ class Controller {
   // calibration is off.
   const InsertionPointEstimator& insertionPoint() const { return insertion_point_; }
   const ScopeServo& servo() const { return servo_; }
+  const EffectGuard& effect() const { return effect_; }
 
   // Why engage() would be refused, or motion ends; empty when nothing is missing.
   std::string problem(const ControllerInput& input) const;
@@ -100,6 +102,8 @@ class Controller {
   SafetyFacts facts(const ControllerInput& input) const;
   double d2(const ControllerInput& input) const;
   void correctDepth(const ControllerInput& input);
+  void watchEffect(const ControllerInput& input);
+  ServoLimits limits(const SafetyOutput& safety) const;
   ServoInput servoInput(const ControllerInput& input) const;
   void watchRepetition(const TaskErrorInput& task_error);
   ScopeVelocity drive(const ControllerInput& input, const std::string& problem);
@@ -108,6 +112,7 @@ class Controller {
   ControllerConfig config_;
   ScopeServo servo_;
   SafetyMachine machine_;
+  EffectGuard effect_;
   Task task_ = Task::kHoldView;
   bool task_changed_ = false;  // since the last step
   ManualStick stick_;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "laparoscope_servo/servo/dead_zone.h"
+#include "laparoscope_servo/servo/effect_config.h"
 #include "laparoscope_servo/servo/feature_law.h"
 #include "laparoscope_servo/servo/harmonic_filter_config.h"
 #include "laparoscope_servo/servo/insertion_point_config.h"
@@ -67,6 +68,7 @@ struct ControllerConfig {
   WorkRange range;
   InsertionPointUse insertion_point;
   HorizonConfig horizon;
+  EffectConfig effect;
   SafetyConfig safety;
 };
 

@@ -19,6 +19,7 @@
 #include <string>
 #include <vector>
 
+#include "laparoscope_servo/servo/effect.h"
 #include "laparoscope_servo/servo/residual_level.h"
 #include "laparoscope_servo/servo/safety_config.h"
 
@@ -63,6 +64,11 @@ struct TrackerFacts {
   double corner_error = std::numeric_limits<double>::infinity();  // px, expected of the worst corner
 };
 
+struct EffectFacts {
+  Effect effect = Effect::kAsCommanded;
+  std::string words;  // what was seen, where it is not as commanded
+};
+
 struct DeadManFacts {
   bool pressed = false;
   double age = std::numeric_limits<double>::infinity();
@@ -81,6 +87,7 @@ struct SafetyFacts {
   RobotFacts robot;
   PoseFacts pose;
   TrackerFacts tracker;
+  EffectFacts effect;
   DeadManFacts dead_man;
 };
 
@@ -102,6 +109,7 @@ enum class SafetyCondition {
   kCommandNotFinite,
   kResidualStop,
   kShaftOffInsertionPoint,
+  kEffectWrong,
   kHeldTooLong,
   kRegionChanged,
   kRobotSilent,
@@ -115,6 +123,7 @@ enum class SafetyCondition {
   kImageOld,
   kTrackerInvalid,
   kOccluded,
+  kEffectDoubted,
   kEngagedReleased,
   kEngaged,
   kDeadManReleased,

@@ -5,6 +5,7 @@
 // see controller.h.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -31,6 +32,7 @@ struct ServoInput {
 struct ServoLimits {
   double scale = 1.0;             // 0 to 1, of all velocities and their limits
   bool insertion_allowed = true;  // false: not deeper
+  double insertion = std::numeric_limits<double>::infinity();  // m/s; what is faster is slowed down as a whole
 };
 
 class ScopeServo {
@@ -60,6 +62,7 @@ class ScopeServo {
   // Of the gains, 1 unless the loop has swung.
   double gainFactor() const { return oscillation_.factor(); }
 
+
   // Hz, of the breath that is followed; 0 when none is.
   double breathingRate() const { return breathing_.rate(); }
 
@@ -68,6 +71,9 @@ class ScopeServo {
 
   // The robot says that it does not do what it was told.
   bool blocked() const { return blocked_; }
+
+  // What the robot has been told, after its dead zone.
+  const CommandHistory& history() const { return history_; }
 
   // s, from a command to its execution.
   double delay() const { return config_.predictor.measure_delay ? delay_.delay() : config_.predictor.delay; }

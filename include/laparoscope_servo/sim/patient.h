@@ -20,8 +20,17 @@ struct BreathingConfig {
   std::vector<double> trocar{0.0, 0.0, 0.0};  // m, the same, of the insertion point
 };
 
+// Somebody pulls at the tissue, again and again: each time smoothly to another place on a circle about where it lies at
+// rest, and nearer or further by a third of the radius at most.
+struct PullConfig {
+  double distance = 0.0;  // m, radius of the circle; 0 to 0.1
+  double time = 0.5;      // s, that a pull takes; 0.05 to 60
+  double period = 10.0;   // s, from one to the next; at least `time`
+};
+
 struct PatientConfig {
   BreathingConfig breathing;
+  PullConfig pull;
   std::vector<double> drift{0.0, 0.0, 0.0};  // m/s, of the tissue
   double drift_end = 1e9;                    // s: it stands from then on
   std::vector<double> jump{0.0, 0.0, 0.0};   // m: the tissue is pulled so far
@@ -45,6 +54,8 @@ class Patient {
   Eigen::Vector3d trocarOffset(double time) const;
 
  private:
+  Eigen::Vector3d pulled(double time) const;
+
   // Phase of the breath, its first harmonic of amplitude 1; 0 at `start`.
   double breath(double time) const;
 

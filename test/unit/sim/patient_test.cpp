@@ -60,6 +60,21 @@ TEST(Patient, DriftsAndIsPulled) {
   EXPECT_NEAR((patient.tissueMotion(9.0).translation() - Eigen::Vector3d(0.004, 0.01, 0.0)).norm(), 0.0, 1e-15);
 }
 
+TEST(Patient, IsPulledAgainAndAgainSmoothly) {
+  PatientConfig config;
+  config.pull = {0.02, 0.5, 4.0};
+  const Patient patient(config, kTarget);
+  const auto at = [&patient](double t) { return Eigen::Vector3d(patient.tissueMotion(t).translation()); };
+  EXPECT_EQ(at(3.9), Eigen::Vector3d::Zero());
+  for (double t = 0.0; t < 40.0; t += 0.01) {
+    // The fastest that a raised cosine is between two places on the circle, and nearer or further by a third of it.
+    EXPECT_LE((at(t + 0.01) - at(t)).norm(), 0.01 * 0.5 * M_PI / 0.5 * 0.02 * std::hypot(2.0, 2.0 / 3.0) + 1e-12);
+    if (std::fmod(t, 4.0) > 0.5) EXPECT_LT((at(t) - at(t - std::fmod(t, 4.0) + 3.99)).norm(), 1e-12);
+  }
+  EXPECT_NEAR(at(4.6).head<2>().norm(), 0.02, 1e-12);
+  EXPECT_GT((at(8.6) - at(4.6)).norm(), 0.02);
+}
+
 TEST(Patient, TiltsAboutTheTarget) {
   PatientConfig config;
   config.tilt = 0.4;
@@ -78,13 +93,16 @@ TEST(Patient, NamesWhatIsWrong) {
   config.breathing.trocar = {0.0, 1.0, 0.0};
   config.drift = {0.0, 0.0, std::numeric_limits<double>::quiet_NaN()};
   config.tilt = -1.0;
+  config.pull = {-0.1, 0.5, 0.4};
   const std::vector<std::string> errors = validate(config);
-  ASSERT_EQ(errors.size(), 5u);
+  ASSERT_EQ(errors.size(), 7u);
   EXPECT_EQ(errors[0].rfind("breathing/frequency = 0", 0), 0u);
   EXPECT_EQ(errors[1].rfind("breathing/tissue has 2 elements", 0), 0u);
   EXPECT_EQ(errors[2].rfind("breathing/trocar[1] = 1", 0), 0u);
-  EXPECT_EQ(errors[3].rfind("drift[2] = ", 0), 0u);
-  EXPECT_EQ(errors[4].rfind("tilt = -1", 0), 0u);
+  EXPECT_EQ(errors[3].rfind("pull/distance = -0.1", 0), 0u);
+  EXPECT_EQ(errors[4].rfind("pull/period = 0.4", 0), 0u);
+  EXPECT_EQ(errors[5].rfind("drift[2] = ", 0), 0u);
+  EXPECT_EQ(errors[6].rfind("tilt = -1", 0), 0u);
 }
 
 }  // namespace
