@@ -170,6 +170,7 @@ void ControllerNode::report(diagnostic_updater::DiagnosticStatusWrapper& status)
   status.add("residual of the shafts [m]", controller_.insertionPoint().residual());
   status.add("delay [s]", controller_.servo().delay());
   status.add("breathing rate [Hz]", controller_.servo().breathingRate());
+  status.add("evidence of a fault in the picture", controller_.effect().evidence());
   status.add("factor of the gains", controller_.servo().gainFactor());
   status.add("pan [rad/s]", last_output_.command.pan);
   status.add("tilt [rad/s]", last_output_.command.tilt);

@@ -49,6 +49,28 @@ class Reversals {
   int count_ = 0;
 };
 
+// Where the scope goes, and what stops it.
+class Stopping {
+ public:
+  explicit Stopping(double from) : from_(from) {}
+  void add(const SimulationSample& s, RunSummary& run) {
+    const bool ended = s.state == "LOST" || s.state == "FAULT";
+    if (ended && run.stopped < 0.0) run.stopped = s.t;
+    if (s.state == "HOLD" && before_ != "HOLD") ++run.holds;
+    if (!ended && s.state != "IDLE") run.evidence = std::max(run.evidence, s.evidence);
+    before_ = s.state;
+    if (s.t <= from_) start_ = s.moved;
+    const Eigen::Vector4d way = s.moved - start_;
+    run.turned = std::max({run.turned, way.head<2>().norm(), std::abs(way[2])});
+    run.inserted = std::max(run.inserted, std::abs(way[3]));
+  }
+
+ private:
+  double from_;
+  std::string before_;
+  Eigen::Vector4d start_ = Eigen::Vector4d::Zero();
+};
+
 // What one run adds to the figures of rest; sums until they are divided.
 void addRest(const SimulationSample& s, double offset, double scale, RunSummary& run) {
   run.centre_rms += offset * offset;
@@ -115,6 +137,8 @@ RunSummary summariseRun(const std::vector<SimulationSample>& samples, const Simu
   RunSummary run;
   Settling centre(bounds.centre), scale(bounds.scale), orientation(bounds.orientation);
   Reversals reversals;
+  const bool freezes = config.picture.frozen_from < samples.back().t;
+  Stopping stopping(freezes ? config.picture.frozen_from : 0.0);
   double count = 0.0;
   for (const SimulationSample& s : samples) {
     const double offset = (Eigen::Vector2d(s.u, s.v) - config.roi.centre()).norm();
@@ -127,6 +151,7 @@ RunSummary summariseRun(const std::vector<SimulationSample>& samples, const Simu
     run.max_lateral_speed = std::max(run.max_lateral_speed, s.lateral_speed);
     run.max_lateral_offset = std::max(run.max_lateral_offset, s.lateral_offset);
     run.final_state = s.state;
+    stopping.add(s, run);
     if (s.t < bounds.rest_after) continue;
     count += 1.0;
     addRest(s, offset, scale_error, run);
@@ -146,7 +171,8 @@ RunSummary summariseRun(const std::vector<SimulationSample>& samples, const Simu
 void writeRuns(const std::vector<RunSummary>& runs, std::ostream& stream) {
   stream << "seed,start_pan,start_tilt,start_spin,start_insertion,refused_starts,settled,settled_centre,settled_scale,"
             "settled_orientation,left_image,centre_rms,scale_rms,orientation_rms,moving_share,reversals,"
-            "max_commanded_lateral_speed,max_lateral_speed,max_lateral_offset,final_state\n";
+            "max_commanded_lateral_speed,max_lateral_speed,max_lateral_offset,final_state,stopped,holds,"
+            "turned,inserted,evidence\n";
   stream.precision(9);
   for (const RunSummary& r : runs) {
     const servo::ScopeVelocity& start = r.drawn.start;
@@ -154,17 +180,20 @@ void writeRuns(const std::vector<RunSummary>& runs, std::ostream& stream) {
            << r.drawn.refused << ',' << r.settled << ',' << r.settled_centre << ',' << r.settled_scale << ','
            << r.settled_orientation << ',' << (r.left_image ? 1 : 0) << ',' << r.centre_rms << ',' << r.scale_rms << ','
            << r.orientation_rms << ',' << r.moving_share << ',' << r.reversals << ',' << r.max_commanded_lateral_speed
-           << ',' << r.max_lateral_speed << ',' << r.max_lateral_offset << ',' << r.final_state << '\n';
+           << ',' << r.max_lateral_speed << ',' << r.max_lateral_offset << ',' << r.final_state << ',' << r.stopped << ','
+           << r.holds << ',' << r.turned << ',' << r.inserted << ',' << r.evidence << '\n';
   }
 }
 
 void printRuns(const std::vector<RunSummary>& runs, const RunBounds& bounds, std::ostream& stream) {
-  int refused = 0, left = 0, settled = 0;
+  int refused = 0, left = 0, settled = 0, stopped = 0, held = 0;
   std::string failed;
   for (const RunSummary& run : runs) {
     refused += run.drawn.refused;
     left += run.left_image ? 1 : 0;
     settled += run.settled >= 0.0 ? 1 : 0;
+    stopped += run.stopped >= 0.0 ? 1 : 0;
+    held += run.holds;
     if (run.settled < 0.0) failed += ' ' + std::to_string(run.seed);
   }
   stream << runs.size() << " runs, " << refused << " starts that do not see the region were drawn again, " << left
@@ -186,6 +215,10 @@ void printRuns(const std::vector<RunSummary>& runs, const RunBounds& bounds, std
   printSpread("  spin rms", all([](const RunSummary& r) { return r.orientation_rms / kDegree; }), " deg", stream);
   printSpread("  moving", all([](const RunSummary& r) { return 100.0 * r.moving_share; }), " % of the time", stream);
   printSpread("  reversals", all([](const RunSummary& r) { return static_cast<double>(r.reversals); }), "", stream);
+  stream << "stopped: " << stopped << ", held: " << held << '\n';
+  printSpread("  turned", all([](const RunSummary& r) { return r.turned / kDegree; }), " deg", stream);
+  printSpread("  inserted", all([](const RunSummary& r) { return 1e3 * r.inserted; }), " mm", stream);
+  printSpread("  evidence of a fault", all([](const RunSummary& r) { return r.evidence; }), "", stream);
   stream << "at the insertion point\n";
   printSpread("  commanded lateral speed", all([](const RunSummary& r) { return r.max_commanded_lateral_speed; }),
               " m/s", stream);

@@ -43,6 +43,12 @@ struct RunSummary {
   double max_lateral_speed = 0.0;            // m/s, where it is
   double max_lateral_offset = 0.0;           // m
   std::string final_state;
+  double stopped = -1.0;  // s, when it went to LOST or FAULT; -1: it did not
+  int holds = 0;          // how often it went to HOLD
+  // How far the scope went from the start, or from when the picture froze: rad, pan and tilt together or spin; m.
+  double turned = 0.0;
+  double inserted = 0.0;
+  double evidence = 0.0;  // of the guard of effect, the most while it was engaged; see servo/effect_guard.h
 };
 
 RunSummary summariseRun(const std::vector<SimulationSample>& samples, const SimulationConfig& config,

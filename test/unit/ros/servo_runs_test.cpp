@@ -191,6 +191,31 @@ TEST(SummariseRun, KeepsTheWorst) {
   EXPECT_EQ(run.final_state, "LOST");
 }
 
+TEST(SummariseRun, TellsWhereTheScopeWentAndWhatStoppedIt) {
+  std::vector<SimulationSample> samples = still(10);
+  samples[1].moved << 0.03, -0.04, 0.01, 0.001;
+  samples[1].evidence = 2.0;
+  samples[2].moved << 0.0, 0.0, -0.02, -0.004;
+  for (const std::size_t k : {3u, 5u, 6u}) samples[k].state = "HOLD";
+  samples[5].evidence = 7.0;
+  for (const std::size_t k : {7u, 8u, 9u}) samples[k].state = "FAULT";
+  samples[8].evidence = 50.0;  // nobody is engaged any more
+  const RunSummary run = summarised(samples);
+  EXPECT_DOUBLE_EQ(run.turned, 0.05);
+  EXPECT_DOUBLE_EQ(run.inserted, 0.004);
+  EXPECT_EQ(run.holds, 2);
+  EXPECT_EQ(run.stopped, samples[7].t);
+  EXPECT_EQ(run.evidence, 7.0);
+}
+
+TEST(SummariseRun, CountsTheWayFromWhenThePictureFroze) {
+  std::vector<SimulationSample> samples = still(10);
+  for (std::size_t k = 0; k < 10; ++k) samples[k].moved << 0.01 * static_cast<double>(k), 0.0, 0.0, 0.0;
+  SimulationConfig config;
+  config.picture.frozen_from = samples[4].t;
+  EXPECT_NEAR(summariseRun(samples, config, RunBounds()).turned, 0.05, 1e-12);
+}
+
 TEST(WriteRuns, AColumnForEachFigure) {
   RunSummary run;
   run.seed = 2;
@@ -209,13 +234,19 @@ TEST(WriteRuns, AColumnForEachFigure) {
   run.max_lateral_speed = 18.0;
   run.max_lateral_offset = 19.0;
   run.final_state = "HOLD";
+  run.stopped = 20.0;
+  run.holds = 21;
+  run.turned = 22.0;
+  run.inserted = 23.0;
+  run.evidence = 24.0;
   std::ostringstream stream;
   writeRuns({run}, stream);
   EXPECT_EQ(stream.str(),
             "seed,start_pan,start_tilt,start_spin,start_insertion,refused_starts,settled,settled_centre,settled_scale,"
             "settled_orientation,left_image,centre_rms,scale_rms,orientation_rms,moving_share,reversals,"
-            "max_commanded_lateral_speed,max_lateral_speed,max_lateral_offset,final_state\n"
-            "2,3,4,5,6,7,8,9,10,11,1,12,13,14,15,16,17,18,19,HOLD\n");
+            "max_commanded_lateral_speed,max_lateral_speed,max_lateral_offset,final_state,stopped,holds,"
+            "turned,inserted,evidence\n"
+            "2,3,4,5,6,7,8,9,10,11,1,12,13,14,15,16,17,18,19,HOLD,20,21,22,23,24\n");
 }
 
 TEST(PrintRuns, NamesTheSeedsThatDidNotSettle) {
