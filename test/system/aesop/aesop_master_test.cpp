@@ -91,6 +91,24 @@ TEST(AesopMaster, aSecondProcessOfTheMastersNameHasToWait) {
   EXPECT_TRUE(bench.waitFor([&] { return direction * jointSpeed(bench) < 0.0; }));
 }
 
+// Who has missed a disable knows of it by the count.
+TEST(AesopMaster, countsHowOftenTheArmWasEnabled) {
+  AesopBench bench;
+  EXPECT_EQ(bench.state_->enables, 0u);
+  ASSERT_TRUE(bench.enable());
+  EXPECT_EQ(bench.state_->enables, 1u);
+  EXPECT_TRUE(bench.call("pause").success);
+  ASSERT_TRUE(bench.waitFor([&] { return bench.stateIs("PAUSED"); }));
+  EXPECT_TRUE(bench.call("resume").success);
+  ASSERT_TRUE(bench.waitFor([&] { return bench.stateIs("ENABLED"); }));
+  EXPECT_EQ(bench.state_->enables, 1u);
+  for (std::uint32_t count = 2; count < 5; ++count) {
+    EXPECT_TRUE(bench.call("disable").success);
+    ASSERT_TRUE(bench.enable());
+    EXPECT_TRUE(bench.waitFor([&] { return bench.state_->enables == count; })) << bench.state_->enables;
+  }
+}
+
 TEST(AesopMaster, onlyNamedNodesMayEnable) {
   AesopBench bench(false);
   bench.service_callers_ = {"/theatre"};

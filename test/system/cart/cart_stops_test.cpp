@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <std_srvs/SetBool.h>
 
+#include <functional>
 #include <memory>
 
 #include "laparoscope_servo/ControllerState.h"
@@ -77,6 +78,20 @@ class CartStops : public testing::Test {
     EXPECT_LT(bench_.motionWithin(1.0), 1e-9);
   }
 
+  // Somebody stops the arm and enables it again at once: it stands until somebody engages.
+  void expectLostAfter(const std::function<void()>& stop) {
+    std::optional<ControllerState> state;
+    const ros::Subscriber subscriber = node_.subscribe<ControllerState>(
+        "controller/state", 10, [&](const ControllerStateConstPtr& message) { state = *message; });
+    ASSERT_TRUE(bench_.waitFor([&] { return state && state->state == ControllerState::SERVO; }));
+    stop();
+    ASSERT_TRUE(bench_.waitFor([&] { return bench_.call("enable").success && bench_.stateIs("ENABLED"); }));
+    ASSERT_TRUE(bench_.waitFor([&] { return state->state == ControllerState::LOST; })) << state->reason;
+    EXPECT_NE(state->reason.find("engage again"), std::string::npos) << state->reason;
+    EXPECT_LT(bench_.timeToStandStill(kStandStill), kStandStill);
+    EXPECT_LT(bench_.motionWithin(1.0), 1e-9);
+  }
+
   ros::NodeHandle node_;
   AesopBench bench_{false};
   std::unique_ptr<ChildProcess> camera_;
@@ -96,6 +111,10 @@ TEST_F(CartStops, WhenTheTrackerDies) {
 
 TEST_F(CartStops, WhenTheControllerDies) {
   killAndExpectStandstill(*controller_);
+}
+
+TEST_F(CartStops, WhenSomebodyDisablesAndEnablesAtOnce) {
+  expectLostAfter([this] { EXPECT_TRUE(bench_.call("disable").success); });
 }
 
 TEST_F(CartStops, WhenTheNodeOfTheRobotDies) {
