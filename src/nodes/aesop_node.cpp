@@ -29,8 +29,7 @@ int run() {
   int status = 0;
   try {
     aesop.run(skin::stopRequested);
-  } catch (const std::exception& error) {
-    ROS_FATAL_STREAM(error.what());
+  } catch (const std::exception&) {  // said by run()
     status = 1;
   }
   skin::limitFarewell(status);

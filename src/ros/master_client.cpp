@@ -109,12 +109,15 @@ bool parse(const std::string& body, XmlRpc::XmlRpcValue& result) {
 
 }  // namespace
 
-MasterClient::MasterClient(const std::string& host, std::uint32_t port) : address_(host + ":" + std::to_string(port)) {
+MasterClient::MasterClient(const std::string& host, std::uint32_t port)
+    : host_(host), port_(port), address_(host + ":" + std::to_string(port)) {}
+
+void MasterClient::lookUp() {
   addrinfo hints{};
   hints.ai_family = AF_UNSPEC;
   hints.ai_socktype = SOCK_STREAM;
   addrinfo* found = nullptr;
-  if (::getaddrinfo(host.c_str(), std::to_string(port).c_str(), &hints, &found) != 0) return;
+  if (::getaddrinfo(host_.c_str(), std::to_string(port_).c_str(), &hints, &found) != 0) return;
   // IPv4 first, as roscpp does, whose addresses these are.
   for (const int family : {AF_INET, AF_INET6}) {
     for (const addrinfo* entry = found; entry != nullptr; entry = entry->ai_next) {
@@ -134,6 +137,7 @@ Outcome MasterClient::fail(Outcome outcome, const std::string& problem) {
 
 // The first of the addresses that takes a connection. `file` is open only where it is kAnswered.
 Outcome MasterClient::open(double deadline, const std::atomic<bool>& ending, int& file) {
+  if (peers_.empty()) lookUp();
   if (peers_.empty()) return fail(Outcome::kSilent, "its address is not known");
   Outcome outcome = Outcome::kRefused;
   for (std::size_t k = 0; k < peers_.size(); ++k) {

@@ -97,6 +97,7 @@ void MasterWatch::run() {
 
 MasterStatus MasterWatch::ask() {
   MasterStatus status = judge();
+  if (status.state == State::kGone) asks_for_us_ = false;  // who is there next is the first question
   if (status.state == State::kGone && wait(kSecondTry)) status = judge();
   return status;
 }

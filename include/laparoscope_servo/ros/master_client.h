@@ -21,7 +21,7 @@ class MasterClient {
     kNonsense,  // an answer, but not that of a ROS master
   };
 
-  // Looks the address up once. One that is not found makes every call kSilent.
+  // The address is looked up until it is found, and then no more. Until then every call is kSilent.
   MasterClient(const std::string& host, std::uint32_t port);
 
   // Waits for at most `patience` s; less when `ending` becomes true. `result`: what the master returned, a list of
@@ -41,6 +41,10 @@ class MasterClient {
   Outcome exchange(int file, const std::string& question, double deadline, const std::atomic<bool>& ending,
                    std::string& body);
 
+  void lookUp();
+
+  std::string host_;
+  std::uint32_t port_;
   std::string address_;
   std::vector<sockaddr_storage> peers_;
   std::vector<socklen_t> sizes_;

@@ -5,6 +5,7 @@
 
 #include <fstream>
 #include <iostream>
+#include <sstream>
 
 #include "fake_cart.h"
 #include "support/own_master.h"
@@ -81,6 +82,20 @@ TEST_F(ControllerOutside, aTerminalThatNobodyReadsHoldsNothingUp) {
   controller_->kill(SIGTERM);
   EXPECT_EQ(controller_->exitStatus(20.0), 0);
   for (const int end : ends) ::close(end);
+}
+
+// Without the library that keeps roscpp to the loopback address it listens everywhere, whatever ROS_IP says.
+TEST_F(ControllerOutside, whoListensToOtherMachinesUnaskedSaysSo) {
+  const test_support::TemporaryFolder folder;
+  const auto said = [&] {
+    std::ostringstream text;
+    text << std::ifstream(folder.file("output")).rdbuf();
+    return text.str();
+  };
+  controller_ = std::make_unique<ChildProcess>(
+      "/usr/bin/env", std::vector<std::string>{"-u", "LD_PRELOAD", "ROS_IP=127.0.0.1", CONTROLLER},
+      folder.file("output"));
+  EXPECT_TRUE(waitFor([&] { return said().find("listens to other machines") != std::string::npos; }, 30.0)) << said();
 }
 
 TEST_F(ControllerOutside, itStandsWithoutAMasterAndEndsWhenThereIsAnother) {

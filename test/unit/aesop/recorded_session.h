@@ -31,8 +31,8 @@ inline std::vector<WireRecord> decoded(const Bytes& bytes) {
   return records;
 }
 
-// Plays 12 s of a session that has everything in it: enable, motion, pause, damaged bytes, a fault, a line that is cut,
-// a port that goes and comes.
+// Plays 13 s of a session that has everything in it: enable, motion, pause, damaged bytes, a fault, a line that is cut,
+// a port that goes and comes, stops with and without a reason.
 class RecordedSession {
  public:
   RecordedSession() {
@@ -68,6 +68,10 @@ class RecordedSession {
     run(1.0, 0.05);
     driver_.disable(now_);
     run(0.5);
+    driver_.enable(stamp(), now_);
+    run(0.5, 0.05);
+    driver_.stop(now_, "stopped by /somebody");
+    run(0.5, 0.05);
   }
 
   RecordedTap tap;

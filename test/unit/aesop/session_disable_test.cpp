@@ -94,6 +94,28 @@ TEST_F(SessionTest, anHourWithoutAnAnswerLeavesNothingToConfirm) {
   enable();
 }
 
+// A request is nothing to warn of, a stop is.
+TEST_F(SessionTest, aStopIsADisableWithAReason) {
+  connect();
+  enable();
+  EXPECT_EQ(session_.disable(now_), "");
+  EXPECT_FALSE(session_.stopped());
+  EXPECT_EQ(session_.state().reason, "disabled on request");
+  controller_.status.state = RobotState::kDisabled;
+  exchange(kMove);
+  exchange(kMove);
+  enable();
+  ASSERT_TRUE(sends<Velocity>(kMove));
+  EXPECT_EQ(session_.stop(now_, "stopped by /somebody"), "");
+  EXPECT_TRUE(session_.stopped());
+  EXPECT_FALSE(session_.isUnconfirmed());
+  EXPECT_EQ(mode(), OperatingMode::kDisabled);
+  EXPECT_EQ(session_.state().reason, "stopped by /somebody");
+  for (int k = 0; k < 200 && !session_.isUnconfirmed(); ++k) EXPECT_TRUE(sends<Disable>(kMove));
+  EXPECT_TRUE(session_.isUnconfirmed()) << "the controller goes on saying ENABLED";
+  EXPECT_TRUE(session_.stopped());
+}
+
 TEST_F(SessionTest, anArmThatLosesItsHomingIsDisabled) {
   connect();
   enable();

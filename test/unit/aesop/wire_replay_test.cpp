@@ -104,7 +104,8 @@ TEST_F(WireReplayTest, isPrintedForPeople) {
        {"0.000000 * port opened", "> #1 identify", "< #1 identity 7 joints, driven 0x47, 'EMULATED AESOP'", "> #2 poll",
         "* asked to enable", "status ENABLED homed moving echo", "velocity for 0.2 s:", "* asked to pause",
         "state PAUSED", "skipped ", "CRC errors 1", "faults: motor", "* command 0.05 0 0.01 0 ",
-        "* command nan 0 0.01 0 ", "port closed: cable pulled", "state DISABLED homed: disabled on request"}) {
+        "* command nan 0 0.01 0 ", "port closed: cable pulled", "state DISABLED homed: disabled on request",
+        "* asked to disable: stopped by /somebody", "DISABLED homed: stopped by /somebody"}) {
     EXPECT_NE(text.str().find(part), std::string::npos) << part;
   }
   std::ostringstream summary;
