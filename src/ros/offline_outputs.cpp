@@ -32,7 +32,7 @@ void CsvOutput::keep() {
 namespace {
 
 [[noreturn]] void failBag(const OutputFile& file, const rosbag::BagException& error) {
-  throw std::runtime_error("'" + file.name() + "' cannot be written: " + error.what());
+  throw std::runtime_error("'" + file.name() + "' cannot be written (" + error.what() + "), is the disk full?");
 }
 
 }  // namespace

@@ -115,8 +115,8 @@ void VideoReader::learnLength() {
     // It lacks what an edit list cuts off, and is what has to come.
     promised_ = size_ = static_cast<std::size_t>(indexEntries(stream_));
   } else if (name == "avi" && size_ > 0) {
-    // Counts pictures that were left out, too, for which nothing comes.
-    promised_end_ = duration;
+    // Counts pictures that were left out, too, for which nothing comes. Each takes one unit of time.
+    promised_end_ = seconds(stream_->nb_frames);
     every_period_is_there_ = true;
   } else if (name.find("matroska") != std::string::npos) {
     promised_end_ = durationTag(*stream_);

@@ -194,6 +194,30 @@ TEST_F(VideoPlayer, InLockstepWaitsForTheTracker) {
   EXPECT_EQ(player_->exitStatus(5.0), 0);
 }
 
+// A result is known by its image's stamp, which therefore has to be one.
+TEST_F(VideoPlayer, InLockstepImagesWithoutStampsWaitForTheirResultsToo) {
+  const std::string file = folder_.file("zero.bag");
+  {
+    rosbag::Bag bag(file, rosbag::bagmode::Write);
+    for (int k = 0; k < kImages; ++k)
+      bag.write("/image_raw", ros::Time(100.0 + 0.005 * k), *skin::imageMessage({}, image(k)));
+  }
+  parameters_["lockstep"] = true;
+  ros::Publisher tracker = node_.advertise<Homography>("homography", 10);
+  start(file);
+  ASSERT_NO_FATAL_FAILURE(listen());
+  for (std::size_t k = 0; k < kImages; ++k) {
+    ASSERT_TRUE(spinUntil([&] { return images_->all.size() > k; }));
+    EXPECT_FALSE(spinUntil([&] { return images_->all.size() > k + 1; }, 0.1));
+    EXPECT_NEAR(stamp(k).toSec(), 100.0 + 0.005 * static_cast<double>(k), 1e-6);
+    Homography result;
+    result.header = images_->all[k]->header;
+    tracker.publish(result);
+  }
+  EXPECT_EQ(player_->exitStatus(5.0), 0);
+  EXPECT_NE(contents(log()).find("6 images have the stamp 0"), std::string::npos) << contents(log());
+}
+
 TEST_F(VideoPlayer, TakesIntrinsicsFromACalibration) {
   parameters_["camera_info"] = calibration(64);
   ASSERT_NO_FATAL_FAILURE(play(video()));

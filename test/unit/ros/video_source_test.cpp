@@ -52,10 +52,10 @@ struct Kind {
   const char* codec;
   int between;
 };
-const std::vector<Kind> kKinds{{"a.mp4", "mpeg4", 0},    {"b.mp4", "mpeg4", 2},      {"a.mkv", "mpeg4", 2},
-                               {"b.mkv", "ffv1", 0},     {"c.mkv", "mjpeg", 0},      {"fast.mp4", "mpeg4", 2},
-                               {"a.mp4", "libx264", 2},  {"fast.mp4", "libx264", 2}, {"d.mkv", "libx264", 2},
-                               {"a.ts", "mpeg2video", 2}};
+const std::vector<Kind> kKinds{{"a.mp4", "mpeg4", 0},     {"b.mp4", "mpeg4", 2},      {"a.mkv", "mpeg4", 2},
+                               {"b.mkv", "ffv1", 0},      {"c.mkv", "mjpeg", 0},      {"fast.mp4", "mpeg4", 2},
+                               {"a.mp4", "libx264", 2},   {"fast.mp4", "libx264", 2}, {"d.mkv", "libx264", 2},
+                               {"a.ts", "mpeg2video", 2}, {"a.avi", "mjpeg", 0}};
 
 TestVideo of(const Kind& kind) {
   TestVideo video;
@@ -63,7 +63,7 @@ TestVideo of(const Kind& kind) {
   video.between = kind.between;
   video.index_first = std::string(kind.name).find("fast") == 0;
   if (video.codec == "mjpeg") video.pixels = AV_PIX_FMT_YUVJ420P;
-  if (video.codec == "mpeg2video") {
+  if (video.codec == "mpeg2video" || std::string(kind.name) == "a.avi") {
     video.time_base = {1, 25};
     for (int k = 0; k < kPictures; ++k) video.times.push_back(k);
   }
@@ -213,6 +213,21 @@ TEST_F(VideoSourceTest, AFileThatIsCutOffTellsWhatIsMissing) {
       EXPECT_NEAR(static_cast<double>(lost), (1.0 - share) * kPictures, 4.0);
       for (const SourceImage& image : images) EXPECT_TRUE(image.error.empty() || image.decoded.empty());
     }
+  }
+}
+
+TEST_F(VideoSourceTest, AFileThatIsCutBetweenTwoPicturesTellsItToo) {
+  for (const Kind& kind : kKinds) {
+    const std::string name = kind.name;
+    if (!test_support::canEncode(kind.codec) || name == "a.mp4" || name == "b.mp4" || name == "a.ts") continue;
+    SCOPED_TRACE(name + " " + kind.codec);
+    const std::string path = write(name, of(kind), noise(kPictures));
+    const auto places = test_support::packetsOf(path);
+    test_support::writeBytes(path, test_support::bytesOf(path).substr(0, places[10].at));
+    const auto images = readAll(path);
+    ASSERT_FALSE(images.empty());
+    EXPECT_TRUE(mentions(images.back().error, "breaks off")) << images.back().error;
+    EXPECT_NEAR(static_cast<double>(lostOf(images)), kPictures - 10.0, 2.0) << "some came in another order";
   }
 }
 
