@@ -1,6 +1,8 @@
 // What the session does about images before and after the tracker has looked at them: times and sizes that do not go
 // on, and pictures that repeat.
 #include <algorithm>
+#include <cmath>
+#include <sstream>
 #include <stdexcept>
 
 #include "laparoscope_servo/ros/tracker_session.h"
@@ -20,6 +22,13 @@ cv::Rect boxOf(const geometry::Quadrilateral& corners) {
   if (!(low.cwiseAbs().maxCoeff() < kFar && high.cwiseAbs().maxCoeff() < kFar)) return {};
   return {cv::Point(static_cast<int>(low.x()), static_cast<int>(low.y())),
           cv::Point(static_cast<int>(high.x()), static_cast<int>(high.y()))};
+}
+
+// Of the region's upper edge.
+double angleOf(const tracking::TrackResult& result) {
+  const geometry::Quadrilateral corners = geometry::apply(result.g, result.roi.corners());
+  const Eigen::Vector2d edge = corners[1] - corners[0];
+  return std::atan2(edge.y(), edge.x());
 }
 
 }  // namespace
@@ -53,6 +62,22 @@ void TrackerSession::lookForReference(const std::string& why) {
   }
 }
 
+// A region that is found again upside down is there, but no scope turns as fast: the picture was turned, or it is
+// another one. That is held back for longer than the controller waits by itself (resume_time, 2 s), so that nothing
+// moves by it before somebody has looked.
+std::string TrackerSession::turnedTooFast(const tracking::TrackResult& result) const {
+  constexpr double kMostTurn = M_PI / 4.0;  // rad
+  constexpr double kHeldBack = 3.0;         // s
+  if (!believed_stamp_ || result.selected_now || time_ - believed_time_ > kHeldBack) return "";
+  const double turn = std::remainder(angleOf(result) - believed_angle_, 2.0 * M_PI);
+  if (std::abs(turn) <= kMostTurn) return "";
+  std::ostringstream text;
+  text.precision(2);
+  text << "the picture turned by " << std::lround(turn * 180.0 / M_PI) << " degrees within " << time_ - believed_time_
+       << " s";
+  return text.str();
+}
+
 // What the tracker found in a picture that shows nothing new is not believed, though it is no reason to lose the
 // region.
 void TrackerSession::watchPicture(Processed& processed, const tracking::TrackResult& before) {
@@ -73,6 +98,14 @@ void TrackerSession::watchPicture(Processed& processed, const tracking::TrackRes
   }
   processed.repeats = repeats_.see(processed.image, region);
   feed_.see(processed.repeats, time_, step, robot_step_);
+  if (result.state == State::kTracking) {
+    result.reason = turnedTooFast(result);
+    if (!result.reason.empty()) result.state = State::kSearching;
+  }
+  if (feed_.reason().empty() && result.state == State::kTracking) {
+    believed_time_ = time_;
+    believed_angle_ = angleOf(result);
+  }
   if (feed_.reason().empty() || result.state == State::kIdle) return;
   if (result.state == State::kTracking) result.state = State::kSearching;
   result.reason = feed_.reason() + (result.reason.empty() ? "" : "; " + result.reason);

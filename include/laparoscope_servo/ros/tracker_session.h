@@ -105,6 +105,7 @@ class TrackerSession {
   void passGate(const Processed& processed, double& period);
   void lookForReference(const std::string& why);
   void watchPicture(Processed& processed, const tracking::TrackResult& before);
+  std::string turnedTooFast(const tracking::TrackResult& result) const;
   tracking::TrackResult track(Processed& processed, const std::optional<geometry::Rectangle>& request,
                               bool& new_reference);
   bool takeDueView(double time);
@@ -134,6 +135,8 @@ class TrackerSession {
   ros::Time reference_stamp_;
   CameraMotion camera_motion_;
   std::optional<ros::Time> believed_stamp_;  // of the last new picture that the state was TRACKING in
+  double believed_time_ = 0.0;               // s, the tracker's, of the last image that the state was TRACKING in
+  double believed_angle_ = 0.0;              // rad, of the region in it
 };
 
 }  // namespace laparoscope_servo::skin

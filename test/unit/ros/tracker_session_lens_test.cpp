@@ -126,8 +126,9 @@ TEST_F(TrackerSessionLens, ImagesOfAnotherSizeNeedCameraInfoOfTheirs) {
   session.setCameraInfo(info_);
   session.process(first_, at(1.0));
   const cv::Mat half = first_(cv::Rect(0, 0, 160, 120)).clone();
-  EXPECT_NE(session.process(half, at(1.04)).result.reason.find("size"), std::string::npos);
-  const Processed refused = session.process(half, at(1.08), geometry::Rectangle{20, 20, 50, 50});
+  for (const double stamp : {1.04, 1.08}) EXPECT_THROW(session.process(half, at(stamp)), ImageError);
+  EXPECT_NE(session.process(half, at(1.12)).result.reason.find("size"), std::string::npos);
+  const Processed refused = session.process(half, at(1.16), geometry::Rectangle{20, 20, 50, 50});
   EXPECT_EQ(refused.result.state, State::kIdle);
   EXPECT_NE(refused.selection_error.find("160x120"), std::string::npos) << refused.selection_error;
 }
