@@ -112,11 +112,11 @@ class Controller {
   ControllerConfig config_;
   ScopeServo servo_;
   SafetyMachine machine_;
-  EffectGuard effect_;
   Task task_ = Task::kHoldView;
   bool task_changed_ = false;  // since the last step
   ManualStick stick_;
   RepeatWatch repeats_;
+  EffectGuard effect_;
   std::optional<double> moves_since_;  // s; nothing: the command is within the dead zone
   InsertionPointEstimator insertion_point_;
   SlowCorrection d2_correction_;  // m
