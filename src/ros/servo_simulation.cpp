@@ -35,8 +35,8 @@ class Noise {
 
 Eigen::Matrix3d pictureOf(const PictureConfig& config) {
   Eigen::Vector3d mirror = Eigen::Vector3d::Ones();
-  if (config.mirror == "x") mirror.x() = -1.0;
-  if (config.mirror == "y") mirror.y() = -1.0;
+  if (config.mirror == "left_right") mirror.x() = -1.0;
+  if (config.mirror == "up_down") mirror.y() = -1.0;
   return geometry::so3Exp({0.0, 0.0, config.roll}) * mirror.asDiagonal();
 }
 

@@ -54,7 +54,7 @@ void readScope(ParameterReader& reader, SimulationConfig& config) {
   reader.read(group + "robot/delay", config.robot.delay, 0.0, 2.0);
   reader.read(group + "robot/signs", config.signs, 4, -1.0, 1.0);
   reader.read(group + "picture/roll", config.picture.roll, -6.3, 6.3);
-  reader.read(group + "picture/mirror", config.picture.mirror, {"none", "x", "y"});
+  reader.read(group + "picture/mirror", config.picture.mirror, {"none", "left_right", "up_down"});
   reader.read(group + "picture/frozen_from", config.picture.frozen_from, 0.0, 1e9);
   reader.read(group + "crossing/period", config.crossing.period, 0.0, 1e9);
   reader.read(group + "crossing/duration", config.crossing.duration, 0.01, 1e9);

@@ -23,7 +23,7 @@ namespace laparoscope_servo::skin {
 // What stands between the scope and what the tracker sees.
 struct PictureConfig {
   double roll = 0.0;            // rad: the picture is turned against the configured optics
-  std::string mirror = "none";  // "x": left for right, "y": up for down, before it is rolled
+  std::string mirror = "none";  // "left_right" or "up_down", before it is rolled
   double frozen_from = 1e9;     // s: from then on it shows what it showed, with new noise, as another camera's would
 };
 
