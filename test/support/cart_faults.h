@@ -168,7 +168,7 @@ class RandomCartFaults {
         fault.name = "robot disabled";
         fault.begin = [](SimulatedCart& cart) { ++cart.disabled; };
         fault.end = [](SimulatedCart& cart) { --cart.disabled; };
-        return fault;
+        return forSomebody(fault);
       }
       case 2:
         return withInput("robot's state unknown", [](Input& input) { input.robot.problem = "no state"; });

@@ -46,6 +46,9 @@ FaultCart::FaultCart() {
   ros::param::set("/controller", config("controller.yaml"));
   ros::param::set("/controller/safety/robot_required", true);
   ros::param::set("/controller/safety/dead_man_required", true);
+  // The switch and the stick are in the hands of this test.
+  ros::param::set("/controller/owners/dead_man", ros::this_node::getName());
+  ros::param::set("/controller/owners/manual", ros::this_node::getName());
   home_ = bench.truth().state().q;
   bench.master_ = "/controller";
   bench.startNode();
@@ -180,6 +183,9 @@ std::string FaultCart::go(Situation situation) {
   if (problem.empty() && !bench.waitFor([&] { return (refusal = engage(true)).empty(); })) problem = refusal;
   if (problem.empty()) problem = waitFor("ARMED", [this] { return stateIs("ARMED"); });
   if (!problem.empty()) return problem + " (" + state() + ": " + reason() + ")";
+  // A switch counts once it was seen released.
+  const int told = operating.told();
+  bench.waitFor([&] { return operating.told() > told + 2; });
   operating.press(true);
   problem = waitFor("SERVO", [this] { return stateIs("SERVO"); });
   if (!problem.empty()) return problem + " (" + state() + ": " + reason() + ")";

@@ -53,12 +53,19 @@ std::vector<FaultRow> ofImages() {
   using namespace image_faults;
   const std::string lost = "HOLD LOST", doubted = "HOLD LOST FAULT";
   return {
+      image("frozen", kServo | kHold, Outcome::kStands, doubted, frozen),
+      image("two in turn", kServo, Outcome::kStands, doubted, twoInTurn),
+      image("swapped in pairs", kServo, Outcome::kEither, lost, swapped),
       image("mirrored left to right", kServo, Outcome::kStands, doubted, [] { return flipped(1); }),
+      image("mirrored upside down", 0, Outcome::kStands, doubted, [] { return flipped(0); }),
+      image("rolled by 180 degrees", kServo, Outcome::kStands, doubted, [] { return flipped(-1); }),
       image("of another size", kServo, Outcome::kStands, lost, [] { return resized(320, 240); }),
       image("of one pixel", kServo, Outcome::kStands, lost, [] { return resized(1, 1); }),
       image("late by 0.5 s", kServo, Outcome::kStands, lost, [] { return late(0.5); }),
       image("1 in 5 stamped 30 ms early", kServo, Outcome::kEither, lost, [] { return stamped(-0.03, 5); }),
+      image("1 in 5 stamped 1 s ahead", kServo, Outcome::kEither, lost, [] { return stamped(1.0, 5); }),
       image("stamped 1 s ahead", kServo, Outcome::kStands, lost, [] { return stamped(1.0); }),
+      image("without stamps", kServo, Outcome::kStands, lost, unstamped),
       image("flickering", kServo, Outcome::kEither, lost, flickering),
       image("black", kServo, Outcome::kStands, lost, black),
       image("none", kServo | kHold, Outcome::kStands, lost, silent),
@@ -77,19 +84,59 @@ std::vector<FaultRow> ofInputs() {
             [](FaultCart& cart) { cart.operating.press(false); }),
       other("dead-man switch: silent", kServo, kAll, Outcome::kStands, "ARMED HOLD LOST",
             [](FaultCart& cart) { cart.operating.dropSwitch(); }),
+      stranger("dead-man switch: released, another says pressed", kServo, kServo, Outcome::kStands, "ARMED HOLD LOST",
+               "dead_man", "pressed", 50.0, [](FaultCart& cart) { cart.operating.press(false); }),
       other("stick: silent", kManual, kManual, Outcome::kStands, "SERVO",
             [](FaultCart& cart) { cart.operating.dropStick(); }),
       other("stick: not a number", kManual, kManual, Outcome::kStands, "SERVO HOLD",
             [](FaultCart& cart) { cart.operating.push(std::nan("")); }),
+      other("stick: stamped a minute ahead", kManual, kManual, Outcome::kStands, "SERVO HOLD",
+            [](FaultCart& cart) { cart.operating.shiftStamps(60.0); }),
       other("stick: stamped a second ago", kManual, kManual, Outcome::kStands, "SERVO HOLD",
             [](FaultCart& cart) { cart.operating.shiftStamps(-1.0); }),
+      stranger("stick: silent, another drives", kManual, kManual, Outcome::kStands, "SERVO", "controller/manual",
+               "velocity", 50.0, [](FaultCart& cart) { cart.operating.dropStick(); }),
       stranger("stick: another's, not a number, 10 kHz", 0, kManual, Outcome::kEither, "SERVO HOLD",
                "controller/manual", "velocity_nan", 1e4),
+      stranger("task error: another's", kServo, kServo | kHold, Outcome::kGoesOn, "HOLD", "tracker/task_error",
+               "elsewhere", 25.0),
+      stranger("task error: another's, 10 kHz", 0, kServo | kHold, Outcome::kEither, "HOLD LOST", "tracker/task_error",
+               "elsewhere", 1e4),
+      stranger("task error: silent, another's", kServo, kServo | kHold, Outcome::kStands, "HOLD LOST",
+               "tracker/task_error", "elsewhere", 25.0,
+               [](FaultCart& cart) { cart.relay->begin(image_faults::silent()); }),
+      stranger("measured velocity: another's", 0, kServo, Outcome::kEither, "HOLD LOST FAULT", "aesop/measured_cv",
+               "measured", 50.0),
+      stranger("images: another's", kServo, kServo | kHold, Outcome::kEither, "HOLD LOST FAULT", "relayed/image_raw",
+               "grey", 25.0),
   };
+}
+
+void disableAndEnable(FaultCart& cart) {
+  cart.robot("disable");
+  cart.bench.waitFor([&] { return cart.bench.stateIs("DISABLED"); });
+  cart.robot("enable");
+  cart.bench.waitFor([&] { return cart.bench.stateIs("ENABLED"); });
+}
+
+// By the arm's own button, and back as fast as somebody can.
+void emergencyStopAndBack(FaultCart& cart) {
+  cart.bench.truth().fault("bits", 4.0);
+  cart.bench.waitFor([&] { return cart.bench.stateIs("FAULT"); });
+  cart.bench.truth().fault("bits", 0.0);
+  cart.robot("clear_fault");
+  cart.bench.waitFor([&] { return cart.bench.stateIs("DISABLED"); });
+  cart.robot("enable");
+  cart.bench.waitFor([&] { return cart.bench.stateIs("ENABLED"); });
 }
 
 std::vector<FaultRow> ofRobot() {
   return {
+      other("robot: disabled, enabled again", kAll, kAll, Outcome::kStands, "LOST", disableAndEnable),
+      other("robot: emergency stop, cleared, enabled again", kServo, kAll, Outcome::kStands, "LOST",
+            emergencyStopAndBack),
+      stranger("robot: disabled, another says ENABLED", kServo, kAll, Outcome::kStands, "LOST HOLD",
+               "aesop/operating_state", "enabled", 100.0, [](FaultCart& cart) { cart.robot("disable"); }),
       other("robot: paused", kServo, kAll, Outcome::kStands, "HOLD LOST", [](FaultCart& cart) { cart.robot("pause"); }),
       other("robot: a motor trips", 0, kAll, Outcome::kStands, "HOLD LOST FAULT",
             [](FaultCart& cart) { cart.bench.truth().fault("joint", 2.0); }),
@@ -126,12 +173,25 @@ std::vector<FaultRow> ofProcesses() {
   return rows;
 }
 
+std::vector<FaultRow> ofFrames() {
+  const std::string doubted = "HOLD LOST FAULT";
+  const auto row = [&](const std::string& name, unsigned usually, const std::string& says) {
+    return stranger("tf: " + name, usually, kServo | kHold, Outcome::kEither, doubted, "/tf", says, 50.0);
+  };
+  return {
+      row("another's camera, 50 mm off", kServo, "tip_off"),
+      row("another's camera, not a number", 0, "tip_nan"),
+      row("another's shaft, 50 mm off", kServo, "shaft_off"),
+      row("another's insertion point", kServo, "trocar_off"),
+  };
+}
+
 }  // namespace
 
 const std::vector<FaultRow>& faultTable() {
   static const std::vector<FaultRow> table = [] {
     std::vector<FaultRow> all;
-    for (const auto part : {&ofImages, &ofInputs, &ofRobot, &ofProcesses}) {
+    for (const auto part : {&ofImages, &ofInputs, &ofRobot, &ofFrames, &ofProcesses}) {
       for (const FaultRow& row : part()) all.push_back(row);
     }
     return all;

@@ -25,6 +25,11 @@ class Operator {
   void press(bool pressed) {
     set([=] { pressed_ = pressed; });
   }
+  // How often the switch has been told.
+  int told() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return told_;
+  }
   // Says nothing at all about the switch.
   void dropSwitch() {
     set([this] { pressed_.reset(); });
@@ -62,6 +67,7 @@ class Operator {
       std_msgs::Bool pressed;
       pressed.data = static_cast<std::uint8_t>(*pressed_);
       switch_publisher_.publish(pressed);
+      ++told_;
     }
     if (stick_) {
       stick_->header.stamp = ros::Time::now() + ros::Duration(shift_);
@@ -75,6 +81,7 @@ class Operator {
   ros::Publisher stick_publisher_ = node_.advertise<ScopeVelocity>("controller/manual", 1);
   std::mutex mutex_;
   bool ends_ = false;
+  int told_ = 0;
   std::optional<bool> pressed_ = false;
   std::optional<ScopeVelocity> stick_;
   double shift_ = 0.0;

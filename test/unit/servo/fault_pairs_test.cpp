@@ -165,13 +165,17 @@ class PairRun {
     }
   }
 
-  // What the page on what stops the arm says for the worst of them: disengage, engage, press the switch.
+  // What the page on what stops the arm says for the worst of them: disengage, release stick and switch, engage, press
+  // the switch.
   void recover() {
     cart_.interference = {};
     cart_.controller.disengage("for a test");
+    const ScopeVelocity stick = cart_.manual;
+    cart_.manual = {};
     cart_.pass(0.3);
     engage();
     if (manual_) {
+      cart_.manual = stick;
       expect(cart_.until([&] { return !cart_.velocity().isZero(0.0); }, 1.0), "it is not moved by hand");
       return;
     }
