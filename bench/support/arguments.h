@@ -24,8 +24,8 @@ std::vector<double> parseRange(const std::string& text);
 std::optional<int> parse(int argc, char** argv, const boost::program_options::options_description& options,
                          const char* positional, int most, const std::function<bool()>& complete);
 
-// A file to write, not open for an empty name. Throws std::runtime_error, with the name, when it cannot be written; what
-// cannot be written on throws std::ios::failure.
+// A file to write, not open for an empty name. Throws std::runtime_error, with the name, when it cannot be written;
+// what cannot be written on throws std::ios::failure.
 std::ofstream create(const std::string& file);
 
 // Runs a program's body; what it throws is printed, with the program's name, and becomes exit status 1.

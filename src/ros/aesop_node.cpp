@@ -21,7 +21,7 @@ constexpr std::uint32_t kQueue = 1000;     // commands: 0.1 s of a stranger that
 constexpr double kReportPause = 1.0;       // s, between two warnings of commands that are refused for the same reason
 constexpr double kStrangerPause = 10.0;    // s, between two of the same publisher that is not the master
 constexpr double kDiagnosticsPause = 1.0;  // s
-constexpr double kStatePeriod = 0.1;       // s, between two publications of an operating state that stays
+constexpr double kStatePeriod = 0.05;      // s, between two publications of an operating state that stays
 constexpr double kLastWord = 0.5;          // s, for the controller to confirm the disable when the node ends
 
 std::vector<std::string> resolved(const ros::NodeHandle& node, const std::vector<std::string>& names) {

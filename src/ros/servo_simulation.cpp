@@ -111,7 +111,8 @@ class Loop {
   void move(double time) {
     body_.moveInsertionPoint(insertion_point_ + patient_.trocarOffset(time));
     if (time >= config_.picture.frozen_from && !frozen_) frozen_ = trueHomography(time);
-    const servo::ScopeVelocity executed = servo::ScopeVelocity::fromVector(actuator_.velocity(time).cwiseProduct(signs_));
+    const servo::ScopeVelocity executed =
+        servo::ScopeVelocity::fromVector(actuator_.velocity(time).cwiseProduct(signs_));
     moved_ += kStep * executed.vector();
     sim::ScopeBody halfway = body_;
     halfway.move(endEffectorTwist(executed, believedDepth()), 0.5 * kStep);
@@ -234,7 +235,7 @@ class Loop {
   bool engaged_once_ = false;
   Eigen::Matrix3d picture_;  // what it shows over what it should, normalised coordinates
   Eigen::Vector4d signs_;
-  std::optional<Eigen::Matrix3d> frozen_;               // what a frozen picture shows
+  std::optional<Eigen::Matrix3d> frozen_;            // what a frozen picture shows
   Eigen::Vector4d moved_ = Eigen::Vector4d::Zero();  // by the scope
 };
 

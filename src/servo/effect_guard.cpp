@@ -13,10 +13,12 @@ namespace {
 
 constexpr double kGap = 0.5;          // s without an image after which nothing is compared
 constexpr double kSpan = 3.0;         // s of reports that are kept: more than kGap and the latest explanation
-constexpr double kReportLife = 0.1;   // s for which a report stands for the motion; the robot reports at 5 Hz or more
+constexpr double kReportLife = 0.1;   // s for which a report stands for the motion; the robot reports at 10 Hz or more
 constexpr double kCornerError = 0.3;  // px: the noise of an image that is worse grows with it
+// Times that noise: the tracker believes in nothing beyond 1.5 px, and no corner error may blind the guard.
+constexpr double kWorst = 5.0;
 // Of an innovation's square over its variance: more is no further evidence. Measured with simulate_servo: 9 finds a
-// reversed spin or insertion 0.1 to 0.3 s later, beyond 16 nothing is found earlier.
+// reversed spin or insertion 0.1 to 0.3 s later.
 constexpr double kBound = 16.0;
 constexpr double kJump = 100.0;  // the same: where no explanation is nearer, the tracker slipped or the tissue was torn
 // Log of how much less likely it is that a fault begins in an image than that there is none: a fault is explained by
@@ -142,7 +144,7 @@ Effect EffectGuard::observe(const EffectObservation& image, const CommandHistory
 
 // False where the image is like none of what was expected.
 bool EffectGuard::compare(const EffectObservation& image) {
-  const double quality = std::max(1.0, image.corner_error / kCornerError);
+  const double quality = std::min(kWorst, std::max(1.0, image.corner_error / kCornerError));  // 1 for NaN
   Features variance, place_gain, velocity_gain;
   for (int k = 0; k < 4; ++k) {
     variance[k] = covariance_[k](0, 0) + quality * quality * noise_[k];

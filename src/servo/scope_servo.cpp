@@ -187,8 +187,7 @@ ScopeVelocity ScopeServo::command(const ServoInput& input, const ServoLimits& li
   ScopeVelocity velocity =
       limiter_.apply({scaled(follow, limits.scale), scaled(wanted.turning, gain), scaled(wanted.centring, gain)},
                      input.period, limits.scale);
-  if (std::abs(velocity.insertion) > limits.insertion)
-    velocity = scaled(velocity, limits.insertion / std::abs(velocity.insertion));
+  velocity.insertion = std::clamp(velocity.insertion, -limits.insertion, limits.insertion);
   if (!limits.insertion_allowed) velocity.insertion = std::min(0.0, velocity.insertion);
   return send(input, velocity);
 }

@@ -93,8 +93,8 @@ inline void writeVideo(const std::string& path, const std::vector<cv::Mat>& pict
   frame->height = height;
   frame->quality = codec->global_quality;
   check(av_frame_get_buffer(frame, 0));
-  SwsContext* scaler = sws_getContext(width, height, AV_PIX_FMT_BGR24, width, height, codec->pix_fmt, SWS_BICUBIC | SWS_ACCURATE_RND,
-                                      nullptr, nullptr, nullptr);
+  SwsContext* scaler = sws_getContext(width, height, AV_PIX_FMT_BGR24, width, height, codec->pix_fmt,
+                                      SWS_BICUBIC | SWS_ACCURATE_RND, nullptr, nullptr, nullptr);
   const bool full = video.range == AVCOL_RANGE_JPEG || video.pixels == AV_PIX_FMT_YUVJ420P;
   if (full || video.matrix == AVCOL_SPC_BT709) {
     int* from = nullptr;

@@ -23,8 +23,8 @@ enum class ImageKind {
 // The pinhole camera of an image of `size` [px]. Takes care of binning and of the region that the driver cut out.
 // Throws std::invalid_argument, naming the value, when the focal lengths are zero, negative or not finite, the centre
 // is not finite, either is none that a camera of this size has, K and P are not of one calibration, the driver's region
-// is not on the sensor, or the message is for images of another size. Distortion is not looked at. kToRectify takes K where P
-// is all zero, as drivers leave it that know K and D only.
+// is not on the sensor, or the message is for images of another size. Distortion is not looked at. kToRectify takes K
+// where P is all zero, as drivers leave it that know K and D only.
 geometry::PinholeCamera cameraFromInfo(const sensor_msgs::CameraInfo& info, ImageKind kind, const cv::Size& size);
 
 // The lens of raw images of `size` [px] by D, K, R and P. Throws std::invalid_argument, naming the value, for the

@@ -26,8 +26,8 @@ struct ControllerNodeConfig {
   std::string camera = "laparoscope_optical";       // tf frame, O_C
   std::string shaft = "scope_tip";                  // tf frame with its z axis along the shaft, into the body
   InputOwners owners;
-  std::string frame_prefix = "auto";                // in front of frames without a slash; auto: the namespace
-  std::string tf_owner = "aesop";                   // the node that publishes them; empty: whoever is the first
+  std::string frame_prefix = "auto";  // in front of frames without a slash; auto: the namespace
+  std::string tf_owner = "aesop";     // the node that publishes them; empty: whoever is the first
   servo::ControllerConfig control;
   ExternalStopsConfig external_stops;
 };

@@ -21,7 +21,7 @@ struct TrackerParameters {
   tracking::TrackerConfig tracking;
   tracking::InputConfig input;
   ImageFormat image{0, YuvRange::kLimited};  // a bit depth of 0: found out
-  std::optional<geometry::Rectangle> roi;  // px, selected in the first image
+  std::optional<geometry::Rectangle> roi;    // px, selected in the first image
   ImageKind image_kind = ImageKind::kRaw;
   RobotMotionConfig robot_motion;
   tracking::ViewConfig views;
@@ -29,8 +29,8 @@ struct TrackerParameters {
 };
 
 // Reads `tree`, called `name` in errors; what is absent keeps its default. Every error is appended to `errors`: the
-// result may be used only when there is none. A parameter under tracking/, input/ or views/ that does not exist is an error,
-// too.
+// result may be used only when there is none. A parameter under tracking/, input/ or views/ that does not exist is an
+// error, too.
 TrackerParameters readTrackerParameters(const XmlRpc::XmlRpcValue& tree, const std::string& name,
                                         std::vector<std::string>& errors);
 

@@ -26,7 +26,7 @@ struct SafetyConfig {
   bool dead_man_required = false;     // a switch that has to be pressed while the arm moves
   double max_dead_man_age = 0.2;      // s, since its last word; a silent one counts as released
   bool robot_required = true;         // the robot has to say that it is enabled
-  double max_robot_state_age = 0.5;   // s, since its last word
+  double max_robot_state_age = 0.3;   // s, since its last word
   double max_manual_age = 0.2;        // s, a manual command that is older is none: the arm stands
   double max_manual_repeat = 5.0;     // s, one that is not zero and repeats for longer is of a pad out of reach
   double manual_neutral = 0.02;       // share of the limits on velocity, up to which a stick is taken to be released

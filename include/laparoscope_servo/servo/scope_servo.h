@@ -30,9 +30,9 @@ struct ServoInput {
 };
 
 struct ServoLimits {
-  double scale = 1.0;             // 0 to 1, of all velocities and their limits
-  bool insertion_allowed = true;  // false: not deeper
-  double insertion = std::numeric_limits<double>::infinity();  // m/s; what is faster is slowed down as a whole
+  double scale = 1.0;                                          // 0 to 1, of all velocities and their limits
+  bool insertion_allowed = true;                               // false: not deeper
+  double insertion = std::numeric_limits<double>::infinity();  // m/s, in and out; the other axes go on as they are
 };
 
 class ScopeServo {
@@ -61,7 +61,6 @@ class ScopeServo {
 
   // Of the gains, 1 unless the loop has swung.
   double gainFactor() const { return oscillation_.factor(); }
-
 
   // Hz, of the breath that is followed; 0 when none is.
   double breathingRate() const { return breathing_.rate(); }

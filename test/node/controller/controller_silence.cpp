@@ -14,7 +14,7 @@ INSTANTIATE_TEST_SUITE_P(
     Causes, ControllerSilence,
     ::testing::Values(
         Cause{"dead-man switch silent, 200 ms", [](Feed& f) { f.dead_man = false; }, "ARMED", "silent"},
-        Cause{"robot's state silent, 500 ms", [](Feed& f) { f.robot = false; }, "HOLD", "operating state is older"},
+        Cause{"robot's state silent, 300 ms", [](Feed& f) { f.robot = false; }, "HOLD", "operating state is older"},
         Cause{"tracker silent, 250 ms", [](Feed& f) { f.task_error = false; }, "HOLD", "older than 0.25 s"},
         Cause{"images old, 250 ms", [](Feed& f) { f.images_stop = true; }, "HOLD",
               "image behind the task error is older"},

@@ -1,5 +1,5 @@
 // Stands in for tracker, robot and dead-man switch: publishes task errors (25 Hz), tf and the switch (50 Hz) and the
-// robot's state (10 Hz) from a thread of its own, and listens to what the controller says.
+// robot's state (17 Hz) from a thread of its own, and listens to what the controller says.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -229,7 +229,7 @@ class FakeCart {
       switch_message.data = feed.pressed;
       dead_man_publisher_.publish(switch_message);
     }
-    if (feed.robot && k % 5 == 0) {
+    if (feed.robot && k % 3 == 0) {
       OperatingState robot;
       robot.header.stamp = now;
       robot.header.stamp += ros::Duration(feed.robot_stamp_offset);

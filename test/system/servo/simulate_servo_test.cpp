@@ -202,8 +202,8 @@ TEST_F(SimulateServo, RefusesBadRunsAndBounds) {
   EXPECT_EQ(read("s.csv"), "");
 }
 
-// Every scenario's parameters exist, it starts where the region is seen, and the controller follows, unless what moves the
-// picture is wrong: then it stops.
+// Every scenario's parameters exist, it starts where the region is seen, and the controller follows, unless what moves
+// the picture is wrong: then it stops.
 TEST_F(SimulateServo, EveryScenarioRuns) {
   int scenarios = 0;
   for (const auto& entry : std::filesystem::directory_iterator(std::string(LAPAROSCOPE_SERVO_CONFIG) + "/scenarios")) {

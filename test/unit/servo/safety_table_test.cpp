@@ -102,9 +102,17 @@ std::map<Condition, Fact> conditions() {
       {Condition::kImageOld, {"", [](SafetyFacts& f) { f.tracker.image_age = 9.0; }, "image behind"}},
       {Condition::kTrackerInvalid, {"", [](SafetyFacts& f) { f.tracker.valid = false; }, "not valid"}},
       {Condition::kEffectDoubted,
-       {"", [](SafetyFacts& f) { f.effect = {Effect::kDoubted, "the picture moves as if"}; }, "the picture moves as if"}},
+       {"",
+        [](SafetyFacts& f) {
+          f.effect = {Effect::kDoubted, "the picture moves as if"};
+        },
+        "the picture moves as if"}},
       {Condition::kEffectWrong,
-       {"", [](SafetyFacts& f) { f.effect = {Effect::kWrong, "the picture moves as if"}; }, "the picture moves as if"}},
+       {"",
+        [](SafetyFacts& f) {
+          f.effect = {Effect::kWrong, "the picture moves as if"};
+        },
+        "the picture moves as if"}},
       {Condition::kOccluded, {"", [](SafetyFacts& f) { f.tracker.visible_fraction = 0.1; }, "occluded"}},
       {Condition::kEngaged, {"", [](SafetyFacts& f) { f.request = EngageRequest::kOn; }, "nothing is missing"}},
       {Condition::kDeadManReleased, {"", [](SafetyFacts& f) { f.dead_man.pressed = false; }, "dead-man"}},
