@@ -37,9 +37,9 @@ class SimulateServo : public ::testing::Test {
     return file(name);
   }
 
-  std::string read(const std::string& name) const { return read(std::filesystem::path(file(name))); }
+  std::string read(const std::string& name) const { return contentOf(file(name)); }
 
-  static std::string read(const std::filesystem::path& path) {
+  static std::string contentOf(const std::string& path) {
     std::ifstream stream(path);
     std::ostringstream text;
     text << stream.rdbuf();
@@ -214,7 +214,7 @@ TEST_F(SimulateServo, EveryScenarioRuns) {
     const auto rows = readCsv("s.csv");
     ASSERT_EQ(rows.size(), 2u);
     const auto column = std::find(rows[0].begin(), rows[0].end(), "final_state") - rows[0].begin();
-    const std::string text = read(entry.path());
+    const std::string text = contentOf(entry.path().string());
     const bool faulty = text.find("picture:") != std::string::npos || text.find("signs:") != std::string::npos;
     EXPECT_EQ(rows[1].at(static_cast<std::size_t>(column)) == "SERVO", !faulty) << entry.path();
     ++scenarios;

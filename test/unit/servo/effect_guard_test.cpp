@@ -134,7 +134,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Fault{"PanReversed", [](Scene& s) { s.signs[0] = -1.0; }, "as if it were"},
                       Fault{"TiltReversed", [](Scene& s) { s.signs[1] = -1.0; }, "as if it were"},
                       Fault{"Frozen", [](Scene& s) { s.frozen = true; }, "frozen"}),
-    [](const ::testing::TestParamInfo<Fault>& info) { return std::string(info.param.name); });
+    [](const ::testing::TestParamInfo<Fault>& fault) { return std::string(fault.param.name); });
 
 TEST(EffectGuard, FindsAPictureThatFreezesInTheMiddleOfAMotion) {
   Scene scene;

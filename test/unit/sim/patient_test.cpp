@@ -69,7 +69,9 @@ TEST(Patient, IsPulledAgainAndAgainSmoothly) {
   for (double t = 0.0; t < 40.0; t += 0.01) {
     // The fastest that a raised cosine is between two places on the circle, and nearer or further by a third of it.
     EXPECT_LE((at(t + 0.01) - at(t)).norm(), 0.01 * 0.5 * M_PI / 0.5 * 0.02 * std::hypot(2.0, 2.0 / 3.0) + 1e-12);
-    if (std::fmod(t, 4.0) > 0.5) EXPECT_LT((at(t) - at(t - std::fmod(t, 4.0) + 3.99)).norm(), 1e-12);
+    if (std::fmod(t, 4.0) > 0.5) {
+      EXPECT_LT((at(t) - at(t - std::fmod(t, 4.0) + 3.99)).norm(), 1e-12);
+    }
   }
   EXPECT_NEAR(at(4.6).head<2>().norm(), 0.02, 1e-12);
   EXPECT_GT((at(8.6) - at(4.6)).norm(), 0.02);
