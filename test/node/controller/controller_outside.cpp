@@ -24,7 +24,12 @@ class ControllerOutside : public ::testing::Test {
   ~ControllerOutside() override { own_master->start(); }  // for the next, and for those who say goodbye
 
   void start(const std::vector<std::string>& arguments = {}, const std::string& output = "") {
-    controller_ = std::make_unique<ChildProcess>(CONTROLLER, arguments, output);
+    // The fake cart is this node, and what it shows does not move with the scope.
+    std::vector<std::string> all{"_owners/task_error:=controller_outside",
+                                 "_owners/operating_state:=controller_outside", "_owners/tf:=controller_outside",
+                                 "_safety/max_tip_speed:=1000.0", "_effect/enabled:=false"};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    controller_ = std::make_unique<ChildProcess>(CONTROLLER, all, output);
     ASSERT_TRUE(cart_.waitForController(30.0));
   }
   void engageAndMove() {

@@ -73,8 +73,8 @@ TEST_F(ControllerSafety, AStopWhoseMessageWasLostIsLost) {
 TEST_F(ControllerSafety, APauseGoesOnByAResume) {
   engageAndMove();
   cart_.once([](Feed& feed) { feed.robot_state = "PAUSED"; });
-  ASSERT_TRUE(waitFor([this] { return cart_.moves(); }));
-  EXPECT_EQ(cart_.state().state, ControllerState::SERVO);
+  ASSERT_TRUE(waitFor([this] { return cart_.moves() && cart_.state().state == ControllerState::SERVO; }))
+      << cart_.state().reason;
   cart_.strike([](Feed& feed) { feed.robot_state = "PAUSED"; });
   ASSERT_TRUE(cart_.waitForState(ControllerState::LOST)) << "paused for longer than resume_time";
   EXPECT_NE(cart_.state().reason.find("paused"), std::string::npos) << cart_.state().reason;

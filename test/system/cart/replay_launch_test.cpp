@@ -24,7 +24,12 @@ class ReplayLaunch : public testing::Test {
     cv::GaussianBlur(picture, picture, {}, 3.0);
     cv::normalize(picture, picture, 0, 255, cv::NORM_MINMAX);
     std::filesystem::create_directory(folder_.file("images"));
-    for (int k = 0; k < kImages; ++k) cv::imwrite(folder_.file("images/" + std::to_string(k) + ".png"), picture);
+    cv::RNG random(4);
+    for (int k = 0; k < kImages; ++k) {
+      cv::Mat noise(picture.size(), CV_8UC3);  // a picture that repeats is a frozen one
+      random.fill(noise, cv::RNG::UNIFORM, 0, 4);
+      cv::imwrite(folder_.file("images/" + std::to_string(k) + ".png"), picture + noise);
+    }
     return folder_.file("images");
   }
   void launch(const std::string& arguments) {

@@ -106,16 +106,18 @@ TEST_F(AesopDiagnosticsTest, refusedCommandsAreCountedByCause) {
   driver_.command({0.01, 0.0, 0.0, 0.0}, stamp, stamp, now_);
   driver_.command({0.01, 0.0, 0.0, 0.0}, stamp, stamp, now_);
   driver_.command({0.01, 0.0, 0.0, 0.0}, stamp + 9.0, stamp, now_);
+  // Newer than the last one, and yet more than half a second old.
+  driver_.command({0.01, 0.0, 0.0, 0.0}, stamp + 0.6, stamp + 2.0, now_);
   const auto status = filled();
   EXPECT_EQ(number(status, "commands accepted"), 1.0);
-  EXPECT_EQ(number(status, "commands refused"), 5.0);
+  EXPECT_EQ(number(status, "commands refused"), 6.0);
   int causes = 0;
   for (const auto& pair : status.values) {
     if (pair.key.rfind("refused: ", 0) != 0) continue;
     ++causes;
     EXPECT_EQ(pair.value, "1") << pair.key;
   }
-  EXPECT_EQ(causes, 5);
+  EXPECT_EQ(causes, 6);
 }
 
 TEST_F(AesopDiagnosticsTest, strangersAreAWarning) {

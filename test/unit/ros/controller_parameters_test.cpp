@@ -235,7 +235,7 @@ TEST(ControllerParameters, FileOfTheSimulationEqualsTheDefaults) {
   EXPECT_EQ(reader.report(), "");
   EXPECT_EQ(numbers(config), numbers(SimulationConfig()));
   EXPECT_EQ(config.robot.dead_zone_kind, SimulationConfig().robot.dead_zone_kind);
-  EXPECT_EQ(leaves(tree), numbers(config).size() - 3 - 4 * 2 + 1);  // lists are one leaf; and the dead zone's kind
+  EXPECT_EQ(leaves(tree), numbers(config).size() - 3 - 4 * 2 + 3);  // lists are one leaf; and two words, four signs
 }
 
 // Each leaf of the file, changed, changes the configuration: no parameter is read into the wrong field.
@@ -272,7 +272,7 @@ TEST(ControllerParameters, EveryNumberOfTheFileHasAFieldOfItsOwn) {
       }
     }
   }
-  EXPECT_EQ(changed, 94);
+  EXPECT_EQ(changed, 104);
 }
 
 TEST(ControllerParameters, NothingSetGivesTheDefaults) {

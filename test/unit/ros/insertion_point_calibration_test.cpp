@@ -86,7 +86,7 @@ TEST_F(CalibrationTest, AFileThatCannotBeWrittenKeepsTheOldPointAndThePoses) {
   std::filesystem::create_directory(parameters().file);
   ASSERT_EQ(calibration_.start(Method::kHand, now_), "");
   swing(0.13);
-  EXPECT_NE(calibration_.finish(now_).find("cannot write '" + parameters().file), std::string::npos);
+  EXPECT_NE(calibration_.finish(now_).find("'" + parameters().file + "' cannot be written"), std::string::npos);
   run(0.1);
   EXPECT_EQ(driver_.insertionPoint(), kBelieved);
   std::filesystem::remove(parameters().file);

@@ -226,7 +226,7 @@ TEST(SafetyMachine, TheReasonStaysWhileItsCauseDoes) {
     Chance chance(3);
     for (int k = 2; k < 20; ++k) {
       SafetyFacts facts = good(reached.time + kStep * k);
-      facts.robot.age = 0.4 * chance.uniform();
+      facts.robot.age = 0.25 * chance.uniform();
       facts.tracker.age = 0.2 * chance.uniform();
       facts.pose.d2 = 0.05 + 0.1 * chance.uniform();
       facts.tracker.visible_fraction = 0.3 + 0.7 * chance.uniform();
