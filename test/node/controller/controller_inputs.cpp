@@ -91,11 +91,13 @@ class ControllerInputs : public ControllerFixture {
     }
     return "";
   }
-  // Somebody's manual commands count.
-  bool isDriven() {
+  // Somebody's manual commands come.
+  bool speaks() {
     const std::string age = said("age of the manual command [s]");
-    return !age.empty() && std::strtod(age.c_str(), nullptr) < 0.2 && cart_.state().caution.empty();
+    return !age.empty() && std::strtod(age.c_str(), nullptr) < 0.2;
   }
+  // And they count.
+  bool isDriven() { return speaks() && cart_.state().caution.empty(); }
   bool waitForRefusals(const std::string& what) {
     return waitFor([&] { return std::atoi(said(what + ": refused for their sender").c_str()) > 20; }, 20.0);
   }
@@ -199,9 +201,10 @@ TEST_F(ControllerInputs, ANewConnectionOfTheOwnerHasToWait) {
   cart_.set([](Feed& feed) { feed.task_error = false; });
   select("MANUAL");
   const auto first = stranger("joy", 50.0, 0.0, true);
+  // Who speaks when somebody engages is bound.
+  ASSERT_TRUE(waitFor([this] { return speaks(); }, 20.0));
   ASSERT_TRUE(cart_.engageWhenReady()) << cart_.answer();
   ASSERT_TRUE(cart_.waitForState(ControllerState::SERVO)) << cart_.state().reason;
-  // Silent until that process has come up.
   ASSERT_TRUE(waitFor([this] { return isDriven(); }, 20.0)) << cart_.state().caution;
   first->kill(SIGKILL);
   const auto second = stranger("joy", 50.0, -0.5, true);

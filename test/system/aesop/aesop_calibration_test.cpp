@@ -153,7 +153,7 @@ TEST(AesopCalibration, AControllerThatWasEngagedIsLostAndNothingMoves) {
   const aesop::JointVector before = cart.bench.truth().state().q;
   ASSERT_TRUE(cart.finish().success);
   EXPECT_NE(state->reason.find("engage again"), std::string::npos) << state->reason;
-  EXPECT_TRUE(cart.bench.enable());
+  EXPECT_TRUE(cart.bench.waitFor([&] { return cart.bench.enable(); })) << "the new point waits until the arm stands";
   EXPECT_EQ(cart.bench.motionWithin(0.5), 0.0);
   EXPECT_EQ(state->state, ControllerState::LOST) << state->reason;
   EXPECT_EQ(cart.bench.truth().state().q, before);
