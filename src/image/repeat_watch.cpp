@@ -59,7 +59,8 @@ Repeats RepeatWatch::see(const cv::Mat& image, const cv::Rect& region) {
   take(image, ring_[static_cast<std::size_t>(newest_)]);
   const cv::Rect in_image = region & cv::Rect(cv::Point(0, 0), size_);
   counts_.whole = repeats(cv::Rect(cv::Point(0, 0), tiles_)) ? counts_.whole + 1 : 0;
-  counts_.region = !in_image.empty() && repeats(tilesOf(in_image, tiles_)) ? counts_.region + 1 : 0;
+  const cv::Rect tiles = tilesOf(in_image, tiles_);
+  counts_.region = !in_image.empty() && (repeats(tiles) || bandRepeats(tiles)) ? counts_.region + 1 : 0;
   counts_.region = std::max(counts_.region, counts_.whole);
   known_ = std::min(known_ + 1, kMemory);
   return counts_;
@@ -88,6 +89,17 @@ void RepeatWatch::take(const cv::Mat& image, Prints& prints) const {
       }
     }
   }
+}
+
+// Rows or columns of tiles across the whole picture, all of them within the region's extent.
+bool RepeatWatch::bandRepeats(const cv::Rect& tiles) const {
+  for (int y = tiles.y; y + kBand <= tiles.br().y; ++y) {
+    if (repeats(cv::Rect(0, y, tiles_.width, kBand))) return true;
+  }
+  for (int x = tiles.x; x + kBand <= tiles.br().x; ++x) {
+    if (repeats(cv::Rect(x, 0, kBand, tiles_.height))) return true;
+  }
+  return false;
 }
 
 bool RepeatWatch::repeats(const cv::Rect& tiles) const {

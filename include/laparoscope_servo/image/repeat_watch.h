@@ -15,8 +15,10 @@ namespace laparoscope_servo::image {
 
 // How many pictures in a row, up to this one, were seen before. 0: this one is new.
 struct Repeats {
-  int whole = 0;   // in each of its pixels
-  int region = 0;  // in the region alone; at least `whole`
+  int whole = 0;  // in each of its pixels
+  // In the region alone, or in a band across the whole picture, kBand tiles wide, that the region has a part in: a
+  // picture of which one half stands still. At least `whole`.
+  int region = 0;
 };
 
 class RepeatWatch {
@@ -25,6 +27,7 @@ class RepeatWatch {
   // which come in turn are found, too.
   static constexpr int kMemory = 8;
   static constexpr int kTile = 32;  // px
+  static constexpr int kBand = 2;   // tiles: what a codec skips does not reach across the picture in both
 
   // The next picture, of 8 bit, and the region of interest in it [px]; an empty one: none, as if it were new.
   Repeats see(const cv::Mat& image, const cv::Rect& region);
@@ -38,6 +41,7 @@ class RepeatWatch {
 
   void take(const cv::Mat& image, Prints& prints) const;
   bool repeats(const cv::Rect& tiles) const;
+  bool bandRepeats(const cv::Rect& tiles) const;
 
   cv::Size size_;
   int type_ = -1;

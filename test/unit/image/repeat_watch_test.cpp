@@ -79,6 +79,34 @@ TEST_F(RepeatWatchTest, FindsARegionThatRepeatsInALivePicture) {
   EXPECT_EQ(watch_.see(noise(), kRegion).region, 0);
 }
 
+// Of a picture that came in half, the other half is the last one's: part of the region moves on as if all did.
+TEST_F(RepeatWatchTest, FindsAHalfThatStandsStillAndThatTheRegionReachesInto) {
+  const cv::Size size(320, 256);
+  const cv::Rect region(90, 60, 140, 140);
+  const auto fresh = [&] {
+    cv::Mat image(size, CV_8UC3);
+    random_.fill(image, cv::RNG::UNIFORM, 0, 256);
+    return image;
+  };
+  const cv::Mat first = fresh();
+  const auto counted = [&](const cv::Rect& still, const cv::Rect& where) {
+    RepeatWatch watch;
+    watch.see(first, where);
+    cv::Mat live = fresh();
+    first(still).copyTo(live(still));
+    const Repeats repeats = watch.see(live, where);
+    EXPECT_EQ(repeats.whole, 0);
+    return repeats.region;
+  };
+  EXPECT_EQ(counted(cv::Rect(0, 128, 320, 128), region), 1) << "lower";
+  EXPECT_EQ(counted(cv::Rect(0, 0, 320, 128), region), 1) << "upper";
+  EXPECT_EQ(counted(cv::Rect(0, 0, 160, 256), region), 1) << "left";
+  EXPECT_EQ(counted(cv::Rect(160, 0, 160, 256), region), 1) << "right";
+  EXPECT_EQ(counted(cv::Rect(0, 128, 320, 32), region), 0) << "a row of tiles alone, as a codec may skip it";
+  EXPECT_EQ(counted(cv::Rect(0, 128, 288, 64), region), 0) << "not all across";
+  EXPECT_EQ(counted(cv::Rect(0, 128, 320, 128), cv::Rect(90, 10, 140, 100)), 0) << "the region is not in it";
+}
+
 TEST_F(RepeatWatchTest, FindsAFieldThatStandsStill) {
   const cv::Mat first = noise();
   for (const int still : {0, 1}) {
