@@ -19,7 +19,6 @@
 #include "laparoscope_servo/ros/controller_parameters.h"
 #include "laparoscope_servo/ros/external_stops.h"
 #include "laparoscope_servo/ros/scope_pose.h"
-#include "laparoscope_servo/ros/stamp_watch.h"
 #include "laparoscope_servo/servo/controller.h"
 
 namespace laparoscope_servo::skin {
