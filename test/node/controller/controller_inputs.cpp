@@ -175,12 +175,18 @@ TEST_F(ControllerInputs, AStrangerDoesNotDrive) {
     manual().publish(right);
     return cart_.nextCommands(1).back();
   };
-  ASSERT_TRUE(waitFor([&] {
-    if (drive().pan > 0.0) return true;
-    manual().publish(ScopeVelocity());
-    cart_.nextCommands(3);
-    return false;
-  }));
+  // At rest first, then deflected for long enough that a command follows it on a busy machine, too.
+  ASSERT_TRUE(waitFor(
+      [&] {
+        manual().publish(ScopeVelocity());
+        cart_.nextCommands(3);
+        for (int k = 0; k < 20; ++k) {
+          if (drive().pan > 0.0) return true;
+        }
+        return false;
+      },
+      20.0))
+      << cart_.state().state << ": " << cart_.state().reason << ", " << cart_.state().caution;
   const auto other = stranger("driver", 100.0);
   ASSERT_TRUE(waitFor(
       [&] {
