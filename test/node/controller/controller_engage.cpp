@@ -14,7 +14,7 @@ class ControllerEngage : public ControllerFixture {
   void expectHold(const std::function<void(Feed&)>& change, const std::string& words) {
     engageAndMove();
     cart_.set(change);
-    ASSERT_TRUE(cart_.waitForState(ControllerState::HOLD, 1.0)) << words << ": " << cart_.state().reason;
+    ASSERT_TRUE(cart_.waitForState(ControllerState::HOLD)) << words << ": " << cart_.state().reason;
     EXPECT_NE(cart_.state().reason.find(words), std::string::npos) << cart_.state().reason;
     EXPECT_TRUE(cart_.state().engaged);
     EXPECT_TRUE(cart_.stands()) << words;
@@ -22,7 +22,7 @@ class ControllerEngage : public ControllerFixture {
 
   // After a fault only disengaging leads on.
   void expectFault(const std::string& words) {
-    ASSERT_TRUE(cart_.waitForState(ControllerState::FAULT, 1.0)) << words << ": " << cart_.state().reason;
+    ASSERT_TRUE(cart_.waitForState(ControllerState::FAULT)) << words << ": " << cart_.state().reason;
     EXPECT_NE(cart_.state().reason.find(words), std::string::npos) << cart_.state().reason;
     EXPECT_FALSE(cart_.state().engaged);
     EXPECT_TRUE(cart_.stands());
@@ -67,7 +67,7 @@ TEST_F(ControllerEngage, FollowsOnceEngagedAndStopsWhenDisengaged) {
   bool success = false;
   cart_.engage(false, success);
   EXPECT_TRUE(success);
-  EXPECT_TRUE(waitFor([this] { return cart_.stands(); }, 1.0));
+  EXPECT_TRUE(waitFor([this] { return cart_.stands(); }));
   EXPECT_TRUE(cart_.waitForState(ControllerState::IDLE));
 }
 
@@ -96,7 +96,7 @@ TEST_F(ControllerEngage, RefusesWithoutTf) {
 TEST_F(ControllerEngage, HoldsWhenTheTrackerLosesAndResumes) {
   expectHold([](Feed& feed) { feed.message.valid = false; }, "not valid");
   cart_.set([](Feed& feed) { feed.message.valid = true; });
-  EXPECT_TRUE(cart_.waitForState(ControllerState::SERVO, 1.0));
+  EXPECT_TRUE(cart_.waitForState(ControllerState::SERVO));
   EXPECT_TRUE(waitFor([this] { return cart_.moves(); }));
 }
 
@@ -104,9 +104,9 @@ TEST_F(ControllerEngage, HoldsWhenTheTrackerLosesAndResumes) {
 TEST_F(ControllerEngage, AnotherRegionWhileTheArmIsWaitedForIsLost) {
   engageAndMove();
   cart_.set([](Feed& feed) { feed.tf = false; });
-  ASSERT_TRUE(cart_.waitForState(ControllerState::HOLD, 1.0));
+  ASSERT_TRUE(cart_.waitForState(ControllerState::HOLD));
   cart_.set([](Feed& feed) { feed.message.reference_stamp = ros::Time(1.0); });
-  ASSERT_TRUE(cart_.waitForState(ControllerState::LOST, 1.0));
+  ASSERT_TRUE(cart_.waitForState(ControllerState::LOST));
   EXPECT_NE(cart_.state().reason.find("another region"), std::string::npos) << cart_.state().reason;
   cart_.set([](Feed& feed) { feed.tf = true; });
   EXPECT_FALSE(cart_.waitForState(ControllerState::SERVO, 0.5));
@@ -141,7 +141,7 @@ TEST_F(ControllerEngage, ObliqueOpticsServoInTheShaftsAxes) {
 
 TEST_F(ControllerEngage, IsLostWhenTheTaskErrorStaysAway) {
   expectHold([](Feed& feed) { feed.task_error = false; }, "older than");
-  EXPECT_TRUE(cart_.waitForState(ControllerState::LOST, 3.0));
+  EXPECT_TRUE(cart_.waitForState(ControllerState::LOST));
   EXPECT_FALSE(cart_.state().engaged);
   EXPECT_NE(cart_.state().reason.find("engage again"), std::string::npos) << cart_.state().reason;
   cart_.set([](Feed& feed) { feed.task_error = true; });

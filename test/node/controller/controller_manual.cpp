@@ -259,7 +259,7 @@ TEST_F(ControllerManual, HoldsAViewOnlyWithATracker) {
   select("HOLD_VIEW", success);
   EXPECT_TRUE(success);
   // At the latest when what another test's tracker said has grown old.
-  ASSERT_TRUE(cart_.waitForState(ControllerState::HOLD, 1.0));
+  ASSERT_TRUE(cart_.waitForState(ControllerState::HOLD));
   EXPECT_TRUE(cart_.stands());
   select("MANUAL", success);
   ASSERT_TRUE(cart_.waitForState(ControllerState::SERVO));

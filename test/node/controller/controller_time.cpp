@@ -81,7 +81,7 @@ TEST_F(ControllerTime, TimeThatJumpsBackIsAFault) {
   for (int k = 0; k < 10; ++k) {
     waitForAPhase(k, 10);
     const double jumped = clock_.jump(-50.0);
-    ASSERT_TRUE(cart_.waitForState(ControllerState::FAULT, 2.0));
+    ASSERT_TRUE(cart_.waitForState(ControllerState::FAULT));
     EXPECT_NE(cart_.state().reason.find("jumped back"), std::string::npos) << cart_.state().reason;
     EXPECT_TRUE(waitFor([&] { return cart_.stoodAt() > jumped; }));
     for (const ScopeVelocity& command : cart_.nextCommands(3)) EXPECT_TRUE(isZero(command));
@@ -101,7 +101,7 @@ TEST_F(ControllerTime, TimeThatJumpsBackIsAFault) {
 // Of two connections one is always later.
 TEST_F(ControllerTime, TransformsFromBeforeTheJumpDoNotBlockWhatFollows) {
   clock_.jump(-50.0);
-  ASSERT_TRUE(cart_.waitForState(ControllerState::FAULT, 2.0));
+  ASSERT_TRUE(cart_.waitForState(ControllerState::FAULT));
   cart_.strike([](Feed& feed) { feed.tf_stamp_offset = 50.0; });
   cart_.set([](Feed& feed) { feed.tf_stamp_offset = 0.0; });
   std::this_thread::sleep_for(std::chrono::milliseconds(200));  // until the controller has it
@@ -114,11 +114,11 @@ TEST_F(ControllerTime, TransformsFromBeforeTheJumpDoNotBlockWhatFollows) {
 
 TEST_F(ControllerTime, TimeThatStopsHolds) {
   clock_.run(false);
-  ASSERT_TRUE(cart_.waitForState(ControllerState::HOLD, 2.0));
+  ASSERT_TRUE(cart_.waitForState(ControllerState::HOLD));
   EXPECT_NE(cart_.state().reason.find("older than"), std::string::npos) << cart_.state().reason;
   EXPECT_TRUE(cart_.stands());
   clock_.run(true);
-  EXPECT_TRUE(cart_.waitForState(ControllerState::SERVO, 2.0));
+  EXPECT_TRUE(cart_.waitForState(ControllerState::SERVO));
 }
 
 TEST_F(ControllerTime, TimeThatJumpsAheadDoesNotKillTheNode) {

@@ -32,7 +32,7 @@ inline bool isZero(const ScopeVelocity& c) {
 }
 
 // Waits until `condition` holds, at most `seconds`; polls, since what is waited for happens in other processes.
-inline bool waitFor(const std::function<bool()>& condition, double seconds = 5.0) {
+inline bool waitFor(const std::function<bool()>& condition, double seconds = 20.0) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
   while (std::chrono::steady_clock::now() < end) {
     if (condition()) return true;
@@ -152,7 +152,7 @@ class FakeCart {
     return !commands.empty() && !isZero(commands.back());
   }
 
-  bool waitForState(const std::string& name, double seconds = 5.0) {
+  bool waitForState(const std::string& name, double seconds = 20.0) {
     return waitFor([&] { return state().state == name; }, seconds);
   }
 
@@ -172,7 +172,7 @@ class FakeCart {
   const std::string& answer() const { return answer_; }
 
   // Engages as soon as the controller has all it needs, and lets go of a dead-man switch that is held, once.
-  bool engageWhenReady(double seconds = 5.0) {
+  bool engageWhenReady(double seconds = 20.0) {
     const auto engaged = [this] {
       bool success = false;
       engage(true, success);

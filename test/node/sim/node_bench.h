@@ -26,7 +26,7 @@ inline std::string contents(const std::string& file) {
 }
 
 // Handles messages until the condition holds; false after `seconds`.
-inline bool spinUntil(const std::function<bool()>& condition, double seconds = 10.0) {
+inline bool spinUntil(const std::function<bool()>& condition, double seconds = 20.0) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
   while (ros::spinOnce(), !condition()) {
     if (std::chrono::steady_clock::now() > end) return false;

@@ -28,7 +28,7 @@
 
 namespace laparoscope_servo::test_support {
 
-inline bool waitFor(const std::function<bool()>& condition, double seconds = 10.0) {
+inline bool waitFor(const std::function<bool()>& condition, double seconds = 20.0) {
   const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
   while (!condition()) {
     if (std::chrono::steady_clock::now() > until || !ros::ok()) return false;

@@ -47,9 +47,9 @@ class AesopBench {
   std::string file(const std::string& name) const { return folder_.file(name); }
 
   // Handles messages until `condition` holds; false after `seconds`.
-  bool waitFor(const std::function<bool()>& condition, double seconds = 5.0);
+  bool waitFor(const std::function<bool()>& condition, double seconds = 20.0);
   // The same while a velocity is commanded at 50 Hz, stamped as it should be.
-  bool commandUntil(const std::function<bool()>& condition, double pan, double seconds = 5.0);
+  bool commandUntil(const std::function<bool()>& condition, double pan, double seconds = 20.0);
   void send(double pan, double insertion, const ros::Time& stamp);
   // Stamped now.
   void send(ScopeVelocity command);

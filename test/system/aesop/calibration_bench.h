@@ -50,7 +50,7 @@ class CalibrationBench {
   }
   std_srvs::Trigger::Response finish() { return bench.call("calibrate_insertion_point/finish"); }
   std_srvs::Trigger::Response cancel() { return bench.call("calibrate_insertion_point/cancel"); }
-  bool waitForState(const std::string& name, double seconds = 5.0) {
+  bool waitForState(const std::string& name, double seconds = 20.0) {
     return bench.waitFor([&] { return state && state->state == name; }, seconds);
   }
 

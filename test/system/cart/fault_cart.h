@@ -66,7 +66,7 @@ class FaultCart {
   std::string go(Situation situation);
   void hand(const aesop::JointVector& goal);
   // Why `condition` has not come true; empty when it has.
-  std::string waitFor(const char* what, const std::function<bool()>& condition, double seconds = 10.0);
+  std::string waitFor(const char* what, const std::function<bool()>& condition, double seconds = 20.0);
 
   const std::string none_;
   aesop::Kinematics kinematics_{aesop::KinematicsConfig()};
