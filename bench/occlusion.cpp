@@ -14,8 +14,8 @@
 #include "bench/support/arguments.h"
 #include "bench/support/configurations.h"
 #include "bench/support/sequence.h"
-#include "laparoscope_servo/tracking/region_aligner.h"
 #include "laparoscope_servo/tracking/region_tracker.h"
+#include "tracking/align/region_aligner.h"
 
 namespace laparoscope_servo::bench {
 

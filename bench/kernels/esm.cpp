@@ -1,5 +1,5 @@
 // ESM: the sums of its normal equations, and a whole iteration.
-#include "laparoscope_servo/tracking/esm.h"
+#include "tracking/esm/esm.h"
 
 #include <algorithm>
 #include <vector>

@@ -6,8 +6,8 @@
 #include "bench/kernels/kernel_bench.h"
 #include "bench/support/synthetic.h"
 #include "laparoscope_servo/image/colour_patch.h"
-#include "laparoscope_servo/tracking/occlusion_gates.h"
 #include "laparoscope_servo/tracking/region_tracker.h"
+#include "tracking/occlusion/occlusion_gates.h"
 
 namespace laparoscope_servo::bench {
 

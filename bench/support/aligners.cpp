@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "laparoscope_servo/tracking/esm.h"
+#include "tracking/esm/esm.h"
 
 namespace laparoscope_servo::bench {
 

@@ -97,7 +97,7 @@ std::string Driver::resume(double stamp_now) {
   return session_.resume();
 }
 
-std::string Driver::command(const ScopeVelocity& velocity, double stamp, double stamp_now, double now) {
+std::string Driver::command(const scope::Velocity& velocity, double stamp, double stamp_now, double now) {
   if (tap_ != nullptr) {
     record(WireEvent::kCommand, now,
            payloadOf({velocity.pan, velocity.tilt, velocity.spin, velocity.insertion, stamp, stamp_now}));

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include "kernel_parts.h"
+#include "image/kernel_parts.h"
 #include "laparoscope_servo/image/lens.h"
 #include "laparoscope_servo/image/multiversion.h"
 

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <opencv2/imgproc.hpp>
 
-#include "kernel_parts.h"
+#include "image/kernel_parts.h"
 #include "laparoscope_servo/image/multiversion.h"
 
 namespace laparoscope_servo::image {

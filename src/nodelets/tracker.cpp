@@ -1,4 +1,4 @@
-#include "tracker.h"
+#include "nodelets/tracker.h"
 
 #include <boost/make_shared.hpp>
 #include <exception>
@@ -9,12 +9,12 @@
 #include <variant>
 #include <vector>
 
-#include "laparoscope_servo/ros/clocks.h"
-#include "laparoscope_servo/ros/image_gate.h"
-#include "laparoscope_servo/ros/network_exposure.h"
-#include "laparoscope_servo/ros/overlay.h"
-#include "laparoscope_servo/ros/parameters.h"
-#include "laparoscope_servo/ros/result_messages.h"
+#include "ros/common/clocks.h"
+#include "ros/common/network_exposure.h"
+#include "ros/common/parameters.h"
+#include "ros/tracker/image_gate.h"
+#include "ros/tracker/overlay.h"
+#include "ros/tracker/result_messages.h"
 
 namespace laparoscope_servo::nodelets {
 
@@ -24,15 +24,14 @@ constexpr double kAhead = 1.0;     // s, of tf to this machine's clock
 constexpr double kThrottle = 5.0;  // s between two lines of the log about the same kind of trouble
 
 template <class Message>
-void publishIfHeard(const ros::Publisher& publisher, Message (*make)(const skin::Processed&),
-                    const skin::Processed& processed) {
+void publishIfHeard(const ros::Publisher& publisher, Message (*make)(const Processed&), const Processed& processed) {
   if (publisher.getNumSubscribers() > 0) publisher.publish(boost::make_shared<Message>(make(processed)));
 }
 
 // Whoever takes a request has to answer it, also when an exception passes.
 class AnswerGuard {
  public:
-  explicit AnswerGuard(skin::TrackerRequest& request) : request_(request), question_(request.take()) {}
+  explicit AnswerGuard(TrackerRequest& request) : request_(request), question_(request.take()) {}
   ~AnswerGuard() {
     if (question_) request_.answer(answer_);
   }
@@ -44,12 +43,12 @@ class AnswerGuard {
   const Kind* get() const {
     return question_ ? std::get_if<Kind>(&*question_) : nullptr;
   }
-  void set(const skin::TrackerRequest::Answer& answer) { answer_ = answer; }
+  void set(const TrackerRequest::Answer& answer) { answer_ = answer; }
 
  private:
-  skin::TrackerRequest& request_;
-  std::optional<skin::TrackerRequest::Question> question_;
-  skin::TrackerRequest::Answer answer_{false, "the image could not be processed"};
+  TrackerRequest& request_;
+  std::optional<TrackerRequest::Question> question_;
+  TrackerRequest::Answer answer_{false, "the image could not be processed"};
 };
 
 }  // namespace
@@ -75,9 +74,9 @@ void Tracker::onInit() {
         ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) { diagnostics_->force_update(); });
     const std::string& name = getPrivateNodeHandle().getNamespace();
     std::vector<std::string> errors;
-    const auto parameters = skin::readTrackerParameters(skin::parametersOf(getPrivateNodeHandle()), name, errors);
-    if (!errors.empty()) return standAside(skin::errorReport(errors));
-    skin::warnOfExposure();
+    const auto parameters = readTrackerParameters(parametersOf(getPrivateNodeHandle()), name, errors);
+    if (!errors.empty()) return standAside(errorReport(errors));
+    warnOfExposure();
     start(parameters);
   } catch (const std::exception& error) {
     standAside(error.what());
@@ -89,10 +88,10 @@ void Tracker::standAside(const std::string& why) {
   NODELET_ERROR("the tracker does not start: %s", why.c_str());
 }
 
-void Tracker::start(const skin::TrackerParameters& parameters) {
-  session_ = std::make_unique<skin::TrackerSession>(parameters);
-  views_ = std::make_unique<skin::ViewLibrary>(parameters);
-  statistics_ = std::make_unique<skin::TrackerDiagnostics>(parameters.tracking, parameters.robot_motion.enabled);
+void Tracker::start(const TrackerParameters& parameters) {
+  session_ = std::make_unique<TrackerSession>(parameters);
+  views_ = std::make_unique<ViewLibrary>(parameters);
+  statistics_ = std::make_unique<TrackerDiagnostics>(parameters.tracking, parameters.robot_motion.enabled);
   if (parameters.robot_motion.enabled) followRobot(parameters.robot_motion);
 
   ros::NodeHandle& node = getNodeHandle();
@@ -122,22 +121,22 @@ void Tracker::start(const skin::TrackerParameters& parameters) {
   view_spinner_->start();
 }
 
-void Tracker::followRobot(const skin::RobotMotionConfig& config) {
-  const std::string fixed_frame = skin::fixedFrame(config, getNodeHandle().getNamespace());
-  skin::TransformGateConfig gate;
+void Tracker::followRobot(const RobotMotionConfig& config) {
+  const std::string fixed_frame = fixedFrame(config, getNodeHandle().getNamespace());
+  TransformGateConfig gate;
   if (!config.owner.empty()) gate.owner = getNodeHandle().resolveName(config.owner, false);
   gate.parameter = "robot_motion/owner";
   gate.frames = {fixed_frame};
   gate.max_ahead = kAhead;
-  transforms_ = std::make_unique<skin::OwnedTransforms>(gate);
+  transforms_ = std::make_unique<OwnedTransforms>(gate);
   session_->setCameraMotion([this, fixed_frame](const std::string& frame, const ros::Time& from, const ros::Time& to,
                                                 std::string& why) -> std::optional<Eigen::Isometry3d> {
     transforms_->use(frame);
-    const skin::OwnedTransforms::Word word = transforms_->step(false, skin::steadyNow());
+    const OwnedTransforms::Word word = transforms_->step(false, steadyNow());
     if (!word.complaint.empty()) NODELET_WARN_THROTTLE(kThrottle, "%s", word.complaint.c_str());
     why = word.problem;
     if (!why.empty()) return std::nullopt;
-    const auto motion = skin::cameraMotion(*transforms_->buffer(), fixed_frame, frame, from, to, why);
+    const auto motion = cameraMotion(*transforms_->buffer(), fixed_frame, frame, from, to, why);
     if (!motion && !word.complaint.empty()) why += "; " + word.complaint;
     return motion;
   });
@@ -157,15 +156,15 @@ void Tracker::subscribeImages() {
 }
 
 void Tracker::cameraInfoCallback(const ros::MessageEvent<const sensor_msgs::CameraInfo>& event) {
-  if (!camera_info_owner_.counts(event.getPublisherName(), skin::steadyNow())) return;
+  if (!camera_info_owner_.counts(event.getPublisherName(), steadyNow())) return;
   session_->setCameraInfo(*event.getConstMessage());
 }
 
 void Tracker::rawImageCallback(const ros::MessageEvent<const sensor_msgs::Image>& event) {
-  const double now = skin::steadyNow();
+  const double now = steadyNow();
   if (image_owner_.counts(event.getPublisherName(), now)) return imageCallback(event.getConstMessage());
   refuse("several nodes publish " + image_subscriber_.getTopic() + ": " + image_owner_.complaint(now),
-         skin::Refusal::kSender);
+         Refusal::kSender);
 }
 
 // A bag that begins again sets the clock back, too.
@@ -180,7 +179,7 @@ void Tracker::imageCallback(const sensor_msgs::ImageConstPtr& message) {
   // cv::Exception is a std::exception. One odd image must not end the process that the camera driver may share.
   try {
     process(message);
-  } catch (const skin::ImageError& error) {
+  } catch (const ImageError& error) {
     refuse(error.what(), error.cause());
   } catch (const std::exception& error) {
     refuse(error.what());
@@ -189,12 +188,12 @@ void Tracker::imageCallback(const sensor_msgs::ImageConstPtr& message) {
 
 void Tracker::process(const sensor_msgs::ImageConstPtr& message) {
   AnswerGuard guard(request_);
-  skin::Processed processed;
+  Processed processed;
   try {
     watchClock();
     // Simulated time comes over a topic of its own, later than the image or earlier.
     const ros::Time now = ros::Time::isSimTime() ? ros::Time() : ros::Time::now();
-    skin::checkStamp(message->header.stamp, now, session_->parameters().input.max_ahead);
+    checkStamp(message->header.stamp, now, session_->parameters().input.max_ahead);
     const auto* roi = guard.get<geometry::Rectangle>();
     processed = session_->process(*message, roi != nullptr ? std::make_optional(*roi) : std::nullopt);
   } catch (const std::exception& error) {
@@ -203,37 +202,37 @@ void Tracker::process(const sensor_msgs::ImageConstPtr& message) {
   }
   if (const auto* roi = guard.get<geometry::Rectangle>()) {
     const bool selected = processed.result.selected_now;
-    guard.set({selected, selected ? "selected " + skin::roiText(*roi) : processed.selection_error});
-  } else if (const auto* route = guard.get<skin::RecallRoute>()) {
+    guard.set({selected, selected ? "selected " + roiText(*roi) : processed.selection_error});
+  } else if (const auto* route = guard.get<RecallRoute>()) {
     const std::string error = session_->recall(*route);
     guard.set({error.empty(), error});
-  } else if (guard.get<skin::TrackerRequest::WantSnapshot>() != nullptr) {
-    guard.set({true, "", std::make_shared<const skin::Snapshot>(session_->snapshot(processed))});
+  } else if (guard.get<TrackerRequest::WantSnapshot>() != nullptr) {
+    guard.set({true, "", std::make_shared<const Snapshot>(session_->snapshot(processed))});
   }
   if (!processed.selection_error.empty()) {
     NODELET_ERROR_THROTTLE(kThrottle, "the ROI could not be selected: %s", processed.selection_error.c_str());
   }
-  statistics_->processed(skin::steadyNow(), processed, session_->ignoresDistortion());
+  statistics_->processed(steadyNow(), processed, session_->ignoresDistortion());
   publish(processed);
-  statistics_->answered(skin::steadyNow(), (ros::Time::now() - processed.header.stamp).toSec());
+  statistics_->answered(steadyNow(), (ros::Time::now() - processed.header.stamp).toSec());
 }
 
-void Tracker::publish(const skin::Processed& processed) {
-  publishIfHeard(homography_publisher_, skin::homographyMessage, processed);
-  publishIfHeard(task_error_publisher_, skin::taskErrorMessage, processed);
-  publishIfHeard(areas_publisher_, skin::areaSelectionMessage, processed);
-  publishIfHeard(roi_publisher_, skin::roiMessage, processed);
+void Tracker::publish(const Processed& processed) {
+  publishIfHeard(homography_publisher_, homographyMessage, processed);
+  publishIfHeard(task_error_publisher_, taskErrorMessage, processed);
+  publishIfHeard(areas_publisher_, areaSelectionMessage, processed);
+  publishIfHeard(roi_publisher_, roiMessage, processed);
   if (mask_publisher_.getNumSubscribers() > 0) {
-    mask_publisher_.publish(skin::imageMessage(processed.header, session_->occlusionMask()));
+    mask_publisher_.publish(imageMessage(processed.header, session_->occlusionMask()));
   }
   if (overlay_publisher_.getNumSubscribers() > 0) {
-    overlay_publisher_.publish(skin::imageMessage(
-        processed.header, skin::drawOverlay(processed.image, processed.result, processed.lens.get())));
+    overlay_publisher_.publish(
+        imageMessage(processed.header, drawOverlay(processed.image, processed.result, processed.lens.get())));
   }
 }
 
-void Tracker::refuse(const std::string& error, skin::Refusal cause) {
-  statistics_->refused(skin::steadyNow(), error, cause);
+void Tracker::refuse(const std::string& error, Refusal cause) {
+  statistics_->refused(steadyNow(), error, cause);
   NODELET_ERROR_THROTTLE(kThrottle, "image refused: %s", error.c_str());
 }
 
@@ -248,7 +247,7 @@ void Tracker::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
   if (!why_aside_.empty()) {
     status.summary(diagnostic_msgs::DiagnosticStatus::ERROR, "not started: " + why_aside_);
   } else if (statistics_) {
-    const double now = skin::steadyNow();
+    const double now = steadyNow();
     const bool raw = static_cast<bool>(image_subscriber_);
     statistics_->setPublishers({raw ? image_subscriber_.getNumPublishers() : transport_subscriber_.getNumPublishers(),
                                 camera_info_subscriber_.getNumPublishers(), image_owner_.complaint(now),

@@ -1,4 +1,4 @@
-// The nodelet laparoscope_servo/Tracker: wires topics, services and parameters to skin::TrackerSession.
+// The nodelet laparoscope_servo/Tracker: wires topics, services and parameters to TrackerSession.
 #pragma once
 
 #include <diagnostic_updater/diagnostic_updater.h>
@@ -15,12 +15,12 @@
 #include <memory>
 #include <string>
 
-#include "laparoscope_servo/ros/feed_owner.h"
-#include "laparoscope_servo/ros/owned_transforms.h"
-#include "laparoscope_servo/ros/tracker_diagnostics.h"
-#include "laparoscope_servo/ros/tracker_request.h"
-#include "laparoscope_servo/ros/tracker_session.h"
-#include "laparoscope_servo/ros/view_library.h"
+#include "ros/common/owned_transforms.h"
+#include "ros/tracker/feed_owner.h"
+#include "ros/tracker/tracker_diagnostics.h"
+#include "ros/tracker/tracker_request.h"
+#include "ros/tracker/tracker_session.h"
+#include "ros/tracker/view_library.h"
 
 namespace laparoscope_servo::nodelets {
 
@@ -30,9 +30,9 @@ class Tracker : public nodelet::Nodelet {
 
  private:
   void onInit() override;
-  void start(const skin::TrackerParameters& parameters);
+  void start(const TrackerParameters& parameters);
   void standAside(const std::string& why);
-  void followRobot(const skin::RobotMotionConfig& config);
+  void followRobot(const RobotMotionConfig& config);
 
   // All in the nodelet's own single-threaded queue.
   void subscribeImages();
@@ -49,27 +49,27 @@ class Tracker : public nodelet::Nodelet {
 
   bool storeView(StoredView::Request& request, StoredView::Response& response);
   bool recallView(StoredView::Request& request, StoredView::Response& response);
-  skin::TrackerRequest::Answer ask(const skin::TrackerRequest::Question& question);
+  TrackerRequest::Answer ask(const TrackerRequest::Question& question);
 
   void process(const sensor_msgs::ImageConstPtr& message);
-  void publish(const skin::Processed& processed);
-  void refuse(const std::string& error, skin::Refusal cause = skin::Refusal::kData);
+  void publish(const Processed& processed);
+  void refuse(const std::string& error, Refusal cause = Refusal::kData);
 
-  std::unique_ptr<skin::OwnedTransforms> transforms_;  // with robot_motion only
-  std::unique_ptr<skin::TrackerSession> session_;
-  std::unique_ptr<skin::TrackerDiagnostics> statistics_;
+  std::unique_ptr<OwnedTransforms> transforms_;  // with robot_motion only
+  std::unique_ptr<TrackerSession> session_;
+  std::unique_ptr<TrackerDiagnostics> statistics_;
   std::unique_ptr<diagnostic_updater::Updater> diagnostics_;
   std::string why_aside_;
 
-  skin::TrackerRequest request_;
+  TrackerRequest request_;
   ros::CallbackQueue request_queue_;
   std::unique_ptr<ros::AsyncSpinner> request_spinner_;
-  std::unique_ptr<skin::ViewLibrary> views_;  // of the views' thread
+  std::unique_ptr<ViewLibrary> views_;  // of the views' thread
   ros::CallbackQueue view_queue_;
   std::unique_ptr<ros::AsyncSpinner> view_spinner_;
 
-  skin::FeedOwner image_owner_;
-  skin::FeedOwner camera_info_owner_;
+  FeedOwner image_owner_;
+  FeedOwner camera_info_owner_;
   ros::Time last_now_;
   std::unique_ptr<image_transport::ImageTransport> transport_;  // other than raw
   image_transport::Subscriber transport_subscriber_;

@@ -3,11 +3,11 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "tracker.h"
+#include "nodelets/tracker.h"
 
 namespace laparoscope_servo::nodelets {
 
-skin::TrackerRequest::Answer Tracker::ask(const skin::TrackerRequest::Question& question) {
+TrackerRequest::Answer Tracker::ask(const TrackerRequest::Question& question) {
   std::ostringstream timeout;
   timeout << "no image came on " << getNodeHandle().resolveName("image") << " within "
           << session_->parameters().select_timeout << " s (parameter select_timeout)";
@@ -17,14 +17,14 @@ skin::TrackerRequest::Answer Tracker::ask(const skin::TrackerRequest::Question& 
 bool Tracker::selectRoi(SelectRoi::Request& request, SelectRoi::Response& response) {
   const geometry::Rectangle roi{static_cast<double>(request.roi.x_offset), static_cast<double>(request.roi.y_offset),
                                 static_cast<double>(request.roi.width), static_cast<double>(request.roi.height)};
-  const skin::TrackerRequest::Answer answer = ask(roi);
+  const TrackerRequest::Answer answer = ask(roi);
   response.success = static_cast<std::uint8_t>(answer.success);
   response.message = answer.message;
   return true;
 }
 
 bool Tracker::storeView(StoredView::Request& request, StoredView::Response& response) {
-  const skin::TrackerRequest::Answer answer = ask(skin::TrackerRequest::WantSnapshot());
+  const TrackerRequest::Answer answer = ask(TrackerRequest::WantSnapshot());
   response.success = static_cast<std::uint8_t>(answer.success);
   response.message = answer.message;
   if (!answer.snapshot) return true;
@@ -40,12 +40,12 @@ bool Tracker::storeView(StoredView::Request& request, StoredView::Response& resp
 // The tracker goes on meanwhile: searching the image for all the views takes longer than an image.
 bool Tracker::recallView(StoredView::Request& request, StoredView::Response& response) {
   response.success = static_cast<std::uint8_t>(false);
-  skin::TrackerRequest::Answer answer = ask(skin::TrackerRequest::WantSnapshot());
+  TrackerRequest::Answer answer = ask(TrackerRequest::WantSnapshot());
   if (answer.snapshot) {
     try {
-      const skin::RecallRoute route = views_->route(request.name, *answer.snapshot);
+      const RecallRoute route = views_->route(request.name, *answer.snapshot);
       answer = ask(route);
-      if (answer.success) answer.message = "going by " + skin::routeText(route);
+      if (answer.success) answer.message = "going by " + routeText(route);
       response.success = static_cast<std::uint8_t>(answer.success);
     } catch (const std::exception& error) {
       answer.message = error.what();

@@ -1,14 +1,14 @@
 // Node `aesop`: drives the arm over a serial port. See README, node `aesop`.
-#include "laparoscope_servo/ros/aesop_node.h"
+#include "ros/aesop/aesop_node.h"
 
 #include <ros/ros.h>
 
 #include <exception>
 
-#include "laparoscope_servo/ros/frame_names.h"
-#include "laparoscope_servo/ros/network_exposure.h"
-#include "laparoscope_servo/ros/stop_request.h"
-#include "laparoscope_servo/ros/unblocked_output.h"
+#include "ros/common/frame_names.h"
+#include "ros/common/network_exposure.h"
+#include "ros/common/stop_request.h"
+#include "ros/common/unblocked_output.h"
 
 namespace {
 
@@ -16,30 +16,30 @@ int run() {
   using namespace laparoscope_servo;
   const ros::NodeHandle node;
   const ros::NodeHandle private_node("~");
-  skin::catchStopRequests();
-  skin::ParameterReader reader(skin::parametersOf(private_node), private_node.getNamespace());
-  skin::AesopParameters parameters = skin::readAesopParameters(reader);
+  catchStopRequests();
+  ParameterReader reader(parametersOf(private_node), private_node.getNamespace());
+  AesopParameters parameters = readAesopParameters(reader);
   if (!reader.errors().empty()) {
     ROS_FATAL_STREAM(reader.report());
     return 1;
   }
-  parameters.frame_prefix = skin::framePrefix(parameters.frame_prefix, node.getNamespace());
-  skin::AesopNode aesop(node, private_node, parameters);
-  skin::warnOfExposure();
+  parameters.frame_prefix = framePrefix(parameters.frame_prefix, node.getNamespace());
+  AesopNode aesop(node, private_node, parameters);
+  warnOfExposure();
   int status = 0;
   try {
-    aesop.run(skin::stopRequested);
+    aesop.run(stopRequested);
   } catch (const std::exception&) {  // said by run()
     status = 1;
   }
-  skin::limitFarewell(status);
+  limitFarewell(status);
   return status;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  const laparoscope_servo::skin::UnblockedOutput output;
+  const laparoscope_servo::UnblockedOutput output;
   // No handler of ROS: the arm has to be disabled while there is still a node to do it.
   ros::init(argc, argv, "aesop", ros::init_options::NoSigintHandler);
   int status = 1;

@@ -5,26 +5,26 @@
 #include <iostream>
 #include <stdexcept>
 
-#include "laparoscope_servo/ros/demo_director.h"
-#include "laparoscope_servo/ros/output_file.h"
+#include "ros/common/output_file.h"
+#include "ros/simulation/demo_director.h"
 
-namespace skin = laparoscope_servo::skin;
+using namespace laparoscope_servo;
 
 int main(int argc, char** argv) {
   ros::init(argc, argv, "demo_director");
   ros::NodeHandle node;
   const ros::NodeHandle private_node("~");
-  skin::ParameterReader reader(skin::parametersOf(private_node), private_node.getNamespace());
-  const skin::DemoConfig config = skin::demoConfig(reader);
+  ParameterReader reader(parametersOf(private_node), private_node.getNamespace());
+  const DemoConfig config = demoConfig(reader);
   if (!reader.errors().empty()) {
     ROS_FATAL("%s", reader.report().c_str());
     return EXIT_FAILURE;
   }
-  const skin::DemoSummary summary = skin::DemoDirector(node, config).run();
+  const DemoSummary summary = DemoDirector(node, config).run();
   const std::string text = toJson(summary);
   std::cout << text << std::flush;
   try {
-    if (!config.summary.empty()) skin::writeTextFile(config.summary, [&](std::ostream& stream) { stream << text; });
+    if (!config.summary.empty()) writeTextFile(config.summary, [&](std::ostream& stream) { stream << text; });
   } catch (const std::runtime_error& error) {
     ROS_FATAL("the summary is lost: %s", error.what());
     return EXIT_FAILURE;

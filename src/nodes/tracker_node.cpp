@@ -6,21 +6,20 @@
 #include <string>
 #include <vector>
 
-#include "laparoscope_servo/ros/parameters.h"
-#include "laparoscope_servo/ros/tracker_parameters.h"
-#include "laparoscope_servo/ros/unblocked_output.h"
+#include "ros/common/parameters.h"
+#include "ros/common/unblocked_output.h"
+#include "ros/tracker/tracker_parameters.h"
 
 int main(int argc, char** argv) {
-  const laparoscope_servo::skin::UnblockedOutput output;
+  const laparoscope_servo::UnblockedOutput output;
   ros::init(argc, argv, "tracker");
   {
     // The nodelet would stand aside to spare its manager. A node of its own says so by its exit status.
     const ros::NodeHandle node("~");
     std::vector<std::string> errors;
-    laparoscope_servo::skin::readTrackerParameters(laparoscope_servo::skin::parametersOf(node), node.getNamespace(),
-                                                   errors);
+    laparoscope_servo::readTrackerParameters(laparoscope_servo::parametersOf(node), node.getNamespace(), errors);
     if (!errors.empty()) {
-      ROS_FATAL("%s", laparoscope_servo::skin::errorReport(errors).c_str());
+      ROS_FATAL("%s", laparoscope_servo::errorReport(errors).c_str());
       return EXIT_FAILURE;
     }
   }

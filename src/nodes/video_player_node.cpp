@@ -4,22 +4,22 @@
 #include <cstdlib>
 #include <exception>
 
-#include "laparoscope_servo/ros/video_player.h"
+#include "ros/playback/video_player.h"
 
-namespace skin = laparoscope_servo::skin;
+using namespace laparoscope_servo;
 
 int main(int argc, char** argv) {
   ros::init(argc, argv, "video_player");
   ros::NodeHandle node;
   const ros::NodeHandle private_node("~");
-  skin::ParameterReader reader(skin::parametersOf(private_node), private_node.getNamespace());
-  const skin::VideoPlayerConfig config = skin::videoPlayerConfig(reader);
+  ParameterReader reader(parametersOf(private_node), private_node.getNamespace());
+  const VideoPlayerConfig config = videoPlayerConfig(reader);
   if (!reader.errors().empty()) {
     ROS_FATAL("%s", reader.report().c_str());
     return EXIT_FAILURE;
   }
   try {
-    skin::VideoPlayer player(node, config);
+    VideoPlayer player(node, config);
     player.run();
     // Publishing is asynchronous: the last images have to leave before the connections close.
     ros::WallDuration(0.5).sleep();

@@ -165,7 +165,7 @@ ControllerOutput Controller::update(const ControllerInput& input) {
     known.command_finite = output.command.vector().allFinite();
     if (!known.command_finite) {
       safety = machine_.step(known);
-      output.command = ScopeVelocity();
+      output.command = scope::Velocity();
     }
   }
   if (safety.reset_history) servo_.stop(input.time);
@@ -219,10 +219,10 @@ ServoInput Controller::servoInput(const ControllerInput& input) const {
   return servo;
 }
 
-ScopeVelocity Controller::drive(const ControllerInput& input, const std::string& problem) {
+scope::Velocity Controller::drive(const ControllerInput& input, const std::string& problem) {
   if (!problem.empty()) {
     servo_.stop(input.time);
-    return ScopeVelocity();
+    return scope::Velocity();
   }
   return servo_.drive(servoInput(input), input.manual.velocity);
 }

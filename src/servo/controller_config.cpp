@@ -16,7 +16,7 @@ class Checker : public validation::RangeChecker {
   using RangeChecker::range;
 
   // `angular` bounds pan, tilt and spin, `linear` bounds insertion.
-  void range(const std::string& group, const ScopeVelocity& value, double minimum, double angular, double linear,
+  void range(const std::string& group, const scope::Velocity& value, double minimum, double angular, double linear,
              const std::string& derivative) {
     range(group + "/pan", value.pan, minimum, angular, "rad/" + derivative);
     range(group + "/tilt", value.tilt, minimum, angular, "rad/" + derivative);

@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "laparoscope_servo/servo/feature_law.h"
-#include "laparoscope_servo/servo/horizon.h"
 #include "laparoscope_servo/servo/paper_law.h"
-#include "laparoscope_servo/servo/scope_displacement.h"
+#include "servo/task/horizon.h"
+#include "servo/task/scope_displacement.h"
 
 namespace laparoscope_servo::servo {
 
@@ -26,7 +26,7 @@ std::unique_ptr<ControlLaw> lawOf(const ControllerConfig& config) {
 Limits beforeDeadZone(const ControllerConfig& config) {
   Limits limits = config.limits;
   if (!config.dead_zone.inverse) return limits;
-  limits.velocity = ScopeVelocity::fromVector(limits.velocity.vector() - config.dead_zone.width.vector());
+  limits.velocity = scope::Velocity::fromVector(limits.velocity.vector() - config.dead_zone.width.vector());
   return limits;
 }
 
@@ -38,8 +38,8 @@ DelayConfig delayConfig(const PredictorConfig& predictor) {
   return config;
 }
 
-ScopeVelocity scaled(const ScopeVelocity& velocity, double scale) {
-  return ScopeVelocity::fromVector(scale * velocity.vector());
+scope::Velocity scaled(const scope::Velocity& velocity, double scale) {
+  return scope::Velocity::fromVector(scale * velocity.vector());
 }
 
 }  // namespace
@@ -81,16 +81,16 @@ void ScopeServo::stop(double time) {
   at_bound_ = false;
   band_.reset();
   limiter_.reset();
-  remember(time, ScopeVelocity());
+  remember(time, scope::Velocity());
 }
 
 // `executed`: once the delay has passed.
-void ScopeServo::remember(double time, const ScopeVelocity& executed) {
+void ScopeServo::remember(double time, const scope::Velocity& executed) {
   history_.add(time, executed);
   delay_.command(time, executed);
 }
 
-void ScopeServo::report(double time, const ScopeVelocity& velocity) {
+void ScopeServo::report(double time, const scope::Velocity& velocity) {
   delay_.report(time, velocity);
   const Eigen::Vector4d told = history_.velocity(time, delay()), done = velocity.vector();
   bool differs = false;
@@ -113,15 +113,15 @@ TaskError ScopeServo::oriented(const ServoInput& input) const {
   // When the image was taken, by what the scope has done before or after the pose.
   const Eigen::Vector4d since = history_.displacement(input.image_time, input.pose_time, delay()) -
                                 history_.displacement(input.pose_time, input.image_time, delay());
-  const Eigen::Matrix3d pose_R_image = geometry::so3Exp(-angularVelocity(ScopeVelocity::fromVector(since)));
+  const Eigen::Matrix3d pose_R_image = geometry::so3Exp(-scope::angularVelocity(scope::Velocity::fromVector(since)));
   const Eigen::Matrix3d base_R_shaft = input.insertion_point_T_tip->linear() * pose_R_image;
   error.alpha = horizonError(input.scope.camera_R_shaft * base_R_shaft.transpose() * up);
   return error;
 }
 
 // The scope's velocity that goes along with the target's.
-ScopeVelocity ScopeServo::following(const Features& velocity) const {
-  if (config_.spin != SpinMode::kReleased) return ScopeVelocity::fromVector(jacobian_.inverse() * velocity);
+scope::Velocity ScopeServo::following(const Features& velocity) const {
+  if (config_.spin != SpinMode::kReleased) return scope::Velocity::fromVector(jacobian_.inverse() * velocity);
   Eigen::Matrix3d without_spin;
   without_spin << jacobian_.block<3, 2>(0, 0), jacobian_.block<3, 1>(0, 3);
   const Eigen::Vector3d v = without_spin.inverse() * velocity.head<3>();
@@ -153,10 +153,10 @@ void ScopeServo::observe(const ServoInput& input) {
   target_.observe(image_time_, place - breathing_.predict(image_time_).place, jacobian_ * executed);
 }
 
-ScopeVelocity ScopeServo::command(const ServoInput& input, const ServoLimits& limits) {
+scope::Velocity ScopeServo::command(const ServoInput& input, const ServoLimits& limits) {
   if (!has_image_ || std::abs(input.image_time - image_time_) > kSameImage) observe(input);
   TaskError error = error_;
-  ScopeVelocity follow;
+  scope::Velocity follow;
   if (config_.predictor.enabled && to_target_.allFinite() && !target_.empty()) {
     const double executed_at = input.time + delay() + 0.5 * input.period;
     const Eigen::Vector4d then = displacement_ + history_.displacement(image_time_, executed_at, delay());
@@ -184,7 +184,7 @@ ScopeVelocity ScopeServo::command(const ServoInput& input, const ServoLimits& li
   const LawVelocity wanted = law_->velocity(follows ? error : band_.apply(error, input.time), input.scope);
   if (!wanted.sum().vector().allFinite()) return wanted.sum();
   const double gain = limits.scale * gainFactor();
-  ScopeVelocity velocity =
+  scope::Velocity velocity =
       limiter_.apply({scaled(follow, limits.scale), scaled(wanted.turning, gain), scaled(wanted.centring, gain)},
                      input.period, limits.scale);
   velocity.insertion = std::clamp(velocity.insertion, -limits.insertion, limits.insertion);
@@ -192,18 +192,18 @@ ScopeVelocity ScopeServo::command(const ServoInput& input, const ServoLimits& li
   return send(input, velocity);
 }
 
-ScopeVelocity ScopeServo::drive(const ServoInput& input, const ScopeVelocity& wanted) {
+scope::Velocity ScopeServo::drive(const ServoInput& input, const scope::Velocity& wanted) {
   return send(input, limiter_.apply(wanted, input.period));
 }
 
-ScopeVelocity ScopeServo::send(const ServoInput& input, ScopeVelocity velocity) {
+scope::Velocity ScopeServo::send(const ServoInput& input, scope::Velocity velocity) {
   const Eigen::Vector4d free = velocity.vector();
   const double d2 = input.scope.d2 + std::copysign(input.d2_doubt, velocity.insertion);
   velocity = input.insertion_point_T_tip ? within(config_.range, velocity, d2, input.insertion_point_T_tip->linear())
                                          : within(config_.range, velocity, d2);
   at_bound_ = velocity.vector() != free;
   limiter_.applied(velocity);
-  const ScopeVelocity command =
+  const scope::Velocity command =
       config_.dead_zone.inverse ? throughDeadZone(velocity, config_.dead_zone.width) : velocity;
   remember(input.time, afterDeadZone(command, config_.dead_zone.width));
   return command;

@@ -6,10 +6,10 @@
 #include <csignal>
 #include <iostream>
 
-#include "laparoscope_servo/ros/aesop_parameters.h"
-#include "laparoscope_servo/ros/emulator_script.h"
 #include "laparoscope_servo/sim/emulator_control.h"
 #include "laparoscope_servo/sim/emulator_server.h"
+#include "ros/aesop/aesop_parameters.h"
+#include "ros/simulation/emulator_script.h"
 
 namespace {
 
@@ -42,12 +42,12 @@ sim::EmulatorConfig readConfig(const options::variables_map& values) {
   XmlRpc::XmlRpcValue tree;
   if (values.count("params") > 0) {
     for (const std::string& file : values["params"].as<std::vector<std::string>>()) {
-      tree = skin::mergeParameters(tree, skin::parametersFromYaml(file));
+      tree = mergeParameters(tree, parametersFromYaml(file));
     }
   }
-  skin::ParameterReader reader(tree, "params");
-  const sim::EmulatorConfig config = skin::readEmulatorConfig(reader);
-  reader.addErrors(skin::errorsBesideEmulator(tree));
+  ParameterReader reader(tree, "params");
+  const sim::EmulatorConfig config = readEmulatorConfig(reader);
+  reader.addErrors(errorsBesideEmulator(tree));
   if (!reader.errors().empty()) throw std::runtime_error(reader.report());
   return config;
 }
@@ -62,7 +62,7 @@ sim::ServerConfig readServer(const options::variables_map& values) {
   if (server.baud_rate != 0 && !(server.baud_rate >= 1200 && server.baud_rate <= 1000000)) {
     throw std::runtime_error("--baud " + std::to_string(server.baud_rate) + ": expected 0, or 1200 to 1000000 bit/s");
   }
-  if (values.count("script") > 0) server.script = skin::scriptFromYaml(values["script"].as<std::string>());
+  if (values.count("script") > 0) server.script = scriptFromYaml(values["script"].as<std::string>());
   return server;
 }
 

@@ -4,15 +4,17 @@
 #include <functional>
 #include <iostream>
 
-#include "laparoscope_servo/ros/output_file.h"
-#include "laparoscope_servo/ros/servo_runs.h"
+#include "laparoscope_servo/closed_loop/servo_runs.h"
+#include "ros/common/output_file.h"
+#include "ros/controller/controller_parameters.h"
+#include "ros/simulation/servo_simulation_config.h"
 
 namespace options = boost::program_options;
-namespace skin = laparoscope_servo::skin;
+using namespace laparoscope_servo;
 
 namespace {
 
-void print(const skin::SimulationSummary& summary) {
+void print(const closed_loop::SimulationSummary& summary) {
   if (summary.settling_time < 0.0) {
     std::cout << "not settled to 2 px and 2 % of scale\n";
   } else {
@@ -29,12 +31,12 @@ struct Request {
   unsigned seed = 1;
   int runs = 1;
   double duration = 0.0;  // s
-  skin::RunBounds bounds;
+  closed_loop::RunBounds bounds;
   std::string csv;      // empty: not asked for
   std::string summary;  // the same
 };
 
-double positive(const options::variables_map& values, const std::string& name, skin::ParameterReader& reader) {
+double positive(const options::variables_map& values, const std::string& name, ParameterReader& reader) {
   const double value = values[name].as<double>();
   if (!(value > 0.0 && value <= 1e6)) {
     reader.addError("--" + name + " = " + std::to_string(value) + ", expected a number above 0, at most 1e6");
@@ -43,8 +45,8 @@ double positive(const options::variables_map& values, const std::string& name, s
 }
 
 // Errors go to the reader.
-Request requestFrom(const options::variables_map& values, const skin::SimulationConfig& simulation,
-                    skin::ParameterReader& reader) {
+Request requestFrom(const options::variables_map& values, const closed_loop::SimulationConfig& simulation,
+                    ParameterReader& reader) {
   Request request;
   request.seed = values["seed"].as<unsigned>();
   request.runs = values["runs"].as<int>();
@@ -72,44 +74,44 @@ Request requestFrom(const options::variables_map& values, const skin::Simulation
   return request;
 }
 
-void runAll(const Request& request, const skin::ControllerNodeConfig& controller,
-            const skin::SimulationConfig& simulation) {
-  std::vector<skin::RunSummary> runs;
+void runAll(const Request& request, const closed_loop::ControllerSetup& controller,
+            const closed_loop::SimulationConfig& simulation) {
+  std::vector<closed_loop::RunSummary> runs;
   for (int k = 0; k < request.runs; ++k) {
     const unsigned seed = request.seed + static_cast<unsigned>(k);
-    const skin::DrawnStart drawn = skin::drawStart(simulation, seed);
-    skin::SimulationConfig started = simulation;
+    const closed_loop::DrawnStart drawn = closed_loop::drawStart(simulation, seed);
+    closed_loop::SimulationConfig started = simulation;
     started.start = drawn.start;
-    const auto samples = skin::simulate(controller, started, seed, request.duration);
-    runs.push_back(skin::summariseRun(samples, started, request.bounds));
+    const auto samples = closed_loop::simulate(controller, started, seed, request.duration);
+    runs.push_back(closed_loop::summariseRun(samples, started, request.bounds));
     runs.back().seed = seed;
     runs.back().drawn = drawn;
     if (k > 0) continue;
     if (!request.csv.empty())
-      skin::writeTextFile(request.csv, [&](std::ostream& stream) { skin::writeCsv(samples, stream); });
-    if (request.runs == 1) print(skin::summarise(samples, started));
+      writeTextFile(request.csv, [&](std::ostream& stream) { closed_loop::writeCsv(samples, stream); });
+    if (request.runs == 1) print(closed_loop::summarise(samples, started));
   }
   if (!request.summary.empty())
-    skin::writeTextFile(request.summary, [&](std::ostream& stream) { skin::writeRuns(runs, stream); });
-  if (request.runs > 1) skin::printRuns(runs, request.bounds, std::cout);
+    writeTextFile(request.summary, [&](std::ostream& stream) { closed_loop::writeRuns(runs, stream); });
+  if (request.runs > 1) closed_loop::printRuns(runs, request.bounds, std::cout);
 }
 
 int run(const options::variables_map& values) {
   XmlRpc::XmlRpcValue tree;
   if (values.count("params") > 0) {
     for (const std::string& file : values["params"].as<std::vector<std::string>>()) {
-      tree = skin::mergeParameters(tree, skin::parametersFromYaml(file));
+      tree = mergeParameters(tree, parametersFromYaml(file));
     }
   }
-  skin::ParameterReader reader(tree, "");
-  const skin::SimulationConfig simulation = skin::simulationConfig(reader);
-  const skin::ControllerNodeConfig controller = skin::controllerNodeConfig(reader);
+  ParameterReader reader(tree, "");
+  const closed_loop::SimulationConfig simulation = simulationConfig(reader);
+  const ControllerNodeConfig node = controllerNodeConfig(reader);
   const Request request = requestFrom(values, simulation, reader);
   if (!reader.errors().empty()) {
     std::cerr << "simulate_servo: " << reader.report() << '\n';
     return 1;
   }
-  runAll(request, controller, simulation);
+  runAll(request, {node.control, node.rate}, simulation);
   return 0;
 }
 

@@ -15,19 +15,19 @@
 #include <string>
 #include <vector>
 
-#include "laparoscope_servo/ros/parameters.h"
-#include "laparoscope_servo/ros/tracker_offline.h"
 #include "laparoscope_servo/tracking/region_tracker.h"
+#include "ros/common/parameters.h"
+#include "ros/playback/tracker_offline.h"
 
 namespace {
 
 namespace options = boost::program_options;
-namespace skin = laparoscope_servo::skin;
+using namespace laparoscope_servo;
 
 constexpr int kBadUsage = 2;
 constexpr int kSignalled = 128;  // as shells count: and the signal's number
 
-options::options_description describeOptions(skin::OfflineOptions& offline, std::string& roi, std::string& parameters) {
+options::options_description describeOptions(OfflineOptions& offline, std::string& roi, std::string& parameters) {
   options::options_description description("Options");
   auto add = description.add_options();
   add("help", "print this and end");
@@ -50,21 +50,21 @@ options::options_description describeOptions(skin::OfflineOptions& offline, std:
 }
 
 // The package's parameters, as the launch files load them, then the user's.
-skin::TrackerParameters readParameters(const std::string& file) {
+TrackerParameters readParameters(const std::string& file) {
   const std::string share = ros::package::getPath("laparoscope_servo");
   XmlRpc::XmlRpcValue tree;
   const std::string defaults = share + "/config/tracker.yaml";
-  if (!share.empty() && std::filesystem::exists(defaults)) tree = skin::parametersFromYaml(defaults);
-  if (!file.empty()) tree = skin::mergeParameters(tree, skin::parametersFromYaml(file));
+  if (!share.empty() && std::filesystem::exists(defaults)) tree = parametersFromYaml(defaults);
+  if (!file.empty()) tree = mergeParameters(tree, parametersFromYaml(file));
   std::vector<std::string> errors;
-  const auto parameters = skin::readTrackerParameters(tree, file.empty() ? defaults : file, errors);
-  if (!errors.empty()) throw std::runtime_error(skin::errorReport(errors));
+  const auto parameters = readTrackerParameters(tree, file.empty() ? defaults : file, errors);
+  if (!errors.empty()) throw std::runtime_error(errorReport(errors));
   return parameters;
 }
 
 class ProgressLine {
  public:
-  void operator()(const skin::OfflineSummary& summary, std::size_t expected) {
+  void operator()(const OfflineSummary& summary, std::size_t expected) {
     const auto now = std::chrono::steady_clock::now();
     if (!terminal_ || now - last_ < std::chrono::milliseconds(200)) return;
     last_ = now;
@@ -89,7 +89,7 @@ double quantile(std::vector<double> values, double share) {
   return values[static_cast<std::size_t>(rank)];
 }
 
-void printSummary(const skin::OfflineSummary& summary) {
+void printSummary(const OfflineSummary& summary) {
   std::fprintf(stderr, "%zu images:", summary.images);
   for (std::size_t state = 0; state < summary.by_state.size(); ++state) {
     const char* name = laparoscope_servo::tracking::stateName(static_cast<laparoscope_servo::tracking::State>(state));
@@ -111,7 +111,7 @@ void catchSignals() {
   std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is told like a full disk
 }
 
-int exitStatus(const skin::OfflineSummary& summary) {
+int exitStatus(const OfflineSummary& summary) {
   if (!summary.source_error.empty()) std::cerr << "track_bag: " << summary.source_error << '\n';
   if (summary.refused > 0) {
     std::cerr << summary.refused << " of " << summary.refused + summary.images << " images could not be processed\n";
@@ -124,12 +124,12 @@ int exitStatus(const skin::OfflineSummary& summary) {
   return summary.refused == 0 && summary.source_error.empty() ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
-int run(skin::OfflineOptions& offline) {
+int run(OfflineOptions& offline) {
   ProgressLine line;
   catchSignals();
   offline.stopped = [] { return stop_signal != 0; };
-  const skin::OfflineSummary summary = skin::trackOffline(
-      offline, [&line](const skin::OfflineSummary& so_far, std::size_t expected) { line(so_far, expected); },
+  const OfflineSummary summary = trackOffline(
+      offline, [&line](const OfflineSummary& so_far, std::size_t expected) { line(so_far, expected); },
       [&line](std::size_t frame, const std::string& error) {
         line.end();
         std::cerr << "image " << frame << " is left out: " << error << '\n';
@@ -143,7 +143,7 @@ int run(skin::OfflineOptions& offline) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  skin::OfflineOptions offline;
+  OfflineOptions offline;
   std::string roi;
   std::string parameters;
   const options::options_description description = describeOptions(offline, roi, parameters);
@@ -171,7 +171,7 @@ int main(int argc, char** argv) {
     if (offline.inputs.empty())
       throw std::invalid_argument("no input is given, expected a bag, a video or a folder of images");
     offline.parameters = readParameters(parameters);
-    if (!roi.empty()) offline.parameters.roi = skin::parseRoi(roi);
+    if (!roi.empty()) offline.parameters.roi = parseRoi(roi);
     if (!offline.parameters.roi) throw std::invalid_argument("no ROI is given, expected --roi x,y,width,height in px");
     return run(offline);
   } catch (const std::exception& error) {

@@ -12,7 +12,7 @@
 
 #include "laparoscope_servo/aesop/wire_printer.h"
 #include "laparoscope_servo/aesop/wire_replay.h"
-#include "laparoscope_servo/ros/aesop_parameters.h"
+#include "ros/aesop/aesop_parameters.h"
 
 namespace {
 
@@ -76,12 +76,11 @@ bool readAll(const Arguments& arguments, const std::function<void(const aesop::W
 }
 
 aesop::DriverConfig readConfig(const Arguments& arguments) {
-  XmlRpc::XmlRpcValue tree =
-      skin::parametersFromYaml(ros::package::getPath("laparoscope_servo") + "/config/aesop.yaml");
-  for (const std::string& file : arguments.params) tree = skin::mergeParameters(tree, skin::parametersFromYaml(file));
+  XmlRpc::XmlRpcValue tree = parametersFromYaml(ros::package::getPath("laparoscope_servo") + "/config/aesop.yaml");
+  for (const std::string& file : arguments.params) tree = mergeParameters(tree, parametersFromYaml(file));
   if (!tree.hasMember("port")) tree["port"] = std::string("none");
-  skin::ParameterReader reader(tree, "params");
-  aesop::DriverConfig config = skin::readAesopParameters(reader).driver;
+  ParameterReader reader(tree, "params");
+  aesop::DriverConfig config = readAesopParameters(reader).driver;
   if (!reader.errors().empty()) throw std::runtime_error(reader.report());
   config.session.codec = aesop::codecNamed(arguments.codec);
   return config;

@@ -1,4 +1,4 @@
-#include "laparoscope_servo/tracking/motion_filter.h"
+#include "tracking/motion_filter.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>

@@ -7,11 +7,11 @@
 #include <utility>
 
 #include "laparoscope_servo/geometry/sl3.h"
-#include "laparoscope_servo/tracking/motion_filter.h"
-#include "laparoscope_servo/tracking/quality.h"
-#include "laparoscope_servo/tracking/region_aligner.h"
-#include "laparoscope_servo/tracking/region_search.h"
-#include "laparoscope_servo/tracking/roi_check.h"
+#include "tracking/align/quality.h"
+#include "tracking/align/region_aligner.h"
+#include "tracking/motion_filter.h"
+#include "tracking/roi_check.h"
+#include "tracking/search/region_search.h"
 
 namespace laparoscope_servo::tracking {
 

@@ -184,7 +184,7 @@ class RandomCartFaults {
       }
       default:
         return bearable(withInput("robot's velocity has the wrong sign", [](Input& input) {
-          input.robot_report.velocity = servo::ScopeVelocity::fromVector(-input.robot_report.velocity.vector());
+          input.robot_report.velocity = scope::Velocity::fromVector(-input.robot_report.velocity.vector());
         }));
     }
   }

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "laparoscope_servo/aesop/own_codec.h"
+#include "aesop/protocol/own_codec.h"
 #include "support/page_decoder.h"
 
 namespace laparoscope_servo::test_support {

@@ -13,8 +13,8 @@
 #include <string>
 
 #include "laparoscope_servo/geometry/homography.h"
+#include "laparoscope_servo/scope/insertion_point.h"
 #include "laparoscope_servo/servo/controller.h"
-#include "laparoscope_servo/servo/insertion_point.h"
 #include "laparoscope_servo/sim/scope_actuator.h"
 #include "laparoscope_servo/sim/scope_body.h"
 
@@ -44,7 +44,7 @@ class SimulatedCart {
   static constexpr double kDistance = 0.08;   // m, from the reference camera to the tissue
 
   // `start`: from the reference pose, rad and m.
-  SimulatedCart(const servo::ControllerConfig& config, const servo::ScopeVelocity& start, unsigned seed)
+  SimulatedCart(const servo::ControllerConfig& config, const scope::Velocity& start, unsigned seed)
       : controller(config), random_(seed), body_(startPose(start), {0.0, 0.0, -kDepth}, kLength) {}
 
   // One tick; after it `output` is of the controller's last step.
@@ -104,7 +104,7 @@ class SimulatedCart {
     input.depth.lateral_offset = body_.lateralOffset();
     input.depth.age = 0.01;
     input.depth.insertion_point_T_tip = insertionPoint().inverse() * body_.pose();
-    input.robot_report = {true, 0.0, servo::ScopeVelocity::fromVector(executed_)};
+    input.robot_report = {true, 0.0, scope::Velocity::fromVector(executed_)};
     if (interference.input) interference.input(input, time());
     return input;
   }
@@ -112,13 +112,13 @@ class SimulatedCart {
   servo::Controller controller;
   servo::ControllerOutput output;
   Interference interference;
-  int disabled = 0;             // causes, of the robot
-  int controller_stalls = 0;    // causes
-  bool pressed = true;          // the dead-man switch
-  servo::ScopeVelocity manual;  // what somebody wants in MANUAL
+  int disabled = 0;           // causes, of the robot
+  int controller_stalls = 0;  // causes
+  bool pressed = true;        // the dead-man switch
+  scope::Velocity manual;     // what somebody wants in MANUAL
 
  private:
-  static Eigen::Isometry3d startPose(const servo::ScopeVelocity& start) {
+  static Eigen::Isometry3d startPose(const scope::Velocity& start) {
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
     pose.translation() = Eigen::Vector3d(0.0, 0.0, -kDepth);
     pose.linear() = geometry::so3Exp({start.tilt, start.pan, 0.0}) * geometry::so3Exp({0.0, 0.0, start.spin});
@@ -178,10 +178,10 @@ class SimulatedCart {
   void execute() {
     if (disabled != 0) actuator_ = sim::ScopeActuator(sim::ScopeActuatorConfig());  // it brakes at once
     executed_ = actuator_.velocity(time());
-    const auto velocity = servo::ScopeVelocity::fromVector(executed_);
+    const auto velocity = scope::Velocity::fromVector(executed_);
     sim::ScopeBody halfway = body_;
-    halfway.move(servo::endEffectorTwist(velocity, kLength - body_.depth()), 0.5 * kTick);
-    body_.move(servo::endEffectorTwist(velocity, kLength - halfway.depth()), kTick);
+    halfway.move(scope::endEffectorTwist(velocity, kLength - body_.depth()), 0.5 * kTick);
+    body_.move(scope::endEffectorTwist(velocity, kLength - halfway.depth()), kTick);
   }
 
   std::mt19937 random_;

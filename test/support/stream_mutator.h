@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "laparoscope_servo/aesop/own_codec.h"
+#include "aesop/protocol/own_codec.h"
 
 namespace laparoscope_servo::test_support {
 

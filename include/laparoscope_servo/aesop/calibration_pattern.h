@@ -28,7 +28,7 @@ class CalibrationPattern {
                      const Eigen::Vector3d& insertion_point, double now);
 
   struct Step {
-    ScopeVelocity velocity;  // zero when done or when there is a problem
+    scope::Velocity velocity;  // zero when done or when there is a problem
     bool done = false;
     std::string problem;  // why the pattern ends before it is done
   };

@@ -39,13 +39,13 @@ class CommandGuard {
 
   // Takes a command, or says why not. One that is not finite is a zero. A zero is taken whatever its stamp. Any other
   // needs a stamp that is newer than the last one and than the last reset, neither too old nor ahead of `stamp_now`.
-  std::string accept(const ScopeVelocity& velocity, double stamp, double stamp_now, double now);
+  std::string accept(const scope::Velocity& velocity, double stamp, double stamp_now, double now);
   // Zero until a command comes that was stamped after this moment.
   void reset(double stamp_now);
   // Zero until the next command.
-  void forget() { last_ = ScopeVelocity(); }
+  void forget() { last_ = scope::Velocity(); }
   // The command that counts now.
-  ScopeVelocity velocity(double now) const;
+  scope::Velocity velocity(double now) const;
   // s since the last command that was accepted; infinite before the first.
   double age(double now) const { return now - accepted_at_; }
   // Whether the last command accepted has run out.
@@ -58,11 +58,11 @@ class CommandGuard {
   std::uint64_t refused(Refusal refusal) const { return refused_[static_cast<std::size_t>(refusal)]; }
 
  private:
-  std::optional<Refusal> judge(const ScopeVelocity& velocity, double stamp, double stamp_now) const;
-  ScopeVelocity clamp(const ScopeVelocity& velocity) const;
+  std::optional<Refusal> judge(const scope::Velocity& velocity, double stamp, double stamp_now) const;
+  scope::Velocity clamp(const scope::Velocity& velocity) const;
 
   CommandConfig config_;
-  ScopeVelocity last_;
+  scope::Velocity last_;
   double accepted_at_ = -std::numeric_limits<double>::infinity();
   double last_stamp_ = -std::numeric_limits<double>::infinity();
   double not_before_ = -std::numeric_limits<double>::infinity();

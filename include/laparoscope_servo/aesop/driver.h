@@ -38,7 +38,7 @@ class Driver {
   std::string resume(double stamp_now);
 
   // Takes a command, or says why not. Commands while not ENABLED are judged, but move nothing, then or later.
-  std::string command(const ScopeVelocity& velocity, double stamp, double stamp_now, double now);
+  std::string command(const scope::Velocity& velocity, double stamp, double stamp_now, double now);
 
   // Another insertion point [m, in aesop_base], or why not: never while ENABLED, PAUSED or in FAULT, nor while the arm
   // moves.

@@ -6,21 +6,9 @@
 #pragma once
 
 #include "laparoscope_servo/aesop/kinematics.h"
-#include "laparoscope_servo/geometry/se3.h"
+#include "laparoscope_servo/scope/velocity.h"
 
 namespace laparoscope_servo::aesop {
-
-// About the insertion point, in the camera's frame (optical, REP-103): Omega_y, Omega_x, Omega_z [rad/s], V_z [m/s,
-// positive: deeper].
-struct ScopeVelocity {
-  double pan = 0.0;
-  double tilt = 0.0;
-  double spin = 0.0;
-  double insertion = 0.0;
-
-  bool isFinite() const;
-  bool isZero() const { return pan == 0.0 && tilt == 0.0 && spin == 0.0 && insertion == 0.0; }
-};
 
 // Joint velocities; those of hand joints are zero, those of passive joints are what the trocar will do to them.
 struct JointMotion {
@@ -29,10 +17,6 @@ struct JointMotion {
   std::string reason;  // why slowed or refused
 };
 
-// The motion of O_7, eq. (12): (v, w) = (-d1 Omega_y, d1 Omega_x, V_z, Omega_x, Omega_y, Omega_z), expressed in
-// frame 7. d1 [m].
-geometry::Vector6d endEffectorTwist(const ScopeVelocity& velocity, double d1);
-
 // The smallest singular value of the Jacobian of driven and passive joints, lengths divided by 0.3 m: how far from
 // singular.
 double conditioning(const Kinematics& kinematics, const JointVector& q);
@@ -40,10 +24,10 @@ double conditioning(const Kinematics& kinematics, const JointVector& q);
 // What joint velocities give `velocity` at `q`, slowed or refused as `config` says. A velocity or positions that are
 // not finite, and an insertion point that the shaft has left by more than 2 cm, are refused.
 JointMotion jointMotion(const Kinematics& kinematics, const MotionConfig& config, const JointVector& q,
-                        const Eigen::Vector3d& insertion_point, const ScopeVelocity& velocity);
+                        const Eigen::Vector3d& insertion_point, const scope::Velocity& velocity);
 
 // The velocity about the insertion point that the camera's motion amounts to, from joint positions and velocities.
 // Sideways motion of the shaft at the insertion point is left out.
-ScopeVelocity scopeVelocity(const Kinematics& kinematics, const JointVector& q, const JointVector& qdot);
+scope::Velocity scopeVelocity(const Kinematics& kinematics, const JointVector& q, const JointVector& qdot);
 
 }  // namespace laparoscope_servo::aesop

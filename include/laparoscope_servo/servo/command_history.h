@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <deque>
 
-#include "laparoscope_servo/servo/scope_velocity.h"
+#include "laparoscope_servo/scope/velocity.h"
 
 namespace laparoscope_servo::servo {
 
@@ -17,7 +17,7 @@ class CommandHistory {
 
   // From `time` [s] on, the robot is told to move by `velocity`: that of the shaft, after the robot's dead zone. Times
   // must not decrease; an earlier one clears the history.
-  void add(double time, const ScopeVelocity& velocity);
+  void add(double time, const scope::Velocity& velocity);
 
   // (pan, tilt, spin [rad], insertion [m]) that the robot executes from `begin` to `end` [s] when it does each thing
   // `delay` [s] after it is told. Before the first command, or the oldest that is kept, nothing is executed.

@@ -2,8 +2,8 @@
 // zone and safety come after it.
 #pragma once
 
-#include "laparoscope_servo/servo/scope_geometry.h"
-#include "laparoscope_servo/servo/scope_velocity.h"
+#include "laparoscope_servo/scope/geometry.h"
+#include "laparoscope_servo/scope/velocity.h"
 #include "laparoscope_servo/servo/task_function.h"
 
 namespace laparoscope_servo::servo {
@@ -11,9 +11,9 @@ namespace laparoscope_servo::servo {
 // What a law asks for, in two parts that add up. They are limited apart, since a long way to turn need not slow down
 // the centring; each keeps its direction.
 struct LawVelocity {
-  ScopeVelocity turning;   // for the ROI's orientation
-  ScopeVelocity centring;  // for its place in the image, and its depth
-  ScopeVelocity sum() const { return ScopeVelocity::fromVector(turning.vector() + centring.vector()); }
+  scope::Velocity turning;   // for the ROI's orientation
+  scope::Velocity centring;  // for its place in the image, and its depth
+  scope::Velocity sum() const { return scope::Velocity::fromVector(turning.vector() + centring.vector()); }
 };
 
 class ControlLaw {
@@ -21,7 +21,7 @@ class ControlLaw {
   virtual ~ControlLaw() = default;
 
   // Not finite where the arguments are not, or where the ROI's place does not determine the motion.
-  virtual LawVelocity velocity(const TaskError& error, const ScopeGeometry& scope) const = 0;
+  virtual LawVelocity velocity(const TaskError& error, const scope::Geometry& scope) const = 0;
 };
 
 }  // namespace laparoscope_servo::servo

@@ -39,9 +39,9 @@ struct DepthInput {
 
 // What the robot says of its own motion.
 struct RobotReport {
-  bool present = false;    // there is a new one
-  double age = 0.0;        // s, since it was so
-  ScopeVelocity velocity;  // of the scope
+  bool present = false;      // there is a new one
+  double age = 0.0;          // s, since it was so
+  scope::Velocity velocity;  // of the scope
 };
 
 struct ControllerInput {
@@ -64,7 +64,7 @@ struct ControllerOutput {
   std::string caution;  // in SERVO: what slows the scope or lets it go no deeper; empty: nothing
   double speed_scale = 0.0;
   Task task = Task::kHoldView;
-  ScopeVelocity command;
+  scope::Velocity command;
   bool engaged() const { return isEngaged(state); }
 };
 
@@ -106,7 +106,7 @@ class Controller {
   ServoLimits limits(const SafetyOutput& safety) const;
   ServoInput servoInput(const ControllerInput& input) const;
   void watchRepetition(const TaskErrorInput& task_error);
-  ScopeVelocity drive(const ControllerInput& input, const std::string& problem);
+  scope::Velocity drive(const ControllerInput& input, const std::string& problem);
   std::string caution(const SafetyOutput& safety, const std::string& stick) const;
 
   ControllerConfig config_;

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "laparoscope_servo/servo/breathing.h"
 #include "laparoscope_servo/servo/dead_zone.h"
 #include "laparoscope_servo/servo/effect_config.h"
 #include "laparoscope_servo/servo/feature_law.h"
-#include "laparoscope_servo/servo/harmonic_filter_config.h"
 #include "laparoscope_servo/servo/insertion_point_config.h"
 #include "laparoscope_servo/servo/limiter.h"
 #include "laparoscope_servo/servo/oscillation_guard.h"
@@ -30,14 +30,6 @@ struct PredictorConfig {
   double max_delay = 0.4;         // s, nor more
   bool feed_forward = true;       // the target's own velocity is added to the law's
   double command_lifetime = 0.2;  // s, for which the robot does what it was told last, before it stops by itself
-};
-
-// The breath, as far as it moves the target.
-struct BreathingConfig {
-  bool enabled = true;
-  double rate = 0.0;           // Hz, of the ventilator; 0: not known, it is searched
-  double rate_stddev = 0.002;  // Hz, of that rate
-  HarmonicFilterConfig filter;
 };
 
 // How what the poses of the shaft tell of the insertion point is used.

@@ -4,20 +4,20 @@
 // inverse adds the dead zone's width to what is wanted. Noise about zero becomes motion with it: see rest_band.h.
 #pragma once
 
-#include "laparoscope_servo/servo/scope_velocity.h"
+#include "laparoscope_servo/scope/velocity.h"
 
 namespace laparoscope_servo::servo {
 
 struct DeadZoneConfig {
-  bool inverse = true;                               // false: what the law asks for is passed on
-  ScopeVelocity width{0.004, 0.004, 0.004, 0.0004};  // rad/s, rad/s, rad/s, m/s: the robot executes nothing below it
+  bool inverse = true;                                 // false: what the law asks for is passed on
+  scope::Velocity width{0.004, 0.004, 0.004, 0.0004};  // rad/s, rad/s, rad/s, m/s: the robot executes nothing below it
 };
 
 // What has to be commanded for `wanted` to be executed; below a tenth of the width less is added, so that what crosses
 // zero does not jump.
-ScopeVelocity throughDeadZone(const ScopeVelocity& wanted, const ScopeVelocity& width);
+scope::Velocity throughDeadZone(const scope::Velocity& wanted, const scope::Velocity& width);
 
 // What a robot executes of `command`: it loses the width.
-ScopeVelocity afterDeadZone(const ScopeVelocity& command, const ScopeVelocity& width);
+scope::Velocity afterDeadZone(const scope::Velocity& command, const scope::Velocity& width);
 
 }  // namespace laparoscope_servo::servo

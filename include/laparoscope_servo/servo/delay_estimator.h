@@ -26,8 +26,8 @@ class DelayEstimator {
   // A command sent at `time` [s], and a velocity reported for `time` [s], on the same clock. Each returns false,
   // without any effect, when a number is not finite. Time that goes back, or a gap, forgets what was collected, not the
   // estimate.
-  bool command(double time, const ScopeVelocity& velocity);
-  bool report(double time, const ScopeVelocity& velocity);
+  bool command(double time, const scope::Velocity& velocity);
+  bool report(double time, const scope::Velocity& velocity);
 
   // s, within the bounds of the configuration.
   double delay() const { return delay_; }
@@ -52,7 +52,7 @@ class DelayEstimator {
     double delay = 0.0;
   };
 
-  bool admit(std::deque<Sample>& samples, double time, const ScopeVelocity& velocity);
+  bool admit(std::deque<Sample>& samples, double time, const scope::Velocity& velocity);
   void compare();
   void resampleCommands();
   Eigen::Vector4d commandAt(double time) const;

@@ -21,10 +21,10 @@
 #include <string>
 #include <vector>
 
+#include "laparoscope_servo/scope/geometry.h"
 #include "laparoscope_servo/servo/command_history.h"
 #include "laparoscope_servo/servo/effect.h"
 #include "laparoscope_servo/servo/effect_config.h"
-#include "laparoscope_servo/servo/scope_geometry.h"
 #include "laparoscope_servo/servo/task_function.h"
 
 namespace laparoscope_servo::servo {
@@ -34,7 +34,7 @@ struct EffectExplanation;
 struct EffectObservation {
   double time = 0.0;  // s, of the exposure
   TaskError error;
-  ScopeGeometry scope;         // as configured
+  scope::Geometry scope;       // as configured
   double desired_depth = 0.0;  // m, Z*
   double corner_error = 0.0;   // px, expected of the worst corner
   bool breath_known = false;   // the scope follows the breath as it was learnt
@@ -49,7 +49,7 @@ class EffectGuard {
   EffectGuard& operator=(EffectGuard&&) noexcept;
 
   // What the robot says that it did at `time` [s].
-  void report(double time, const ScopeVelocity& velocity);
+  void report(double time, const scope::Velocity& velocity);
 
   // Judges an image by what the robot said of its motion until then; where it says nothing, by `commands`, each
   // executed `delay` [s] after it was given. An image with the time of the last one changes nothing; one of another

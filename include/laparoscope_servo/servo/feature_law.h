@@ -26,7 +26,7 @@ enum class SpinMode {
 
 // The features' velocity per velocity of the scope: d(x, y, log depth, alpha)/dt = J (pan, tilt, spin, insertion).
 // `depth` Z [m] > 0 of the ROI's centre now, `x`, `y` normalised.
-Eigen::Matrix4d featureJacobian(double x, double y, double depth, const ScopeGeometry& scope);
+Eigen::Matrix4d featureJacobian(double x, double y, double depth, const scope::Geometry& scope);
 
 // rad, of a turn: the shorter way round, unless both are about as long.
 double shortTurn(double turn);
@@ -37,7 +37,7 @@ double depthOf(const TaskError& error, double desired_depth);
 class FeatureLaw : public ControlLaw {
  public:
   explicit FeatureLaw(const FeatureGains& gains, SpinMode spin = SpinMode::kServo) : gains_(gains), spin_(spin) {}
-  LawVelocity velocity(const TaskError& error, const ScopeGeometry& scope) const override;
+  LawVelocity velocity(const TaskError& error, const scope::Geometry& scope) const override;
 
  private:
   FeatureGains gains_;

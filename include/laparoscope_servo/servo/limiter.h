@@ -10,13 +10,13 @@
 
 #include <initializer_list>
 
-#include "laparoscope_servo/servo/scope_velocity.h"
+#include "laparoscope_servo/scope/velocity.h"
 
 namespace laparoscope_servo::servo {
 
 struct Limits {
-  ScopeVelocity velocity{0.1, 0.1, 0.1, 0.02};     // rad/s, rad/s, rad/s, m/s
-  ScopeVelocity acceleration{1.0, 1.0, 1.0, 0.2};  // rad/s², rad/s², rad/s², m/s²
+  scope::Velocity velocity{0.1, 0.1, 0.1, 0.02};     // rad/s, rad/s, rad/s, m/s
+  scope::Velocity acceleration{1.0, 1.0, 1.0, 0.2};  // rad/s², rad/s², rad/s², m/s²
 };
 
 class Limiter {
@@ -25,18 +25,18 @@ class Limiter {
 
   // The velocity for a time `dt` [s] >= 0 after the last one. `parts` must be finite; they add up to what is wanted.
   // `scale`, 0 to 1: of the limits on velocity.
-  ScopeVelocity apply(std::initializer_list<ScopeVelocity> parts, double dt, double scale = 1.0);
-  ScopeVelocity apply(const ScopeVelocity& wanted, double dt) { return apply({wanted}, dt); }
+  scope::Velocity apply(std::initializer_list<scope::Velocity> parts, double dt, double scale = 1.0);
+  scope::Velocity apply(const scope::Velocity& wanted, double dt) { return apply({wanted}, dt); }
 
   // What was made of the last velocity.
-  void applied(const ScopeVelocity& velocity) { last_ = velocity; }
+  void applied(const scope::Velocity& velocity) { last_ = velocity; }
 
   // The last velocity is zero: a safety stop is not slowed down by the limit on acceleration.
-  void reset() { last_ = ScopeVelocity(); }
+  void reset() { last_ = scope::Velocity(); }
 
  private:
   Limits limits_;
-  ScopeVelocity last_;
+  scope::Velocity last_;
 };
 
 }  // namespace laparoscope_servo::servo

@@ -8,20 +8,20 @@
 #include <limits>
 #include <string>
 
+#include "laparoscope_servo/scope/velocity.h"
 #include "laparoscope_servo/servo/safety_config.h"
-#include "laparoscope_servo/servo/scope_velocity.h"
 
 namespace laparoscope_servo::servo {
 
 struct ManualInput {
-  ScopeVelocity velocity;
+  scope::Velocity velocity;
   double age = std::numeric_limits<double>::infinity();  // s
 };
 
 class ManualStick {
  public:
   // `full`: the velocity of which SafetyConfig::manual_neutral is a share.
-  ManualStick(const SafetyConfig& config, const ScopeVelocity& full) : config_(config), full_(full) {}
+  ManualStick(const SafetyConfig& config, const scope::Velocity& full) : config_(config), full_(full) {}
 
   // It has to be seen at rest again.
   void restart() { seen_at_rest_ = false; }
@@ -31,11 +31,11 @@ class ManualStick {
 
  private:
   std::string unusable(const ManualInput& input, double time) const;
-  bool isAtRest(const ScopeVelocity& velocity) const;
+  bool isAtRest(const scope::Velocity& velocity) const;
 
   SafetyConfig config_;
-  ScopeVelocity full_;
-  ScopeVelocity last_;
+  scope::Velocity full_;
+  scope::Velocity last_;
   double since_ = 0.0;  // s, when it became what it is
   bool seen_at_rest_ = false;
 };

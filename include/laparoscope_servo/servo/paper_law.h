@@ -19,7 +19,7 @@ struct PaperGains {
 class PaperLaw : public ControlLaw {
  public:
   explicit PaperLaw(const PaperGains& gains) : gains_(gains) {}
-  LawVelocity velocity(const TaskError& error, const ScopeGeometry& scope) const override;
+  LawVelocity velocity(const TaskError& error, const scope::Geometry& scope) const override;
 
  private:
   PaperGains gains_;

@@ -30,6 +30,9 @@ enum class SafetyState : unsigned { kIdle, kArmed, kServo, kHold, kLost, kFault 
 constexpr SafetyState kSafetyStates[] = {SafetyState::kIdle, SafetyState::kArmed, SafetyState::kServo,
                                          SafetyState::kHold, SafetyState::kLost,  SafetyState::kFault};
 
+// IDLE, ARMED and so on, as messages and files have it.
+const char* name(SafetyState state);
+
 // Engaged: the scope moves, or may begin to without anybody engaging it.
 constexpr bool isEngaged(SafetyState state) {
   return state == SafetyState::kArmed || state == SafetyState::kServo || state == SafetyState::kHold;

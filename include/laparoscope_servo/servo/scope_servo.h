@@ -22,7 +22,7 @@ struct ServoInput {
   double time = 0.0;        // s, of the command
   double image_time = 0.0;  // s, of the exposure, on the same clock
   TaskError error;
-  ScopeGeometry scope;
+  scope::Geometry scope;
   std::optional<Eigen::Isometry3d> insertion_point_T_tip;  // with the shaft's axes; without it, no cone and no horizon
   double d2_doubt = 0.0;                                   // m, by which d2 may be less or more
   double pose_time = 0.0;                                  // s, of the scope's pose, on the same clock
@@ -41,14 +41,14 @@ class ScopeServo {
   explicit ScopeServo(const ControllerConfig& config);
 
   // The command; not finite where the law's velocity is not.
-  ScopeVelocity command(const ServoInput& input, const ServoLimits& limits);
+  scope::Velocity command(const ServoInput& input, const ServoLimits& limits);
 
   // The command for a velocity that somebody else wants, finite: without a law, within the same limits and range and
   // through the same dead zone. What the input says of an image does not count.
-  ScopeVelocity drive(const ServoInput& input, const ScopeVelocity& wanted);
+  scope::Velocity drive(const ServoInput& input, const scope::Velocity& wanted);
 
   // What the robot says that it executed at `time` [s], on the clock of the commands; from this the delay is measured.
-  void report(double time, const ScopeVelocity& velocity);
+  void report(double time, const scope::Velocity& velocity);
 
   // The arm has been told to stand still since `time`: what was in the way of motion starts anew.
   void stop(double time);
@@ -79,11 +79,11 @@ class ScopeServo {
 
  private:
   void observe(const ServoInput& input);
-  ScopeVelocity send(const ServoInput& input, ScopeVelocity velocity);
+  scope::Velocity send(const ServoInput& input, scope::Velocity velocity);
   void forgetTarget();
-  ScopeVelocity following(const Features& velocity) const;
+  scope::Velocity following(const Features& velocity) const;
   TaskError oriented(const ServoInput& input) const;
-  void remember(double time, const ScopeVelocity& executed);
+  void remember(double time, const scope::Velocity& executed);
 
   ControllerConfig config_;
   std::unique_ptr<ControlLaw> law_;

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "laparoscope_servo/servo/scope_velocity.h"
+#include "laparoscope_servo/scope/velocity.h"
 
 namespace laparoscope_servo::servo {
 
@@ -22,10 +22,10 @@ struct WorkRange {
 };
 
 // What of a velocity is done at a depth d2 [m] with the shaft's axes in the insertion point's frame.
-ScopeVelocity within(const WorkRange& range, const ScopeVelocity& velocity, double d2,
-                     const Eigen::Matrix3d& insertion_point_R_shaft);
+scope::Velocity within(const WorkRange& range, const scope::Velocity& velocity, double d2,
+                       const Eigen::Matrix3d& insertion_point_R_shaft);
 
 // The same without the cone, where the directions are not known.
-ScopeVelocity within(const WorkRange& range, const ScopeVelocity& velocity, double d2);
+scope::Velocity within(const WorkRange& range, const scope::Velocity& velocity, double d2);
 
 }  // namespace laparoscope_servo::servo

@@ -42,7 +42,7 @@ class Arm {
   void jam(int joint) { jammed_ = joint; }
   // A hand moves the scope about the trocar by pan, tilt, spin [rad] and insertion [m] in `seconds`, evenly. Says why
   // not.
-  std::string hand(const aesop::ScopeVelocity& displacement, double seconds, double now);
+  std::string hand(const scope::Velocity& displacement, double seconds, double now);
   // Lets time pass until `now`.
   void step(double now);
 
@@ -71,7 +71,7 @@ class Arm {
   aesop::JointVector qdot_ = aesop::JointVector::Zero();
   std::deque<Pending> pending_;
   std::array<double, aesop::kDrivenJoints> target_{};
-  aesop::ScopeVelocity hand_;
+  scope::Velocity hand_;
   double hand_left_ = 0.0;
   int jammed_ = -1;
   double moved_until_ = -std::numeric_limits<double>::infinity();

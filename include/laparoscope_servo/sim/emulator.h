@@ -45,7 +45,7 @@ class Emulator {
   // As if switched off and on; the arm stays where it is.
   void reboot(double now);
   // A hand moves the scope: see Arm::hand. Refused unless DISABLED.
-  std::string hand(const aesop::ScopeVelocity& displacement, double seconds, double now);
+  std::string hand(const scope::Velocity& displacement, double seconds, double now);
 
   const Arm& arm() const { return arm_; }
   aesop::RobotState state() const { return state_; }

@@ -44,7 +44,7 @@ class EmulatorControlClient {
   EmulatorMotion motion();
   EmulatorRecord record();
   // Displacements in rad and m, evenly within `seconds`.
-  void hand(const aesop::ScopeVelocity& displacement, double seconds);
+  void hand(const scope::Velocity& displacement, double seconds);
   void fault(const std::string& name) { request("fault " + name); }
   void fault(const std::string& name, double value);
 

@@ -21,11 +21,11 @@
 #include <vector>
 
 #include "feed.h"
-#include "laparoscope_servo/ros/clocks.h"
+#include "ros/common/clocks.h"
 
 namespace laparoscope_servo {
 
-using skin::steadyNow;
+using steadyNow;
 
 inline bool isZero(const ScopeVelocity& c) {
   return c.pan == 0.0 && c.tilt == 0.0 && c.spin == 0.0 && c.insertion == 0.0;

@@ -6,12 +6,12 @@
 #include <opencv2/imgproc.hpp>
 
 #include "laparoscope_servo/geometry/camera.h"
-#include "laparoscope_servo/ros/aesop_parameters.h"
-#include "laparoscope_servo/ros/image_conversion.h"
 #include "laparoscope_servo/sim/arm.h"
 #include "laparoscope_servo/sim/emulator_control_client.h"
 #include "laparoscope_servo/sim/tissue.h"
 #include "node_bench.h"
+#include "ros/aesop/aesop_parameters.h"
+#include "ros/tracker/image_conversion.h"
 
 namespace laparoscope_servo::test {
 namespace {
@@ -19,7 +19,7 @@ namespace {
 class SimulatedCamera : public testing::Test {
  protected:
   SimulatedCamera() : images_(node_, "image_raw"), infos_(node_, "camera_info") {
-    parameters_ = skin::parametersFromYaml(std::string(LAPAROSCOPE_SERVO_CONFIG) + "/simulation.yaml");
+    parameters_ = parametersFromYaml(std::string(LAPAROSCOPE_SERVO_CONFIG) + "/simulation.yaml");
     parameters_["control"] = control();
     parameters_["tissue"]["texture_side"] = 1200;
     parameters_["exposure"]["automatic"] = false;
@@ -61,7 +61,7 @@ class SimulatedCamera : public testing::Test {
   }
   cv::Mat grey() const {
     cv::Mat image;
-    cv::cvtColor(skin::trackerImage(*images_.all.back()), image, cv::COLOR_BGR2GRAY);
+    cv::cvtColor(trackerImage(*images_.all.back()), image, cv::COLOR_BGR2GRAY);
     image.convertTo(image, CV_32F);
     return image;
   }

@@ -11,8 +11,8 @@
 #include <opencv2/videoio.hpp>
 
 #include "laparoscope_servo/Homography.h"
-#include "laparoscope_servo/ros/result_messages.h"
 #include "node_bench.h"
+#include "ros/tracker/result_messages.h"
 
 namespace laparoscope_servo::test {
 namespace {
@@ -63,7 +63,7 @@ class VideoPlayer : public testing::Test {
         cv::imencode(".png", image(k), message.data);
         bag.write("/scope/image_raw/compressed", recorded, message);
       } else {
-        bag.write("/scope/image_raw", recorded, *skin::imageMessage(header, image(k)));
+        bag.write("/scope/image_raw", recorded, *imageMessage(header, image(k)));
       }
     }
     return file;
@@ -200,7 +200,7 @@ TEST_F(VideoPlayer, InLockstepImagesWithoutStampsWaitForTheirResultsToo) {
   {
     rosbag::Bag bag(file, rosbag::bagmode::Write);
     for (int k = 0; k < kImages; ++k)
-      bag.write("/image_raw", ros::Time(100.0 + 0.005 * k), *skin::imageMessage({}, image(k)));
+      bag.write("/image_raw", ros::Time(100.0 + 0.005 * k), *imageMessage({}, image(k)));
   }
   parameters_["lockstep"] = true;
   ros::Publisher tracker = node_.advertise<Homography>("homography", 10);

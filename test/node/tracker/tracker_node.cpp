@@ -8,7 +8,7 @@
 #include <string>
 
 #include "camera_bench.h"
-#include "laparoscope_servo/ros/tracker_offline.h"
+#include "ros/playback/tracker_offline.h"
 #include "support/temporary_folder.h"
 
 namespace laparoscope_servo {
@@ -48,12 +48,12 @@ TEST(TrackerNode, GivesTheSameNumbersAsTheOfflineTool) {
       bag.write("/image", stamp, *image);
     }
   }
-  skin::OfflineOptions options;
+  OfflineOptions options;
   options.inputs = {folder.file("in.bag")};
   options.bag = folder.file("out.bag");
   options.parameters.roi = kRoi;
-  skin::trackOffline(
-      options, [](const skin::OfflineSummary&, std::size_t) {}, [](std::size_t, const std::string&) {});
+  trackOffline(
+      options, [](const OfflineSummary&, std::size_t) {}, [](std::size_t, const std::string&) {});
   rosbag::Bag out(options.bag);
   std::size_t count = 0;
   for (const rosbag::MessageInstance& instance : rosbag::View(out, rosbag::TopicQuery("/tracker/homography"))) {

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "laparoscope_servo/ros/parameters.h"
+#include "ros/common/parameters.h"
 
 namespace laparoscope_servo::test {
 
@@ -61,7 +61,7 @@ AesopBench::~AesopBench() {
 
 void AesopBench::startNode(const std::string& program, const std::vector<std::string>& arguments,
                            const std::string& output) {
-  XmlRpc::XmlRpcValue parameters = skin::mergeParameters(skin::parametersFromYaml(AESOP_CONFIG), overlay_);
+  XmlRpc::XmlRpcValue parameters = mergeParameters(parametersFromYaml(AESOP_CONFIG), overlay_);
   parameters["port"] = port();
   parameters["command"]["publisher"] = master_.empty() ? ros::this_node::getName() : master_;
   parameters["reconnect"]["longest_pause"] = 0.5;  // tests cut the line again and again

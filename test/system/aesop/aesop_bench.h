@@ -17,14 +17,14 @@
 
 #include "laparoscope_servo/OperatingState.h"
 #include "laparoscope_servo/ScopeVelocity.h"
-#include "laparoscope_servo/ros/clocks.h"
 #include "laparoscope_servo/sim/emulator_control_client.h"
+#include "ros/common/clocks.h"
 #include "support/temporary_folder.h"
 #include "system/aesop/child_process.h"
 
 namespace laparoscope_servo::test {
 
-using skin::steadyNow;
+using steadyNow;
 
 class AesopBench {
  public:

@@ -7,8 +7,8 @@
 
 #include <Eigen/LU>
 
-#include "laparoscope_servo/ros/insertion_point_file.h"
-#include "laparoscope_servo/ros/parameters.h"
+#include "ros/aesop/insertion_point_file.h"
+#include "ros/common/parameters.h"
 #include "system/aesop/calibration_bench.h"
 
 namespace laparoscope_servo::test {
@@ -48,11 +48,11 @@ void expectGood(CalibrationBench& cart, const Frames& frames) {
   const Eigen::Matrix3d covariance(state.covariance.data());
   EXPECT_LT(error.dot(covariance.inverse() * error), 9.0) << "3 standard deviations";
   EXPECT_TRUE(cart.bench.waitFor([&] { return frames.insertionPointIs(pointOf(state)); })) << "tf follows";
-  const skin::CalibratedInsertionPoint saved = skin::loadInsertionPoint(cart.file(), kKinematics);
+  const CalibratedInsertionPoint saved = loadInsertionPoint(cart.file(), kKinematics);
   EXPECT_LT((saved.point - pointOf(state)).norm(), 1e-8);
   EXPECT_EQ(saved.method, state.method);
   EXPECT_EQ(saved.poses.size(), state.poses);
-  EXPECT_EQ(saved.date.substr(0, 13), skin::utcDate().substr(0, 13));
+  EXPECT_EQ(saved.date.substr(0, 13), utcDate().substr(0, 13));
   ::testing::Test::RecordProperty("error_" + state.method + "_m", std::to_string(error.norm()));
   ROS_INFO_STREAM(state.method << ": error " << error.norm() << " m, stated " << state.stddev << " m, " << state.poses
                                << " poses");
@@ -99,7 +99,7 @@ TEST(AesopCalibration, ByHandAndLoadedByANewNode) {
 
   cart.bench.node().kill(SIGTERM);
   cart.bench.node().exitStatus(5.0);
-  XmlRpc::XmlRpcValue parameters = skin::parametersFromYaml(AESOP_CONFIG);
+  XmlRpc::XmlRpcValue parameters = parametersFromYaml(AESOP_CONFIG);
   parameters["port"] = cart.bench.port();
   parameters["insertion_point_file"] = cart.file() + ".absent";
   ros::param::set("/aesop", parameters);
@@ -124,7 +124,7 @@ TEST(AesopCalibration, ByPattern) {
 // The arm has to be disabled for it, which ends the engagement: a jump of d2 finds nobody who would follow it.
 TEST(AesopCalibration, AControllerThatWasEngagedIsLostAndNothingMoves) {
   CalibrationBench cart;
-  XmlRpc::XmlRpcValue parameters = skin::parametersFromYaml(std::string(LAPAROSCOPE_SERVO_CONFIG) + "/controller.yaml");
+  XmlRpc::XmlRpcValue parameters = parametersFromYaml(std::string(LAPAROSCOPE_SERVO_CONFIG) + "/controller.yaml");
   parameters["safety"]["robot_required"] = true;
   parameters["safety"]["resume_time"] = 10.0;
   ros::param::set("/controller", parameters);

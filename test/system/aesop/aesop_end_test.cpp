@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-#include "laparoscope_servo/ros/aesop_node.h"
+#include "ros/aesop/aesop_node.h"
 #include "system/aesop/aesop_bench.h"
 
 namespace laparoscope_servo::test {
@@ -72,9 +72,9 @@ int runThrowingNode() {
   const ros::NodeHandle private_node("~");
   ros::NodeHandle node;
   const ros::Subscriber subscriber = node.subscribe<std_msgs::Empty>("throw", 1, &fail);
-  skin::ParameterReader reader(skin::parametersOf(private_node), private_node.getNamespace());
+  ParameterReader reader(parametersOf(private_node), private_node.getNamespace());
   try {
-    skin::AesopNode(node, private_node, skin::readAesopParameters(reader)).run([] { return false; });
+    AesopNode(node, private_node, readAesopParameters(reader)).run([] { return false; });
   } catch (const std::runtime_error&) {
     return 1;
   }

@@ -114,8 +114,7 @@ class FaultRuns {
   }
 
   bool isTooFast() {
-    const aesop::ScopeVelocity v =
-        aesop::scopeVelocity(kinematics_, bench_.truth().state().q, bench_.truth().motion().qdot);
+    const scope::Velocity v = aesop::scopeVelocity(kinematics_, bench_.truth().state().q, bench_.truth().motion().qdot);
     return std::abs(v.pan) > 1.1 * std::abs(command_.pan) + 0.008 ||
            std::abs(v.tilt) > 1.1 * std::abs(command_.tilt) + 0.008 ||
            std::abs(v.insertion) > 1.1 * std::abs(command_.insertion) + 0.002;

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "laparoscope_servo/ros/parameters.h"
+#include "ros/common/parameters.h"
 #include "system/aesop/aesop_bench.h"
 
 namespace laparoscope_servo::test {
@@ -25,7 +25,7 @@ std::string contents(const std::string& path) {
 // Starts a second node, on another port, and waits until it has said `what`.
 void expectComplaint(AesopBench& bench, const std::string& port, const std::string& what) {
   const std::string output = bench.file("output");
-  XmlRpc::XmlRpcValue parameters = skin::parametersFromYaml(AESOP_CONFIG);
+  XmlRpc::XmlRpcValue parameters = parametersFromYaml(AESOP_CONFIG);
   parameters["port"] = port;
   ros::param::set("/other", parameters);
   std::optional<OperatingState> state;
@@ -59,7 +59,7 @@ TEST(AesopStart, portsThatCannotBe) {
 TEST(AesopStart, wrongParametersAreAllNamedAndTheNodeDoesNotStart) {
   AesopBench bench(false);
   const std::string output = bench.file("output");
-  XmlRpc::XmlRpcValue parameters = skin::parametersFromYaml(AESOP_CONFIG);
+  XmlRpc::XmlRpcValue parameters = parametersFromYaml(AESOP_CONFIG);
   parameters["baud_rate"] = "fast";
   XmlRpc::XmlRpcValue plane;
   plane[0] = plane[1] = 0.5;

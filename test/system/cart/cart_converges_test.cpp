@@ -5,9 +5,9 @@
 
 #include <cmath>
 
-#include "laparoscope_servo/ros/demo_director.h"
+#include "ros/simulation/demo_director.h"
 
-namespace laparoscope_servo::skin {
+namespace laparoscope_servo {
 namespace {
 
 constexpr double kDegree = M_PI / 180.0;
@@ -35,7 +35,7 @@ TEST(Cart, ConvergesFromTenDegreesAndTwentyMillimetresOffAndBearsAnInstrument) {
 }
 
 }  // namespace
-}  // namespace laparoscope_servo::skin
+}  // namespace laparoscope_servo
 
 int main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);

@@ -8,7 +8,7 @@
 #include "laparoscope_servo/ControllerState.h"
 #include "laparoscope_servo/Homography.h"
 #include "laparoscope_servo/SelectRoi.h"
-#include "laparoscope_servo/ros/parameters.h"
+#include "ros/common/parameters.h"
 #include "system/aesop/aesop_bench.h"
 
 namespace laparoscope_servo::test {
@@ -24,12 +24,12 @@ class CartStops : public testing::Test {
  protected:
   // The cart as in demo.launch, engaged, with an error that keeps it moving for seconds.
   void SetUp() override {
-    XmlRpc::XmlRpcValue camera = skin::parametersFromYaml(config("simulation.yaml"));
+    XmlRpc::XmlRpcValue camera = parametersFromYaml(config("simulation.yaml"));
     camera["tissue"]["texture_side"] = 1200;
     camera["control"] = bench_.file("control");
     ros::param::set("/simulated_camera", camera);
-    ros::param::set("/tracker", skin::parametersFromYaml(config("tracker.yaml")));
-    ros::param::set("/controller", skin::parametersFromYaml(config("controller.yaml")));
+    ros::param::set("/tracker", parametersFromYaml(config("tracker.yaml")));
+    ros::param::set("/controller", parametersFromYaml(config("controller.yaml")));
     ros::param::set("/controller/safety/robot_required", true);
     bench_.master_ = "/controller";
     bench_.startNode();

@@ -7,8 +7,8 @@
 #include "laparoscope_servo/SelectRoi.h"
 #include "laparoscope_servo/SelectTask.h"
 #include "laparoscope_servo/geometry/se3.h"
-#include "laparoscope_servo/ros/parameters.h"
 #include "laparoscope_servo/sim/arm.h"
+#include "ros/common/parameters.h"
 
 namespace laparoscope_servo::test {
 
@@ -20,7 +20,7 @@ constexpr double kStick = 0.08;                          // rad/s
 constexpr double kHand = 0.4;                            // s, that a hand takes
 
 XmlRpc::XmlRpcValue config(const std::string& name) {
-  return skin::parametersFromYaml(std::string(LAPAROSCOPE_SERVO_CONFIG) + "/" + name);
+  return parametersFromYaml(std::string(LAPAROSCOPE_SERVO_CONFIG) + "/" + name);
 }
 
 }  // namespace

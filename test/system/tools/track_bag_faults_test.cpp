@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "laparoscope_servo/ros/image_source.h"
+#include "ros/playback/image_source.h"
 #include "support/synthetic_sequence.h"
 #include "support/temporary_folder.h"
 #include "support/test_video.h"
@@ -102,7 +102,7 @@ class TrackBagFaults : public testing::Test {
     EXPECT_EQ(bytesOf(out_.file("out.csv")).back(), '\n');
     rosbag::Bag bag(out_.file("out.bag"));
     EXPECT_EQ(rosbag::View(bag, rosbag::TopicQuery("/tracker/homography")).size(), images);
-    const auto source = skin::openImageSource(out_.file("out.mp4"), {});
+    const auto source = openImageSource(out_.file("out.mp4"), {});
     std::size_t pictures = 0;
     while (const auto picture = source->next()) pictures += picture->error.empty() ? 1 : 0;
     EXPECT_EQ(pictures, images);

@@ -54,7 +54,7 @@ class DriverTest : public ::testing::TestWithParam<NamedFormat> {
       wire_.to_host.push(emulator_.receive(arrived.data(), arrived.size(), now_), now_);
     }
   }
-  std::string command(const ScopeVelocity& velocity) {
+  std::string command(const scope::Velocity& velocity) {
     return driver_.command(velocity, kStampOffset + now_, kStampOffset + now_, now_);
   }
   void enable() {
@@ -205,7 +205,7 @@ TEST_P(DriverTest, badLines) {
     double fastest = 0.0;
     for (int k = 0; k < ticks; ++k) {
       run(kTick, k % 800 < 400 ? 0.05 : -0.05);
-      const ScopeVelocity velocity =
+      const scope::Velocity velocity =
           scopeVelocity(driver_.kinematics(), emulator_.arm().position(), emulator_.arm().velocity());
       fastest = std::max({fastest, std::abs(velocity.pan), 3.0 * std::abs(velocity.insertion)});
     }

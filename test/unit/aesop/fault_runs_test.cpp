@@ -25,7 +25,7 @@ class Cart {
   explicit Cart(unsigned seed) : wire_(seed, 38400) { driver_.opened(0.0); }
 
   // One tick; a command at 25 Hz when there is one.
-  void step(const ScopeVelocity& command) {
+  void step(const scope::Velocity& command) {
     now_ += kTick;
     faults_.step(now_);
     if (++ticks_ % 8 == 0 && !command.isZero()) {
@@ -51,7 +51,7 @@ class Cart {
     if (emulator_.arm().velocity().isZero(0.0)) standing_since_ = now_;
   }
   template <typename Condition>
-  bool until(Condition condition, double seconds, const ScopeVelocity& command = {}) {
+  bool until(Condition condition, double seconds, const scope::Velocity& command = {}) {
     for (const double end = now_ + seconds; !condition();) {
       if (now_ > end) return false;
       step(command);
@@ -82,7 +82,7 @@ class Cart {
 
 class FaultRun {
  public:
-  FaultRun(Cart& cart, const test::FaultScript& script, const ScopeVelocity& command)
+  FaultRun(Cart& cart, const test::FaultScript& script, const scope::Velocity& command)
       : cart_(cart), script_(script), command_(command) {}
 
   void run() {
@@ -121,7 +121,7 @@ class FaultRun {
     ASSERT_LE(cart_.emulator_.longestMotion(), bounds_.afterArrival() + 2 * kTick);
     ASSERT_LE(longest_, limit) << "it moves, and is " << name(cart_.mode());
     if (script_.misleads()) return;
-    const ScopeVelocity v =
+    const scope::Velocity v =
         scopeVelocity(cart_.driver_.kinematics(), cart_.emulator_.arm().position(), cart_.emulator_.arm().velocity());
     ASSERT_LE(std::abs(v.pan), 1.1 * std::abs(command_.pan) + 0.006);
     ASSERT_LE(std::abs(v.tilt), 1.1 * std::abs(command_.tilt) + 0.006);
@@ -149,7 +149,7 @@ class FaultRun {
 
   Cart& cart_;
   const test::FaultScript& script_;
-  ScopeVelocity command_;
+  scope::Velocity command_;
   test::StopBounds bounds_;
   double longest_ = 0.0;
   std::string reason_;
@@ -164,7 +164,7 @@ TEST(FaultRuns, noneMovesTheArmForLongerThanItMay) {
     test::RandomFaults random(static_cast<unsigned>(seed));
     Cart cart(static_cast<unsigned>(seed));
     const test::FaultScript script = random.draw();
-    const ScopeVelocity command{random.real(-0.05, 0.05), random.real(-0.05, 0.05), 0.0, 0.0};
+    const scope::Velocity command{random.real(-0.05, 0.05), random.real(-0.05, 0.05), 0.0, 0.0};
     SCOPED_TRACE("seed " + std::to_string(seed) + ": " + script.text());
     FaultRun run(cart, script, {command.pan + (command.pan > 0 ? 0.03 : -0.03), command.tilt, 0.0, 0.0});
     run.run();

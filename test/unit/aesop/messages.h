@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "laparoscope_servo/aesop/own_codec.h"
+#include "aesop/protocol/own_codec.h"
 
 namespace laparoscope_servo::aesop {
 

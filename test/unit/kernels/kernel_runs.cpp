@@ -10,10 +10,10 @@
 #include "laparoscope_servo/image/patch.h"
 #include "laparoscope_servo/image/pyramid.h"
 #include "laparoscope_servo/image/warp.h"
-#include "laparoscope_servo/tracking/colour_gate.h"
-#include "laparoscope_servo/tracking/esm_level.h"
-#include "laparoscope_servo/tracking/occlusion_gates.h"
-#include "laparoscope_servo/tracking/structure_gate.h"
+#include "tracking/esm/esm_level.h"
+#include "tracking/occlusion/colour_gate.h"
+#include "tracking/occlusion/occlusion_gates.h"
+#include "tracking/occlusion/structure_gate.h"
 
 namespace kernel_test {
 

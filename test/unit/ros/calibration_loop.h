@@ -6,13 +6,13 @@
 
 #include <filesystem>
 
-#include "laparoscope_servo/ros/insertion_point_calibration.h"
-#include "laparoscope_servo/ros/insertion_point_file.h"
 #include "laparoscope_servo/sim/emulator.h"
 #include "laparoscope_servo/sim/wire.h"
+#include "ros/aesop/insertion_point_calibration.h"
+#include "ros/aesop/insertion_point_file.h"
 #include "support/temporary_folder.h"
 
-namespace laparoscope_servo::skin {
+namespace laparoscope_servo {
 
 using aesop::OperatingMode;
 using Eigen::Vector3d;
@@ -122,4 +122,4 @@ class CalibrationTest : public ::testing::Test {
   InsertionPointCalibration calibration_{parameters(), driver_};
 };
 
-}  // namespace laparoscope_servo::skin
+}  // namespace laparoscope_servo

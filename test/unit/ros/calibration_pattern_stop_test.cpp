@@ -3,7 +3,7 @@
 
 #include "calibration_loop.h"
 
-namespace laparoscope_servo::skin {
+namespace laparoscope_servo {
 namespace {
 
 TEST_F(CalibrationTest, CancelStopsThePattern) {
@@ -86,4 +86,4 @@ TEST_F(CalibrationTest, AShaftThatIsFarFromThePointIsNotDriven) {
 }
 
 }  // namespace
-}  // namespace laparoscope_servo::skin
+}  // namespace laparoscope_servo

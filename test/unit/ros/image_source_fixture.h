@@ -11,12 +11,12 @@
 #include <string>
 #include <vector>
 
-#include "laparoscope_servo/ros/image_conversion.h"
-#include "laparoscope_servo/ros/image_source.h"
+#include "ros/playback/image_source.h"
+#include "ros/tracker/image_conversion.h"
 #include "support/stamped_header.h"
 #include "support/temporary_folder.h"
 
-namespace laparoscope_servo::skin {
+namespace laparoscope_servo {
 
 // A plain image whose grey level tells its number.
 inline cv::Mat numbered(int k) {
@@ -84,4 +84,4 @@ class ImageSourceTest : public testing::Test {
   test_support::TemporaryFolder folder_;
 };
 
-}  // namespace laparoscope_servo::skin
+}  // namespace laparoscope_servo

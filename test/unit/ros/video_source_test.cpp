@@ -10,7 +10,7 @@
 #include "image_source_fixture.h"
 #include "support/test_video.h"
 
-namespace laparoscope_servo::skin {
+namespace laparoscope_servo {
 namespace {
 
 using test_support::TestVideo;
@@ -330,4 +330,4 @@ TEST_F(VideoSourceTest, APlaylistDoesNotReachTheNetwork) {
 }
 
 }  // namespace
-}  // namespace laparoscope_servo::skin
+}  // namespace laparoscope_servo

@@ -16,7 +16,7 @@ struct Field {
 };
 
 std::vector<Field> velocityFields(const std::string& name,
-                                  const std::function<ScopeVelocity&(ControllerConfig&)>& group) {
+                                  const std::function<scope::Velocity&(ControllerConfig&)>& group) {
   return {{name + "/pan", [=](ControllerConfig& c, double v) { group(c).pan = v; }},
           {name + "/tilt", [=](ControllerConfig& c, double v) { group(c).tilt = v; }},
           {name + "/spin", [=](ControllerConfig& c, double v) { group(c).spin = v; }},
@@ -112,10 +112,10 @@ std::vector<Field> fields() {
       {"safety/max_dead_man_age", [](ControllerConfig& c, double v) { c.safety.max_dead_man_age = v; }},
       {"safety/max_robot_state_age", [](ControllerConfig& c, double v) { c.safety.max_robot_state_age = v; }}};
   const auto add = [&all](const std::vector<Field>& more) { all.insert(all.end(), more.begin(), more.end()); };
-  add(velocityFields("dead_zone/width", [](ControllerConfig& c) -> ScopeVelocity& { return c.dead_zone.width; }));
-  add(velocityFields("limits/velocity", [](ControllerConfig& c) -> ScopeVelocity& { return c.limits.velocity; }));
+  add(velocityFields("dead_zone/width", [](ControllerConfig& c) -> scope::Velocity& { return c.dead_zone.width; }));
+  add(velocityFields("limits/velocity", [](ControllerConfig& c) -> scope::Velocity& { return c.limits.velocity; }));
   add(velocityFields("limits/acceleration",
-                     [](ControllerConfig& c) -> ScopeVelocity& { return c.limits.acceleration; }));
+                     [](ControllerConfig& c) -> scope::Velocity& { return c.limits.acceleration; }));
   return all;
 }
 

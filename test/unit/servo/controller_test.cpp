@@ -32,7 +32,7 @@ TEST(Controller, StandsStillUntilEngaged) {
 
 TEST(Controller, FollowsTheLawOnceEngaged) {
   const Running running;
-  const ScopeVelocity command = running.last.command;
+  const scope::Velocity command = running.last.command;
   EXPECT_GT(command.pan, 0.0);
   EXPECT_LT(command.tilt * -0.1, 0.0);  // e_v.y < 0: the target is above, the scope turns up, +x
   EXPECT_LT(command.spin, 0.0);

@@ -170,7 +170,7 @@ class PairRun {
   void recover() {
     cart_.interference = {};
     cart_.controller.disengage("for a test");
-    const ScopeVelocity stick = cart_.manual;
+    const scope::Velocity stick = cart_.manual;
     cart_.manual = {};
     cart_.pass(0.3);
     engage();

@@ -27,7 +27,7 @@ ControllerInput driven(double time) {
 // The stick is let go.
 ControllerInput released(double time) {
   ControllerInput input = driven(time);
-  input.manual.velocity = ScopeVelocity();
+  input.manual.velocity = scope::Velocity();
   return input;
 }
 
@@ -139,7 +139,7 @@ TEST(ManualDrive, WhatIsNotFiniteIsStandstill) {
       ControllerInput input = driven(0.0);
       Eigen::Vector4d velocity = input.manual.velocity.vector();
       velocity[axis] = bad;
-      input.manual.velocity = ScopeVelocity::fromVector(velocity);
+      input.manual.velocity = scope::Velocity::fromVector(velocity);
       EXPECT_TRUE(isZero(driving.step(input)));
       EXPECT_EQ(driving.last.state, ControllerState::kServo);
       EXPECT_NE(driving.last.caution.find("not finite"), std::string::npos) << driving.last.caution;
@@ -160,7 +160,7 @@ TEST(ManualDrive, TheSafetyStatesAreTheSame) {
     input.dead_man = {true, 0.01, ""};
     ASSERT_EQ(controller.engage(input), "");
     input.time = 0.02;
-    input.manual.velocity = ScopeVelocity();
+    input.manual.velocity = scope::Velocity();
     ASSERT_EQ(controller.update(input).state, ControllerState::kServo);
     input.time = 0.03;
     controller.update(input);
@@ -197,7 +197,7 @@ TEST(ManualDrive, AnotherTaskStartsFromRest) {
     if (task == Task::kManual) {
       EXPECT_NE(driving.last.caution.find("release the stick"), std::string::npos) << driving.last.caution;
       ControllerInput let_go = tracked(0.0);
-      let_go.manual.velocity = ScopeVelocity();
+      let_go.manual.velocity = scope::Velocity();
       EXPECT_TRUE(isZero(driving.step(let_go)));
       driving.step(tracked(0.0));
     }

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "laparoscope_servo/servo/scope_geometry.h"
+#include "laparoscope_servo/scope/geometry.h"
 #include "laparoscope_servo/servo/task_function.h"
 
 namespace laparoscope_servo::servo::test {
@@ -17,25 +17,25 @@ const double kZ = 0.08;
 // The scope stands where it is after moving from the reference pose.
 class PlaneLoop {
  public:
-  PlaneLoop(const Eigen::Vector3d& normal, double depth, const ScopeGeometry& scope)
+  PlaneLoop(const Eigen::Vector3d& normal, double depth, const scope::Geometry& scope)
       : normal_(normal), depth_(depth), scope_(scope) {}
 
-  void move(const ScopeVelocity& velocity, double dt) {
-    ScopeGeometry middle = scope_;
+  void move(const scope::Velocity& velocity, double dt) {
+    scope::Geometry middle = scope_;
     middle.d2 += 0.5 * dt * velocity.insertion;
     reference_T_camera_ =
-        reference_T_camera_ * geometry::se3Exp(dt * (insertionPointMotions(middle) * velocity.vector()));
+        reference_T_camera_ * geometry::se3Exp(dt * (scope::insertionPointMotions(middle) * velocity.vector()));
     scope_.d2 += dt * velocity.insertion;
   }
 
   // An offset from the reference pose: turned about the insertion point, and pushed in meanwhile.
-  void offset(const ScopeVelocity& displacement) {
+  void offset(const scope::Velocity& displacement) {
     for (int k = 0; k < 100; ++k) move(displacement, 0.01);
   }
 
   Eigen::Matrix3d homography() const { return geometry::fromPlane(reference_T_camera_.inverse(), normal_, depth_); }
   TaskError error() const { return taskError(homography(), kRoi, kCamera); }
-  const ScopeGeometry& scope() const { return scope_; }
+  const scope::Geometry& scope() const { return scope_; }
 
   bool visible() const {
     const geometry::Quadrilateral corners =
@@ -50,7 +50,7 @@ class PlaneLoop {
  private:
   Eigen::Vector3d normal_;
   double depth_;
-  ScopeGeometry scope_;
+  scope::Geometry scope_;
   Eigen::Isometry3d reference_T_camera_ = Eigen::Isometry3d::Identity();
 };
 
@@ -59,7 +59,7 @@ inline double sizeOf(const TaskError& error) {
                    std::abs(error.alpha)});
 }
 
-inline ScopeGeometry straight(double d2 = kD2) {
+inline scope::Geometry straight(double d2 = kD2) {
   return {Eigen::Matrix3d::Identity(), d2};
 }
 

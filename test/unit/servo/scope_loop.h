@@ -14,21 +14,21 @@ constexpr double kPeriod = 0.02;  // s
 class Loop {
  public:
   Loop(const ControllerConfig& config, double delay) : servo(config), robot_(10.0, 0.2), delay_(delay) {
-    robot_.add(-1.0, ScopeVelocity());
+    robot_.add(-1.0, scope::Velocity());
   }
 
-  ScopeVelocity step(bool report = false) {
+  scope::Velocity step(bool report = false) {
     if (count_ % 2 == 0) {
       image_ = loop.error();
       image_time_ = time_;
     }
-    if (report) servo.report(time_, ScopeVelocity::fromVector(robot_.velocity(time_, delay_)));
-    const ScopeVelocity command = servo.command(input(), limits);
+    if (report) servo.report(time_, scope::Velocity::fromVector(robot_.velocity(time_, delay_)));
+    const scope::Velocity command = servo.command(input(), limits);
     execute(command);
     return command;
   }
 
-  void drive(const ScopeVelocity& wanted) { execute(servo.drive(input(), wanted)); }
+  void drive(const scope::Velocity& wanted) { execute(servo.drive(input(), wanted)); }
   void restart() { servo.restart(time_); }
 
   ScopeServo servo;
@@ -46,11 +46,11 @@ class Loop {
     return input;
   }
 
-  void execute(const ScopeVelocity& command) {
+  void execute(const scope::Velocity& command) {
     robot_.add(time_, command);
     for (int k = 0; k < 20; ++k) {
       const double t = time_ + (k + 0.5) * kPeriod / 20.0;
-      loop.move(ScopeVelocity::fromVector(robot_.velocity(t, delay_)), kPeriod / 20.0);
+      loop.move(scope::Velocity::fromVector(robot_.velocity(t, delay_)), kPeriod / 20.0);
     }
     time_ += kPeriod;
     ++count_;
@@ -66,7 +66,7 @@ class Loop {
 inline ControllerConfig withoutDeadZone() {
   ControllerConfig config;
   config.dead_zone.inverse = false;
-  config.dead_zone.width = ScopeVelocity();
+  config.dead_zone.width = scope::Velocity();
   return config;
 }
 

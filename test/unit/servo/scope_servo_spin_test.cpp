@@ -24,10 +24,10 @@ TEST(ScopeServo, ReleasedItNeverSpins) {
     ServoInput input;
     input.time = input.image_time = 0.04 * k;
     input.period = 0.04;
-    input.scope = {obliqueOptics(0.5236), 0.1};
+    input.scope = {scope::obliqueOptics(0.5236), 0.1};
     input.error.x = 0.002 * k;
     input.error.alpha = 0.004 * k;
-    const ScopeVelocity command = servo.command(input, ServoLimits());
+    const scope::Velocity command = servo.command(input, ServoLimits());
     ASSERT_EQ(command.spin, 0.0) << k;
     moved_at_all |= command.pan != 0.0;
   }

@@ -80,7 +80,7 @@ TEST(ScopeServo, KeepsToItsLimits) {
   const Eigen::Vector4d limit = Limits().velocity.vector() * (1.0 + 1e-12);
   bool turned = false;
   for (int k = 0; k < 100; ++k) {
-    const ScopeVelocity command = loop.step();
+    const scope::Velocity command = loop.step();
     EXPECT_LE(command.insertion, 0.0);  // it would have to go deeper
     EXPECT_TRUE((command.vector().cwiseAbs().array() <= limit.array()).all());
     turned |= command.pan != 0.0;
@@ -135,7 +135,7 @@ TEST(ScopeServo, DrivesWithinItsLimitsThroughTheDeadZone) {
   const Eigen::Vector4d width = DeadZoneConfig().width.vector();
   const Eigen::Vector4d step = kPeriod * limits.acceleration.vector() + width;
   // In proportion to the limits that the dead zone leaves: the direction is kept.
-  const ScopeVelocity wanted = ScopeVelocity::fromVector(2.0 * (limits.velocity.vector() - width));
+  const scope::Velocity wanted = scope::Velocity::fromVector(2.0 * (limits.velocity.vector() - width));
   Eigen::Vector4d last = Eigen::Vector4d::Zero();
   for (int k = 0; k < 50; ++k) {
     const Eigen::Vector4d command = servo.drive(driven(k), wanted).vector();
@@ -143,10 +143,10 @@ TEST(ScopeServo, DrivesWithinItsLimitsThroughTheDeadZone) {
     last = command;
   }
   EXPECT_TRUE(last.isApprox(limits.velocity.vector(), 1e-9));
-  const ScopeVelocity slow{0.01, -0.02, 0.0, 0.001};
+  const scope::Velocity slow{0.01, -0.02, 0.0, 0.001};
   for (int k = 50; k < 100; ++k) last = servo.drive(driven(k), slow).vector();
   EXPECT_TRUE(last.isApprox(Eigen::Vector4d(0.014, -0.024, 0.0, 0.0014), 1e-9)) << last.transpose();
-  for (int k = 100; k < 120; ++k) last = servo.drive(driven(k), ScopeVelocity()).vector();
+  for (int k = 100; k < 120; ++k) last = servo.drive(driven(k), scope::Velocity()).vector();
   EXPECT_EQ(last, Eigen::Vector4d::Zero());
 }
 
@@ -176,7 +176,7 @@ TEST(ScopeServo, KnowsARobotThatDoesNotMove) {
   for (int k = 0; k < 100; ++k) {
     input.time = input.image_time = 0.02 * k;
     input.period = 0.02;
-    servo.report(input.time, ScopeVelocity());
+    servo.report(input.time, scope::Velocity());
     servo.command(input, ServoLimits());
   }
   EXPECT_TRUE(servo.blocked());

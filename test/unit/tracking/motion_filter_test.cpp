@@ -1,4 +1,4 @@
-#include "laparoscope_servo/tracking/motion_filter.h"
+#include "tracking/motion_filter.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "../../support/synthetic_tissue.h"
-#include "laparoscope_servo/tracking/region_aligner.h"
+#include "tracking/align/region_aligner.h"
 
 namespace laparoscope_servo::tracking {
 namespace {

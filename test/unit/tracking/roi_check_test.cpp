@@ -1,4 +1,4 @@
-#include "laparoscope_servo/tracking/roi_check.h"
+#include "tracking/roi_check.h"
 
 #include <gtest/gtest.h>
 

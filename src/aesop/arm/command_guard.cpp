@@ -1,0 +1,96 @@
+#include "laparoscope_servo/aesop/command_guard.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <sstream>
+
+#include "laparoscope_servo/validation/range_checker.h"
+
+namespace laparoscope_servo::aesop {
+
+std::vector<std::string> validate(const CommandConfig& config) {
+  validation::RangeChecker check;
+  check.range("timeout", config.timeout, 0.02, 2.0);
+  check.range("max_stamp_age", config.max_stamp_age, 0.02, 10.0);
+  check.range("max_stamp_lead", config.max_stamp_lead, 0.0, 2.0);
+  check.range("max_pan", config.max_pan, 1e-4, 1.0);
+  check.range("max_tilt", config.max_tilt, 1e-4, 1.0);
+  check.range("max_spin", config.max_spin, 1e-4, 1.0);
+  check.range("max_insertion", config.max_insertion, 1e-5, 0.2);
+  return check.errors();
+}
+
+std::string CommandGuard::describe(Refusal refusal) const {
+  switch (refusal) {
+    case Refusal::kNotFinite:
+      return "is not finite";
+    case Refusal::kNoStamp:
+      return "has no stamp";
+    case Refusal::kOlderThanEnable:
+      return "is older than the enable";
+    case Refusal::kNotNewer:
+      return "has a stamp that is not newer than that of the one before";
+    case Refusal::kTooOld:
+    case Refusal::kAhead:
+      break;
+  }
+  std::ostringstream text;
+  if (refusal == Refusal::kTooOld) {
+    text << "has a stamp more than " << config_.max_stamp_age << " s old";
+  } else {
+    text << "is stamped more than " << config_.max_stamp_lead << " s ahead: compare the clocks of the machines";
+  }
+  return text.str();
+}
+
+std::string CommandGuard::accept(const scope::Velocity& velocity, double stamp, double stamp_now, double now) {
+  if (stamp_now < last_stamp_now_) reset(stamp_now);  // the clock was set back: old stamps compare with nothing
+  last_stamp_now_ = stamp_now;
+  if (const std::optional<Refusal> refusal = judge(velocity, stamp, stamp_now)) {
+    if (*refusal == Refusal::kNotFinite) forget();
+    ++refused_[static_cast<std::size_t>(*refusal)];
+    return "it " + describe(*refusal);
+  }
+  last_ = clamp(velocity);
+  accepted_at_ = now;
+  // A zero may bear any stamp: one from the future would keep out all that follows.
+  if (stamp > last_stamp_ && stamp <= stamp_now + config_.max_stamp_lead) last_stamp_ = stamp;
+  ++accepted_;
+  return "";
+}
+
+std::optional<Refusal> CommandGuard::judge(const scope::Velocity& velocity, double stamp, double stamp_now) const {
+  if (!velocity.isFinite()) return Refusal::kNotFinite;
+  if (velocity.isZero()) return std::nullopt;
+  if (!(stamp > 0.0)) return Refusal::kNoStamp;
+  if (!(stamp > not_before_)) return Refusal::kOlderThanEnable;
+  if (!(stamp > last_stamp_)) return Refusal::kNotNewer;
+  if (!(stamp_now - stamp <= config_.max_stamp_age)) return Refusal::kTooOld;
+  if (!(stamp - stamp_now <= config_.max_stamp_lead)) return Refusal::kAhead;
+  return std::nullopt;
+}
+
+std::uint64_t CommandGuard::refused() const {
+  return std::accumulate(refused_.begin(), refused_.end(), std::uint64_t{0});
+}
+
+scope::Velocity CommandGuard::clamp(const scope::Velocity& velocity) const {
+  const double excess =
+      std::max({std::abs(velocity.pan) / config_.max_pan, std::abs(velocity.tilt) / config_.max_tilt,
+                std::abs(velocity.spin) / config_.max_spin, std::abs(velocity.insertion) / config_.max_insertion});
+  if (excess <= 1.0) return velocity;
+  return {velocity.pan / excess, velocity.tilt / excess, velocity.spin / excess, velocity.insertion / excess};
+}
+
+void CommandGuard::reset(double stamp_now) {
+  forget();
+  last_stamp_ = -std::numeric_limits<double>::infinity();
+  not_before_ = last_stamp_now_ = stamp_now;
+}
+
+scope::Velocity CommandGuard::velocity(double now) const {
+  return age(now) <= config_.timeout ? last_ : scope::Velocity();
+}
+
+}  // namespace laparoscope_servo::aesop

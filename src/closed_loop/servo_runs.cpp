@@ -1,0 +1,229 @@
+#include "laparoscope_servo/closed_loop/servo_runs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <ostream>
+#include <random>
+#include <stdexcept>
+
+namespace laparoscope_servo::closed_loop {
+
+namespace {
+
+constexpr int kMaxDraws = 10000;
+constexpr double kDegree = M_PI / 180.0;
+
+// From when on a value keeps within its bound; NaN does not.
+class Settling {
+ public:
+  explicit Settling(double bound) : bound_(bound) {}
+  void add(double time, double value) {
+    if (!(std::abs(value) <= bound_)) {
+      since_ = -1.0;
+    } else if (since_ < 0.0) {
+      since_ = time;
+    }
+  }
+  double since() const { return since_; }
+
+ private:
+  double bound_;
+  double since_ = -1.0;
+};
+
+class Reversals {
+ public:
+  void add(const Eigen::Vector4d& command) {
+    for (int k = 0; k < 4; ++k) {
+      if (command[k] == 0.0) continue;
+      if (command[k] * last_[k] < 0.0) ++count_;
+      last_[k] = std::copysign(1.0, command[k]);
+    }
+  }
+  int count() const { return count_; }
+
+ private:
+  Eigen::Vector4d last_ = Eigen::Vector4d::Zero();
+  int count_ = 0;
+};
+
+// Where the scope goes, and what stops it.
+class Stopping {
+ public:
+  explicit Stopping(double from) : from_(from) {}
+  void add(const SimulationSample& s, RunSummary& run) {
+    const bool ended = s.state == servo::ControllerState::kLost || s.state == servo::ControllerState::kFault;
+    if (ended && run.stopped < 0.0) run.stopped = s.t;
+    if (s.state == servo::ControllerState::kHold && before_ != servo::ControllerState::kHold) ++run.holds;
+    if (!ended && s.state != servo::ControllerState::kIdle) run.evidence = std::max(run.evidence, s.evidence);
+    before_ = s.state;
+    if (s.t <= from_) start_ = s.moved;
+    const Eigen::Vector4d way = s.moved - start_;
+    run.turned = std::max({run.turned, way.head<2>().norm(), std::abs(way[2])});
+    run.inserted = std::max(run.inserted, std::abs(way[3]));
+  }
+
+ private:
+  double from_;
+  servo::ControllerState before_ = servo::ControllerState::kIdle;
+  Eigen::Vector4d start_ = Eigen::Vector4d::Zero();
+};
+
+// What one run adds to the figures of rest; sums until they are divided.
+void addRest(const SimulationSample& s, double offset, double scale, RunSummary& run) {
+  run.centre_rms += offset * offset;
+  run.scale_rms += scale * scale;
+  run.orientation_rms += s.alpha * s.alpha;
+  if (s.command.vector() != Eigen::Vector4d::Zero()) run.moving_share += 1.0;
+}
+
+void divideRest(double count, RunSummary& run) {
+  run.centre_rms = std::sqrt(run.centre_rms / count);
+  run.scale_rms = std::sqrt(run.scale_rms / count);
+  run.orientation_rms = std::sqrt(run.orientation_rms / count);
+  run.moving_share /= count;
+}
+
+// "median, 95 %, worst", the nearest rank; infinity stands for a time that never comes, NaN for what could not be seen.
+void printSpread(const std::string& name, std::vector<double> values, const std::string& unit, std::ostream& stream) {
+  std::replace_if(
+      values.begin(), values.end(), [](double v) { return std::isnan(v); }, std::numeric_limits<double>::infinity());
+  std::sort(values.begin(), values.end());
+  const auto rank = [&](double share) {
+    return values[static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size()))) - 1];
+  };
+  stream << name << ": median ";
+  const auto print = [&](double value) {
+    if (std::isinf(value)) {
+      stream << '-';
+    } else {
+      stream << value << unit;
+    }
+  };
+  print(rank(0.5));
+  stream << ", 95 % ";
+  print(rank(0.95));
+  stream << ", worst ";
+  print(values.back());
+  stream << '\n';
+}
+
+}  // namespace
+
+DrawnStart drawStart(const SimulationConfig& config, unsigned seed) {
+  DrawnStart drawn;
+  drawn.start = config.start;
+  const Eigen::Vector4d spread = config.start_spread.vector();
+  if (spread == Eigen::Vector4d::Zero()) return drawn;
+  // Not the numbers of the noise, and none that the standard leaves open, see Noise in servo_simulation.cpp.
+  std::seed_seq sequence{seed, 1u};
+  std::mt19937 random(sequence);
+  const auto uniform = [&random] { return (static_cast<double>(random()) + 0.5) / 2147483648.0 - 1.0; };
+  SimulationConfig candidate = config;
+  for (; drawn.refused < kMaxDraws; ++drawn.refused) {
+    Eigen::Vector4d start = config.start.vector();
+    for (int k = 0; k < 4; ++k) start[k] += uniform() * spread[k];
+    candidate.start = drawn.start = scope::Velocity::fromVector(start);
+    if (startSeesRoi(candidate)) return drawn;
+  }
+  throw std::invalid_argument("of " + std::to_string(kMaxDraws) +
+                              " starts within simulation/start_spread none sees the region of interest");
+}
+
+RunSummary summariseRun(const std::vector<SimulationSample>& samples, const SimulationConfig& config,
+                        const RunBounds& bounds) {
+  RunSummary run;
+  Settling centre(bounds.centre), scale(bounds.scale), orientation(bounds.orientation);
+  Reversals reversals;
+  const bool freezes = config.picture.frozen_from < samples.back().t;
+  Stopping stopping(freezes ? config.picture.frozen_from : 0.0);
+  double count = 0.0;
+  for (const SimulationSample& s : samples) {
+    const double offset = (Eigen::Vector2d(s.u, s.v) - config.roi.centre()).norm();
+    const double scale_error = std::exp(-s.log_depth) - 1.0;
+    centre.add(s.t, offset);
+    scale.add(s.t, scale_error);
+    orientation.add(s.t, s.alpha);
+    run.left_image = run.left_image || !(s.worst_corner >= 0.0);
+    run.max_commanded_lateral_speed = std::max(run.max_commanded_lateral_speed, s.commanded_lateral_speed);
+    run.max_lateral_speed = std::max(run.max_lateral_speed, s.lateral_speed);
+    run.max_lateral_offset = std::max(run.max_lateral_offset, s.lateral_offset);
+    run.final_state = s.state;
+    stopping.add(s, run);
+    if (s.t < bounds.rest_after) continue;
+    count += 1.0;
+    addRest(s, offset, scale_error, run);
+    reversals.add(s.command.vector());
+  }
+  run.settled_centre = centre.since();
+  run.settled_scale = scale.since();
+  run.settled_orientation = orientation.since();
+  if (std::min({run.settled_centre, run.settled_scale, run.settled_orientation}) >= 0.0) {
+    run.settled = std::max({run.settled_centre, run.settled_scale, run.settled_orientation});
+  }
+  run.reversals = reversals.count();
+  divideRest(count, run);
+  return run;
+}
+
+void writeRuns(const std::vector<RunSummary>& runs, std::ostream& stream) {
+  stream << "seed,start_pan,start_tilt,start_spin,start_insertion,refused_starts,settled,settled_centre,settled_scale,"
+            "settled_orientation,left_image,centre_rms,scale_rms,orientation_rms,moving_share,reversals,"
+            "max_commanded_lateral_speed,max_lateral_speed,max_lateral_offset,final_state,stopped,holds,"
+            "turned,inserted,evidence\n";
+  stream.precision(9);
+  for (const RunSummary& r : runs) {
+    const scope::Velocity& start = r.drawn.start;
+    stream << r.seed << ',' << start.pan << ',' << start.tilt << ',' << start.spin << ',' << start.insertion << ','
+           << r.drawn.refused << ',' << r.settled << ',' << r.settled_centre << ',' << r.settled_scale << ','
+           << r.settled_orientation << ',' << (r.left_image ? 1 : 0) << ',' << r.centre_rms << ',' << r.scale_rms << ','
+           << r.orientation_rms << ',' << r.moving_share << ',' << r.reversals << ',' << r.max_commanded_lateral_speed
+           << ',' << r.max_lateral_speed << ',' << r.max_lateral_offset << ',' << name(r.final_state) << ','
+           << r.stopped << ',' << r.holds << ',' << r.turned << ',' << r.inserted << ',' << r.evidence << '\n';
+  }
+}
+
+void printRuns(const std::vector<RunSummary>& runs, const RunBounds& bounds, std::ostream& stream) {
+  int refused = 0, left = 0, settled = 0, stopped = 0, held = 0;
+  std::string failed;
+  for (const RunSummary& run : runs) {
+    refused += run.drawn.refused;
+    left += run.left_image ? 1 : 0;
+    settled += run.settled >= 0.0 ? 1 : 0;
+    stopped += run.stopped >= 0.0 ? 1 : 0;
+    held += run.holds;
+    if (run.settled < 0.0) failed += ' ' + std::to_string(run.seed);
+  }
+  stream << runs.size() << " runs, " << refused << " starts that do not see the region were drawn again, " << left
+         << " runs left the image\nsettled to " << bounds.centre << " px, " << 100.0 * bounds.scale
+         << " % of scale and " << bounds.orientation / kDegree << " deg: " << settled << '\n';
+  if (!failed.empty()) stream << "not settled, seeds:" << failed << '\n';
+  const auto all = [&runs](const std::function<double(const RunSummary&)>& value) {
+    std::vector<double> values;
+    for (const RunSummary& run : runs) values.push_back(value(run));
+    return values;
+  };
+  printSpread("after", all([](const RunSummary& r) {
+                return r.settled < 0.0 ? std::numeric_limits<double>::infinity() : r.settled;
+              }),
+              " s", stream);
+  stream << "from " << bounds.rest_after << " s on\n";
+  printSpread("  centre rms", all([](const RunSummary& r) { return r.centre_rms; }), " px", stream);
+  printSpread("  scale rms", all([](const RunSummary& r) { return 100.0 * r.scale_rms; }), " %", stream);
+  printSpread("  spin rms", all([](const RunSummary& r) { return r.orientation_rms / kDegree; }), " deg", stream);
+  printSpread("  moving", all([](const RunSummary& r) { return 100.0 * r.moving_share; }), " % of the time", stream);
+  printSpread("  reversals", all([](const RunSummary& r) { return static_cast<double>(r.reversals); }), "", stream);
+  stream << "stopped: " << stopped << ", held: " << held << '\n';
+  printSpread("  turned", all([](const RunSummary& r) { return r.turned / kDegree; }), " deg", stream);
+  printSpread("  inserted", all([](const RunSummary& r) { return 1e3 * r.inserted; }), " mm", stream);
+  printSpread("  evidence of a fault", all([](const RunSummary& r) { return r.evidence; }), "", stream);
+  stream << "at the insertion point\n";
+  printSpread("  commanded lateral speed", all([](const RunSummary& r) { return r.max_commanded_lateral_speed; }),
+              " m/s", stream);
+  printSpread("  true lateral speed", all([](const RunSummary& r) { return r.max_lateral_speed; }), " m/s", stream);
+  printSpread("  lateral offset", all([](const RunSummary& r) { return r.max_lateral_offset; }), " m", stream);
+}
+
+}  // namespace laparoscope_servo::closed_loop

@@ -1,0 +1,295 @@
+#include "ros/aesop/aesop_node.h"
+
+#include <ros/callback_queue.h>
+#include <ros/ros.h>
+
+#include <chrono>
+#include <stdexcept>
+#include <thread>
+
+#include "laparoscope_servo/scope/geometry.h"
+#include "ros/aesop/aesop_conversions.h"
+#include "ros/common/clocks.h"
+#include "ros/common/realtime.h"
+
+namespace laparoscope_servo {
+
+namespace {
+
+constexpr std::chrono::milliseconds kPeriod{5};
+constexpr std::uint32_t kQueue = 1000;     // commands: 0.1 s of a stranger that floods the topic with 10 kHz
+constexpr double kReportPause = 1.0;       // s, between two warnings of commands that are refused for the same reason
+constexpr double kStrangerPause = 10.0;    // s, between two of the same publisher that is not the master
+constexpr double kDiagnosticsPause = 1.0;  // s
+constexpr double kStatePeriod = 0.05;      // s, between two publications of an operating state that stays
+constexpr double kLastWord = 0.5;          // s, for the controller to confirm the disable when the node ends
+
+std::vector<std::string> resolved(const ros::NodeHandle& node, const std::vector<std::string>& names) {
+  std::vector<std::string> result;
+  for (const std::string& name : names) result.push_back(node.resolveName(name, false));
+  return result;
+}
+
+}  // namespace
+
+AesopNode::AesopNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
+                     const AesopParameters& parameters)
+    : parameters_(parameters),
+      tip_R_optical_(scope::obliqueOptics(parameters.optics_angle, parameters.optics_roll).transpose()),
+      driver_(parameters.driver),
+      reconnect_(parameters.reconnect),
+      master_(node.resolveName(parameters.publisher, false), "commands", "command/publisher"),
+      callers_(resolved(node, parameters.service_callers)),
+      calibration_(private_node, parameters, callers_, service_errors_, driver_),
+      reported_(parameters.port, aesop::lineWarning(parameters.driver.session, parameters.baud_rate)),
+      refused_lines_(kReportPause),
+      stranger_lines_(kStrangerPause),
+      stops_(parameters.external_stops),
+      node_(node),
+      private_node_(private_node) {
+  joint_publisher_ = private_node_.advertise<sensor_msgs::JointState>("measured_js", 10);
+  pose_publisher_ = private_node_.advertise<geometry_msgs::PoseStamped>("measured_cp", 10);
+  twist_publisher_ = private_node_.advertise<geometry_msgs::TwistStamped>("measured_cv", 10);
+  state_publisher_ = private_node_.advertise<OperatingState>("operating_state", 10, true);
+  // Only the master's newest command counts, but others must not push it out of the queue.
+  command_subscriber_ =
+      node_.subscribe("servo_command", kQueue, &AesopNode::onCommand, this, ros::TransportHints().tcpNoDelay());
+  stop_subscriber_ = private_node_.subscribe("stop", 1, &AesopNode::onStop, this, ros::TransportHints().tcpNoDelay());
+  advertise("enable", &AesopNode::enable, Callers::kNamed);
+  advertise("resume", &AesopNode::resume, Callers::kNamed);
+  advertise("clear_fault", &AesopNode::clearFault, Callers::kNamed);
+  // What makes the arm stand is for everybody.
+  advertise("disable", &AesopNode::disable, Callers::kAll);
+  advertise("pause", &AesopNode::pause, Callers::kAll);
+  diagnostics_.setHardwareID(parameters_.port);
+  diagnostics_.add("AESOP", [this](diagnostic_updater::DiagnosticStatusWrapper& status) {
+    const double now = steadyNow();
+    reported_.fill(now, driver_, {master_, command_subscriber_.getNumPublishers(), reconnect_.remaining(now)}, status);
+    stops_.describe(now, status);
+    calibration_.describe(status);
+    if (recording_ && !recording_->problem().empty())
+      status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, recording_->problem());
+  });
+  if (!parameters.wire_log.file.empty()) {
+    recording_ = std::make_unique<aesop::WireLogFile>(parameters.wire_log, parameters.driver.session.codec()->name());
+    driver_.setTap(recording_.get());
+  }
+  publishStaticFrames();
+  if (!reported_.lineWarning().empty()) ROS_WARN_STREAM(reported_.lineWarning());
+}
+
+void AesopNode::run(const std::function<bool()>& stop) {
+  if (parameters_.realtime_priority > 0) {
+    const std::string refusal = goRealtime(parameters_.realtime_priority);
+    if (!refusal.empty()) ROS_WARN_STREAM(refusal);
+  }
+  try {
+    while (!stop() && ros::ok()) {
+      const auto next = std::chrono::steady_clock::now() + kPeriod;
+      ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.0));
+      service_errors_.rethrow();
+      step();
+      if (stops_.mustEnd()) throw std::runtime_error(stops_.masterProblem());
+      std::this_thread::sleep_until(next);
+    }
+  } catch (const std::exception& error) {
+    ROS_FATAL_STREAM(error.what() << "; the arm is disabled, the node ends");
+    shutDown([this] { exchange(steadyNow()); });  // nothing else, as it may be what has failed
+    throw;
+  }
+  shutDown([this] { step(); });
+}
+
+void AesopNode::exchange(double now) {
+  if (!transport_.isOpen()) return;
+  try {
+    const aesop::Bytes received = transport_.read();
+    driver_.receive(received.data(), received.size(), now);
+    transport_.write(driver_.transmit(now));
+  } catch (const aesop::TransportError& error) {
+    lose(error.what(), now);
+  }
+}
+
+void AesopNode::step() {
+  const double now = steadyNow();
+  if (calibration_.step(stampNow(), now)) publishStaticFrames();
+  if (!transport_.isOpen()) connect(now);
+  watchOutside(now);
+  exchange(now);
+  if (driver_.session().link().isUp()) reconnect_.up(now);
+  if (!driver_.session().isEnabled()) master_.release();
+  watchRecording();
+  publishStatus();
+  countEnables();
+  publishState(now);
+  reportState(now);
+  if (now >= next_diagnostics_) {
+    next_diagnostics_ = now + kDiagnosticsPause;
+    diagnostics_.force_update();
+  }
+}
+
+void AesopNode::watchOutside(double now) {
+  const std::string stop = stops_.takeStop(now);
+  if (!stop.empty()) stopArm(stop, now);
+  // At every step: an enable that was under way may have been confirmed in the meantime.
+  const std::string& problem = stops_.masterProblem();
+  if (!problem.empty() && driver_.session().isEnabled()) driver_.pause(problem);
+  // What was commanded before is forgotten, and what comes in the meantime at the next step.
+  if (stops_.masterIsLate(now) && driver_.session().isEnabled()) driver_.command({}, 0.0, stampNow(), now);
+}
+
+void AesopNode::stopArm(const std::string& reason, double now) {
+  // Asked for again while it is under way, it would have to be confirmed again: a flood would never end.
+  const aesop::OperatingState state = driver_.state(now);
+  if (state.mode != aesop::OperatingMode::kDisabled || state.reason != reason) driver_.stop(now, reason);
+}
+
+void AesopNode::onStop(const ros::MessageEvent<std_msgs::Empty const>& event) {
+  stopArm("stopped by " + shownName(event.getPublisherName()), steadyNow());
+}
+
+void AesopNode::watchRecording() {
+  if (!recording_ || recording_ended_ || recording_->problem().empty()) return;
+  recording_ended_ = true;
+  ROS_WARN_STREAM(recording_->problem() << "; the arm is driven on without it");
+}
+
+void AesopNode::connect(double now) {
+  if (!reconnect_.due(now)) return;
+  try {
+    transport_.open(parameters_.port, parameters_.baud_rate);
+    driver_.opened(now);
+    ROS_INFO_STREAM(
+        "port '" << parameters_.port << "' is open, "
+                 << (transport_.lowLatency() ? "set to low latency" : "its driver has no low-latency setting"));
+  } catch (const aesop::TransportError& error) {
+    lose(error.what(), now);
+  }
+}
+
+void AesopNode::lose(const std::string& reason, double now) {
+  driver_.closed(reason);
+  reconnect_.lost(now);
+}
+
+bool AesopNode::repeatUntil(const std::function<bool()>& done, double seconds, const std::function<void()>& step) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+  while (!done()) {
+    if (std::chrono::steady_clock::now() > end) return false;
+    const auto next = std::chrono::steady_clock::now() + kPeriod;
+    step();
+    std::this_thread::sleep_until(next);
+  }
+  return true;
+}
+
+bool AesopNode::stepUntil(const std::function<bool()>& done, double seconds) {
+  return repeatUntil(done, seconds, [this] { step(); });
+}
+
+void AesopNode::shutDown(const std::function<void()>& step) {
+  if (!transport_.isOpen()) return;
+  driver_.disable(steadyNow());
+  // Confirmed by a status that answers it and shows that nothing moves.
+  const auto standing = [this] { return !driver_.session().link().isUp() || !driver_.session().state().is_busy; };
+  if (!repeatUntil(standing, kLastWord, step)) {
+    ROS_ERROR(
+        "the controller has not confirmed the disable; it stops by itself when the last command's time has run out");
+  }
+  try {
+    transport_.drain(0.1);
+  } catch (const aesop::TransportError& error) {
+    ROS_ERROR_STREAM(error.what());  // the line has gone in the meantime: nothing more can be said to it
+  }
+  transport_.close();
+}
+
+void AesopNode::onCommand(const ros::MessageEvent<ScopeVelocity const>& event) {
+  const double now = steadyNow();
+  const ScopeVelocity& message = *event.getConstMessage();
+  switch (master_.judge(event.getPublisherName(), event.getConnectionHeaderPtr(), now)) {
+    case InputOwner::Verdict::kStranger:
+      if (const auto line = stranger_lines_.take(master_.complaint(now), now)) ROS_WARN_STREAM(*line);
+      return;
+    case InputOwner::Verdict::kNewConnection:
+      // Restarted, replaced by another process of its name, or joined by one: which of them shall move the arm is for
+      // somebody to say who sees it stand.
+      driver_.pause(master_.name() + " has connected anew; resume when it may command the arm");
+      return;
+    case InputOwner::Verdict::kOwner:
+      break;
+  }
+  const scope::Velocity velocity = fromMessage(message);
+  if (calibration_.takes(velocity, now)) return;
+  const std::string refusal = driver_.command(velocity, message.header.stamp.toSec(), stampNow(), now);
+  // Commands that come before the arm is enabled are nobody's mistake, but one that is not finite is.
+  if (refusal.empty() || (!driver_.session().isEnabled() && velocity.isFinite())) return;
+  if (const auto line = refused_lines_.take("a command was refused: " + refusal, now)) ROS_WARN_STREAM(*line);
+}
+
+void AesopNode::publishStatus() {
+  const aesop::Link& link = driver_.session().link();
+  if (!link.status() || link.statistics().received == published_) return;
+  published_ = link.statistics().received;
+  const ros::Time stamp = ros::Time::now();
+  const aesop::Status& status = *link.status();
+  const std::string& prefix = parameters_.frame_prefix;
+  joint_publisher_.publish(jointState(status, stamp));
+  pose_publisher_.publish(opticalPose(driver_.kinematics(), status, tip_R_optical_, prefix, stamp));
+  twist_publisher_.publish(opticalTwist(driver_.kinematics(), status, prefix, stamp));
+  broadcaster_.sendTransform(linkTransforms(driver_.kinematics(), status.position, prefix, stamp));
+}
+
+aesop::OperatingState AesopNode::state(double now) const {
+  aesop::OperatingState state = driver_.state(now);
+  const std::string complaint = master_.complaint(now);
+  if (state.mode == aesop::OperatingMode::kEnabled && stops_.masterIsLate(now))
+    state.reason = "held until the ROS master answers";
+  if (!complaint.empty()) state.reason += (state.reason.empty() ? "" : "; ") + complaint;
+  return state;
+}
+
+// A pause is none: who relies on the arm goes on after it.
+void AesopNode::countEnables() {
+  const aesop::OperatingMode mode = driver_.session().state().mode;
+  const bool on = mode == aesop::OperatingMode::kEnabled || mode == aesop::OperatingMode::kPaused;
+  if (on && !was_on_) ++enables_;
+  was_on_ = on;
+}
+
+void AesopNode::publishState(double now) {
+  const aesop::OperatingState state = this->state(now);
+  // Repeated, so that who relies on it notices when it ends.
+  if (state_published_ && state == last_state_ && now - state_time_ < kStatePeriod) return;
+  state_time_ = now;
+  last_state_ = state;
+  state_published_ = true;
+  OperatingState message = toMessage(state, ros::Time::now());
+  message.enables = enables_;
+  state_publisher_.publish(message);
+}
+
+void AesopNode::reportState(double now) {
+  aesop::OperatingState state = driver_.state(now);
+  // Said by onCommand(), where none of them is missed.
+  if (state.mode == aesop::OperatingMode::kEnabled && state.reason.rfind("command refused: ", 0) == 0)
+    state.reason.clear();
+  const std::optional<StateLine> line = state_report_.take(state, driver_.session(), now);
+  if (!line) return;
+  if (line->severity == Severity::kError) {
+    ROS_ERROR_STREAM(line->text);
+  } else if (line->severity == Severity::kWarning) {
+    ROS_WARN_STREAM(line->text);
+  } else {
+    ROS_INFO_STREAM(line->text);
+  }
+}
+
+void AesopNode::publishStaticFrames() {
+  static_broadcaster_.sendTransform(fixedTransforms(driver_.kinematics(), driver_.insertionPoint(), tip_R_optical_,
+                                                    parameters_.frame_prefix, ros::Time::now()));
+}
+
+}  // namespace laparoscope_servo

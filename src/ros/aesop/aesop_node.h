@@ -1,0 +1,119 @@
+// The aesop node: topics, services and tf around aesop::Driver and a serial port. doc and units: README, node `aesop`.
+//
+// One thread, one loop at a steady rate: neither a standing nor a jumping ROS clock touches the watchdogs.
+#pragma once
+
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <ros/message_event.h>
+#include <ros/node_handle.h>
+#include <std_msgs/Empty.h>
+#include <std_srvs/Trigger.h>
+#include <tf2_ros/static_transform_broadcaster.h>
+#include <tf2_ros/transform_broadcaster.h>
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "laparoscope_servo/ScopeVelocity.h"
+#include "laparoscope_servo/aesop/transport.h"
+#include "ros/aesop/aesop_diagnostics.h"
+#include "ros/aesop/aesop_parameters.h"
+#include "ros/aesop/calibration_services.h"
+#include "ros/common/external_stops.h"
+#include "ros/common/input_owner.h"
+#include "ros/common/said_lines.h"
+#include "ros/common/service_callers.h"
+#include "ros/common/service_errors.h"
+#include "ros/common/state_report.h"
+
+namespace laparoscope_servo {
+
+class AesopNode {
+ public:
+  // Throws std::invalid_argument when the parameters are not valid.
+  AesopNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node, const AesopParameters& parameters);
+
+  // Runs until `stop` returns true or ROS shuts down, then disables the arm and waits a moment for it to be confirmed.
+  // The same when anything throws, which is then thrown on, and when the ROS master is not that of the start any more,
+  // for which std::runtime_error is thrown.
+  void run(const std::function<bool()>& stop);
+
+ private:
+  using Response = std_srvs::Trigger::Response;
+
+  void step();
+  // Bytes to and from the line, if there is one.
+  void exchange(double now);
+  void connect(double now);
+  void lose(const std::string& reason, double now);
+  void shutDown(const std::function<void()>& step);
+  // Steps until `done` or for `seconds`; says whether it is done.
+  bool stepUntil(const std::function<bool()>& done, double seconds);
+  static bool repeatUntil(const std::function<bool()>& done, double seconds, const std::function<void()>& step);
+
+  void onCommand(const ros::MessageEvent<ScopeVelocity const>& event);
+  // Any publisher may stop the arm: it works without a master, over connections that are open already.
+  void onStop(const ros::MessageEvent<std_msgs::Empty const>& event);
+  void stopArm(const std::string& reason, double now);
+  void watchOutside(double now);
+
+  // Each returns what the service answers.
+  Response enable();
+  Response disable();
+  Response clearFault();
+  Response pause();
+  Response resume();
+  using Action = Response (AesopNode::*)();
+  // Whether everybody may call it, or only the nodes that the configuration names.
+  enum class Callers { kAll, kNamed };
+  void advertise(const std::string& name, Action action, Callers callers);
+
+  void watchRecording();
+  void publishStatus();
+  // The driver's, with what it does not know: whose commands were refused.
+  aesop::OperatingState state(double now) const;
+  void publishState(double now);
+  void countEnables();
+  void reportState(double now);
+  void publishStaticFrames();
+
+  AesopParameters parameters_;
+  Eigen::Matrix3d tip_R_optical_;
+  std::unique_ptr<aesop::WireLogFile> recording_;  // outlives the driver that it listens to; null: none
+  bool recording_ended_ = false;                   // and was reported
+  aesop::Driver driver_;
+  aesop::Reconnect reconnect_;
+  InputOwner master_;
+  ServiceCallers callers_;
+  ServiceErrors service_errors_;
+  aesop::SerialTransport transport_;
+  CalibrationServices calibration_;
+  AesopDiagnostics reported_;
+  double next_diagnostics_ = 0.0;  // s, steady
+  SaidLines refused_lines_;
+  SaidLines stranger_lines_;
+  StateReport state_report_;
+  ExternalStops stops_;
+  std::uint64_t published_ = 0;  // statuses received when the last one was published
+  aesop::OperatingState last_state_;
+  bool state_published_ = false;
+  std::uint32_t enables_ = 0;  // see OperatingState.msg
+  bool was_on_ = false;        // ENABLED or PAUSED in the last step
+  double state_time_ = 0.0;    // s, steady, of the last publication
+
+  ros::NodeHandle node_;
+  ros::NodeHandle private_node_;
+  ros::Publisher joint_publisher_;
+  ros::Publisher pose_publisher_;
+  ros::Publisher twist_publisher_;
+  ros::Publisher state_publisher_;
+  ros::Subscriber command_subscriber_;
+  ros::Subscriber stop_subscriber_;
+  std::vector<ros::ServiceServer> services_;
+  tf2_ros::TransformBroadcaster broadcaster_;
+  tf2_ros::StaticTransformBroadcaster static_broadcaster_;
+  diagnostic_updater::Updater diagnostics_;
+};
+
+}  // namespace laparoscope_servo

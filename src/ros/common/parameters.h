@@ -1,0 +1,80 @@
+// Reads a tree of parameters, from the parameter server or from a YAML file, with the same checks for both.
+//
+// A parameter that is absent keeps the value that the configuration struct gives it; one that is there must have the
+// right type and lie in its range. Every error is kept, so that a user sees all of them at once; the node then refuses
+// to start.
+#pragma once
+
+#include <XmlRpcValue.h>
+
+#include <functional>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace ros {
+class NodeHandle;
+}
+
+namespace laparoscope_servo {
+
+class ParameterReader {
+ public:
+  // `tree` is a struct of parameters or invalid (none are set); `name` is what its root is called in errors, e.g.
+  // "/tracker".
+  explicit ParameterReader(const XmlRpc::XmlRpcValue& tree, const std::string& name);
+
+  // Paths are relative to the root, with slashes: "tracking/levels". Bounds are inclusive. An integer is taken for a
+  // double.
+  void read(const std::string& path, double& value, double minimum, double maximum);
+  void read(const std::string& path, int& value, int minimum, int maximum);
+  void read(const std::string& path, bool& value);
+  void read(const std::string& path, std::string& value);
+  // One of a list of names, e.g. a mode.
+  void read(const std::string& path, std::string& value, const std::vector<std::string>& choices);
+  // A list of numbers: exactly `size` of them, or any number when `size` is 0. Bounds hold for each.
+  void read(const std::string& path, std::vector<double>& value, std::size_t size, double minimum, double maximum);
+
+  // A list of strings, of any length.
+  void read(const std::string& path, std::vector<std::string>& value);
+
+  bool has(const std::string& path) const;
+  // Adds an error when the parameter is absent.
+  void require(const std::string& path, const std::string& what);
+  // Adds an error for each parameter under `group` that nobody has read: a typing error in a file must not go
+  // unnoticed. An empty `group` stands for the root.
+  void refuseUnknown(const std::string& group);
+  void addError(const std::string& error) { errors_.push_back(error); }
+  void addErrors(const std::vector<std::string>& errors) {
+    errors_.insert(errors_.end(), errors.begin(), errors.end());
+  }
+
+  const std::vector<std::string>& errors() const { return errors_; }
+  // All errors, one a line, with a heading; empty when there are none.
+  std::string report() const;
+
+ private:
+  const XmlRpc::XmlRpcValue* find(const std::string& path) const;
+  // The value at `path`, marked as read; null when absent.
+  const XmlRpc::XmlRpcValue* take(const std::string& path);
+  void wrongType(const std::string& path, const XmlRpc::XmlRpcValue& value, const std::string& expected);
+  std::string full(const std::string& path) const { return name_ + "/" + path; }
+  bool number(const XmlRpc::XmlRpcValue& value, double& result) const;
+
+  XmlRpc::XmlRpcValue tree_;
+  std::string name_;
+  std::set<std::string> read_;
+  std::vector<std::string> errors_;
+};
+
+// All parameters under the handle's namespace, as a struct; invalid when there are none.
+XmlRpc::XmlRpcValue parametersOf(const ros::NodeHandle& node);
+
+// The parameters of a YAML file, as rosparam would load them. Throws std::runtime_error that names the file, and the
+// line where it cannot be parsed.
+XmlRpc::XmlRpcValue parametersFromYaml(const std::string& file);
+
+// `overlay` laid over `base`: structs are merged key by key, everything else is replaced.
+XmlRpc::XmlRpcValue mergeParameters(const XmlRpc::XmlRpcValue& base, const XmlRpc::XmlRpcValue& overlay);
+
+}  // namespace laparoscope_servo

@@ -1,0 +1,22 @@
+// A thread that takes no signals: those are for the main thread, whose system calls they are to interrupt.
+#pragma once
+
+#include <signal.h>
+
+#include <thread>
+#include <utility>
+
+namespace laparoscope_servo {
+
+template <typename Function>
+std::thread startQuietThread(Function&& function) {
+  sigset_t all;
+  sigset_t before;
+  ::sigfillset(&all);
+  ::pthread_sigmask(SIG_SETMASK, &all, &before);
+  std::thread thread(std::forward<Function>(function));
+  ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  return thread;
+}
+
+}  // namespace laparoscope_servo

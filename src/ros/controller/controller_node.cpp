@@ -1,0 +1,181 @@
+#include "ros/controller/controller_node.h"
+
+#include <laparoscope_servo/ControllerState.h>
+#include <laparoscope_servo/ScopeVelocity.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ros/common/clocks.h"
+#include "ros/controller/controller_conversions.h"
+
+namespace laparoscope_servo {
+
+namespace {
+
+constexpr double kCautionPause = 1.0;  // s, between two of them on the screen
+
+const char* doing(servo::Task task) {
+  return task == servo::Task::kManual ? "is driven by hand" : "follows the region of interest";
+}
+
+}  // namespace
+
+ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_node, const ControllerNodeConfig& config)
+    : config_(config),
+      controller_(config.control),
+      stops_(config.external_stops),
+      scope_pose_(config),
+      last_now_(ros::Time::now()),
+      inputs_(node, private_node, config,
+              {[this] { checkTime(); }, [this](const std::string& sender) { onStop(sender); },
+               [this](const std::string& frame) { return scope_pose_.shaftFrom(frame); }}),
+      diagnostics_(node, private_node),
+      command_publisher_(node.advertise<ScopeVelocity>("servo_command", 1)),
+      state_publisher_(private_node.advertise<ControllerState>("state", 1, true)) {
+  diagnostics_.setHardwareID("none");
+  diagnostics_.add("control", this, &ControllerNode::report);
+  publish(controller_.update(input()));
+  select_task_service_ = private_node.advertiseService("select_task", &ControllerNode::onSelectTask, this);
+  engage_service_ = private_node.advertiseService("engage", &ControllerNode::onEngage, this);
+  tick_timer_ =
+      node.createSteadyTimer(ros::WallDuration(1.0 / config_.rate), [this](const ros::SteadyTimerEvent&) { onTick(); });
+  // Not Updater::update(): it waits for ROS time, which may have jumped back.
+  diagnostics_timer_ = node.createSteadyTimer(ros::WallDuration(diagnostics_.getPeriod()),
+                                              [this](const ros::SteadyTimerEvent&) { diagnostics_.force_update(); });
+}
+
+void ControllerNode::stop() {
+  controller_.disengage("the controller ends");
+  publish(controller_.update(input()));
+}
+
+// A fault stays, it is for somebody to look at.
+void ControllerNode::onStop(const std::string& sender) {
+  if (!controller_.engaged()) return;
+  controller_.disengage("stopped by " + sender);
+  onTick();
+}
+
+void ControllerNode::watchOutside() {
+  const double now = steadyNow();
+  std::string stop = stops_.takeStop(now);
+  if (stop.empty()) stop = stops_.obstacle(now);
+  if (!stop.empty() && controller_.engaged()) controller_.disengage(stop);
+}
+
+void ControllerNode::onTick() {
+  checkTime();
+  watchOutside();
+  last_input_ = input();
+  clock_jump_.clear();
+  inputs_.taken();
+  publish(controller_.update(last_input_));
+  inputs_.know(controller_.engaged(), controller_.task());
+}
+
+// A looped bag, a restarted simulation: nothing that was known holds, and nobody expects the arm to go on.
+void ControllerNode::checkTime() {
+  const ros::Time now = ros::Time::now();
+  const bool back = (last_now_ - now).toSec() > config_.control.safety.max_clock_difference;
+  last_now_ = now;
+  if (!back) return;
+  inputs_.forgetStamps();
+  scope_pose_.clear();
+  clock_jump_ = "ROS time jumped back";
+}
+
+servo::ControllerInput ControllerNode::input() {
+  const double steady_now = steadyNow();
+  servo::ControllerInput input;
+  input.time = steady_now;
+  input.depth = scope_pose_.depth(controller_.engaged(), steady_now);
+  if (!scope_pose_.fault().empty()) clock_jump_ = scope_pose_.fault();
+  input.clock_jump = clock_jump_;
+  inputs_.fill(input, steady_now);
+  return input;
+}
+
+void ControllerNode::publish(const servo::ControllerOutput& output) {
+  ScopeVelocity command = toMessage(output.command);
+  command.header.stamp = ros::Time::now();
+  command.header.frame_id = config_.shaft;
+  command_publisher_.publish(command);
+  const bool changed =
+      output.state != last_output_.state || output.reason != last_output_.reason || output.task != last_output_.task;
+  const bool same_caution = output.caution == last_output_.caution;
+  const servo::ControllerState before = last_output_.state;
+  last_output_ = output;
+  if (changed) said_caution_.clear();
+  if (!changed) warn(output.caution);
+  if (!changed && same_caution && state_published_) return;
+  publishState(output);
+  if (!changed) return;
+  if (output.state == servo::ControllerState::kServo) {
+    ROS_INFO("The scope %s.", doing(output.task));
+  } else if (output.state == servo::ControllerState::kFault) {
+    ROS_ERROR("The scope stands still: %s.", output.reason.c_str());
+  } else if (before != servo::ControllerState::kIdle || output.engaged()) {
+    ROS_WARN("The scope stands still: %s.", output.reason.c_str());
+  }
+}
+
+void ControllerNode::warn(const std::string& caution) {
+  if (caution == said_caution_ || steadyNow() < next_caution_) return;
+  said_caution_ = caution;
+  next_caution_ = steadyNow() + kCautionPause;
+  if (!caution.empty()) ROS_WARN("The scope: %s.", caution.c_str());
+}
+
+void ControllerNode::publishState(const servo::ControllerOutput& output) {
+  ControllerState state = toMessage(output);
+  state.header.stamp = ros::Time::now();
+  state_publisher_.publish(state);
+  state_published_ = true;
+}
+
+void ControllerNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  using diagnostic_msgs::DiagnosticStatus;
+  using State = servo::ControllerState;
+  const ControllerState state = toMessage(last_output_);
+  const std::string& caution = last_output_.caution;
+  if (last_output_.state == State::kServo) {
+    status.summary(caution.empty() ? DiagnosticStatus::OK : DiagnosticStatus::WARN,
+                   doing(last_output_.task) + (caution.empty() ? "" : ", " + caution));
+  } else {
+    const bool is_bad = last_output_.state == State::kHold || last_output_.state == State::kLost;
+    status.summary(is_bad ? DiagnosticStatus::WARN : DiagnosticStatus::OK, state.state + ": " + state.reason);
+    if (last_output_.state == State::kFault) status.level = DiagnosticStatus::ERROR;
+  }
+  inputs_.describe(status);
+  status.add("task", state.task);
+  status.add("state", state.state);
+  status.add("reason", state.reason);
+  status.add("speed scale", last_output_.speed_scale);
+  const std::string problem = controller_.problem(last_input_);
+  stops_.describe(steadyNow(), status);
+  status.add("ready to move", problem.empty() ? "yes" : "no: " + problem);
+  status.add("age of the task error [s]", last_input_.task_error.age);
+  status.add("age of its image [s]", last_input_.task_error.image_age);
+  status.add("visible fraction", last_input_.task_error.visible_fraction);
+  status.add("corner error [px]", last_input_.task_error.corner_error);
+  status.add("age of d2 [s]", last_input_.depth.age);
+  status.add("d2 [m]", last_input_.depth.d2);
+  scope_pose_.describe(status);
+  status.add("insertion point beside the shaft [m]", last_input_.depth.lateral_offset);
+  status.add("age of the manual command [s]", last_input_.manual.age);
+  const servo::InsertionPointEstimate& point = controller_.insertionPoint().estimate();
+  status.add("insertion point by the poses, from its frame [m]", point.valid ? point.point.norm() : 0.0);
+  status.add("its standard deviation [m]", point.valid ? std::sqrt(point.covariance.trace() / 3.0) : 0.0);
+  status.add("residual of the shafts [m]", controller_.insertionPoint().residual());
+  status.add("delay [s]", controller_.servo().delay());
+  status.add("breathing rate [Hz]", controller_.servo().breathingRate());
+  status.add("evidence of a fault in the picture", controller_.effect().evidence());
+  status.add("factor of the gains", controller_.servo().gainFactor());
+  status.add("pan [rad/s]", last_output_.command.pan);
+  status.add("tilt [rad/s]", last_output_.command.tilt);
+  status.add("spin [rad/s]", last_output_.command.spin);
+  status.add("insertion [m/s]", last_output_.command.insertion);
+}
+
+}  // namespace laparoscope_servo

@@ -1,0 +1,72 @@
+// The controller as a node: task error and tf in, scope velocity out.
+//
+// Subscribes `task_error` (TaskError), `~manual` (ScopeVelocity), `~stop` (std_msgs/Empty) and, where they are
+// required, `operating_state` (OperatingState) and `dead_man` (std_msgs/Bool), see controller_inputs.h; publishes
+// `servo_command` (ScopeVelocity, at a fixed rate, zero unless the arm may move), `~state` (ControllerState, latched)
+// and diagnostics; services `~engage` (std_srvs/SetBool),
+// `~select_task` (SelectTask). d2 comes from tf. The rate and all ages run on a steady clock: ROS time that stands
+// still or jumps back stops the arm. Not thread-safe: one thread calls all callbacks.
+#pragma once
+
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <laparoscope_servo/SelectTask.h>
+#include <ros/ros.h>
+#include <std_srvs/SetBool.h>
+
+#include <string>
+
+#include "laparoscope_servo/servo/controller.h"
+#include "ros/common/external_stops.h"
+#include "ros/controller/controller_inputs.h"
+#include "ros/controller/controller_parameters.h"
+#include "ros/controller/scope_pose.h"
+
+namespace laparoscope_servo {
+
+class ControllerNode {
+ public:
+  // Throws std::invalid_argument when the configuration is not valid.
+  ControllerNode(ros::NodeHandle node, ros::NodeHandle private_node, const ControllerNodeConfig& config);
+
+  // Disengages and publishes zeros. For the end of the process: call it while publishers are still open.
+  void stop();
+  // The ROS master is not that of the start any more: the node has to end, for nobody finds it.
+  bool mustEnd() const { return stops_.mustEnd(); }
+
+ private:
+  void onStop(const std::string& sender);
+  bool onSelectTask(SelectTask::Request& request, SelectTask::Response& response);
+  bool onEngage(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
+  void onTick();
+  void checkTime();
+  // Ends what is engaged when something outside of ROS, or the end of its master, stops the arm.
+  void watchOutside();
+  servo::ControllerInput input();
+  void publish(const servo::ControllerOutput& output);
+  void publishState(const servo::ControllerOutput& output);
+  void warn(const std::string& caution);
+  void report(diagnostic_updater::DiagnosticStatusWrapper& status);
+
+  ControllerNodeConfig config_;
+  servo::Controller controller_;
+  ExternalStops stops_;
+  ScopePose scope_pose_;
+  ros::Time last_now_;
+  std::string clock_jump_;  // since the last step, in words
+  servo::ControllerInput last_input_;
+  servo::ControllerOutput last_output_;
+  bool state_published_ = false;
+  std::string said_caution_;   // on the screen
+  double next_caution_ = 0.0;  // s, steady
+
+  ControllerInputs inputs_;
+  diagnostic_updater::Updater diagnostics_;
+  ros::Publisher command_publisher_;
+  ros::Publisher state_publisher_;
+  ros::ServiceServer engage_service_;
+  ros::ServiceServer select_task_service_;
+  ros::SteadyTimer tick_timer_;
+  ros::SteadyTimer diagnostics_timer_;
+};
+
+}  // namespace laparoscope_servo

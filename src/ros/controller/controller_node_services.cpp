@@ -1,0 +1,42 @@
+// The services of the controller. Each steps the control at once: its answer is what the arm does from now on.
+#include "ros/common/clocks.h"
+#include "ros/controller/controller_conversions.h"
+#include "ros/controller/controller_node.h"
+
+namespace laparoscope_servo {
+
+bool ControllerNode::onEngage(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response) {
+  checkTime();
+  if (!request.data) {
+    controller_.disengage("not engaged");
+    response.success = true;
+    response.message = "disengaged";
+  } else if (controller_.engaged()) {
+    response.success = true;
+    response.message = "was engaged already, " + toMessage(last_output_).state + ": " + last_output_.reason;
+  } else {
+    inputs_.engaging();
+    std::string problem = stops_.obstacle(steadyNow());
+    if (problem.empty()) problem = controller_.engage(input());
+    response.success = problem.empty();
+    response.message = problem.empty() ? "engaged" : "not engaged: " + problem;
+  }
+  onTick();
+  return true;
+}
+
+bool ControllerNode::onSelectTask(SelectTask::Request& request, SelectTask::Response& response) {
+  checkTime();
+  response.success = request.task == SelectTask::Request::HOLD_VIEW || request.task == SelectTask::Request::MANUAL;
+  if (!response.success) {
+    response.message =
+        "no task '" + request.task + "', expected HOLD_VIEW or MANUAL; " + taskName(controller_.task()) + " goes on";
+    return true;
+  }
+  controller_.select(request.task == SelectTask::Request::MANUAL ? servo::Task::kManual : servo::Task::kHoldView);
+  onTick();
+  response.message = request.task + ", " + toMessage(last_output_).state + ": " + last_output_.reason;
+  return true;
+}
+
+}  // namespace laparoscope_servo

@@ -1,0 +1,44 @@
+// Parameters of the controller node, see config/controller.yaml.
+#pragma once
+
+#include <ros/node_handle.h>
+
+#include <string>
+
+#include "laparoscope_servo/servo/controller_config.h"
+#include "ros/common/external_stops.h"
+#include "ros/common/parameters.h"
+
+namespace laparoscope_servo {
+
+// Which node may say what, by its name: relative to the controller's namespace, or with a leading slash. Empty: whoever
+// speaks first.
+struct InputOwners {
+  std::string task_error = "tracker";
+  std::string operating_state = "aesop";  // also of measured_cv
+  std::string manual;
+  std::string dead_man;
+};
+
+struct ControllerNodeConfig {
+  double rate = 50.0;                               // Hz, of the commands
+  std::string insertion_point = "insertion_point";  // tf frame, O_A
+  std::string camera = "laparoscope_optical";       // tf frame, O_C
+  std::string shaft = "scope_tip";                  // tf frame with its z axis along the shaft, into the body
+  InputOwners owners;
+  std::string frame_prefix = "auto";  // in front of frames without a slash; auto: the namespace
+  std::string tf_owner = "aesop";     // the node that publishes them; empty: whoever is the first
+  servo::ControllerConfig control;
+  ExternalStopsConfig external_stops;
+};
+
+// Reads what is set, keeps the defaults for the rest. Errors, also those of servo::validate, go to the reader.
+ControllerNodeConfig controllerNodeConfig(ParameterReader& reader);
+
+// Completes the names of frames and nodes, which depend on the node's namespace.
+void resolveNames(ControllerNodeConfig& config, const ros::NodeHandle& node);
+
+// The part of it that simulate_servo shares.
+servo::ControllerConfig controllerConfig(ParameterReader& reader);
+
+}  // namespace laparoscope_servo

@@ -1,0 +1,43 @@
+// What the sources that use libav share: its objects with an owner, and its errors in words. Only what both ffmpeg 4.2
+// (Ubuntu 20.04) and 5.1 (Debian 12) have is used.
+#pragma once
+
+extern "C" {
+#include <libavcodec/avcodec.h>
+#include <libavformat/avformat.h>
+#include <libavutil/dict.h>
+#include <libavutil/display.h>
+#include <libavutil/log.h>
+#include <libavutil/opt.h>
+#include <libavutil/pixdesc.h>
+#include <libswscale/swscale.h>
+}
+
+#include <array>
+#include <memory>
+#include <string>
+
+namespace laparoscope_servo::libav {
+
+struct Free {
+  void operator()(AVFrame* frame) const { av_frame_free(&frame); }
+  void operator()(AVPacket* packet) const { av_packet_free(&packet); }
+  void operator()(AVCodecContext* codec) const { avcodec_free_context(&codec); }
+  void operator()(SwsContext* scaler) const { sws_freeContext(scaler); }
+};
+using Frame = std::unique_ptr<AVFrame, Free>;
+using Packet = std::unique_ptr<AVPacket, Free>;
+using Codec = std::unique_ptr<AVCodecContext, Free>;
+using Scaler = std::unique_ptr<SwsContext, Free>;
+
+inline std::string errorText(int code) {
+  std::array<char, AV_ERROR_MAX_STRING_SIZE> text{};
+  return av_strerror(code, text.data(), text.size()) == 0 ? text.data() : "error " + std::to_string(code);
+}
+
+// A name like 10:00:00.mp4 is a file, no address.
+inline std::string fileUrl(const std::string& path) {
+  return "file:" + path;
+}
+
+}  // namespace laparoscope_servo::libav

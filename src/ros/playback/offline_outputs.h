@@ -1,0 +1,60 @@
+// The files that the offline tool writes. Each is made before the work begins, does nothing when its name is empty, and
+// is there under its name once it is kept; until then an earlier one of that name stays. All throw std::runtime_error
+// that names the file.
+#pragma once
+
+#include <ros/time.h>
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "ros/common/output_file.h"
+#include "ros/tracker/tracker_session.h"
+
+namespace rosbag {
+class Bag;
+}
+
+namespace laparoscope_servo {
+
+class VideoWriter;
+
+class CsvOutput {
+ public:
+  explicit CsvOutput(const std::string& name);
+  void write(std::size_t frame, const Processed& processed);
+  void keep();
+
+ private:
+  std::optional<TextFile> file_;
+};
+
+class BagOutput {
+ public:
+  explicit BagOutput(const std::string& name);
+  ~BagOutput();
+  void write(const ros::Time& record_time, const Processed& processed);
+  void keep();
+
+ private:
+  std::optional<OutputFile> file_;
+  std::unique_ptr<rosbag::Bag> bag_;
+};
+
+class OverlayOutput {
+ public:
+  OverlayOutput(const std::string& name, double rate);
+  ~OverlayOutput();
+  void write(const Processed& processed);
+  void keep();
+
+ private:
+  std::optional<OutputFile> file_;
+  double rate_;
+  cv::Size size_;
+  std::unique_ptr<VideoWriter> writer_;  // its size is known with the first image
+};
+
+}  // namespace laparoscope_servo

@@ -1,0 +1,39 @@
+// From a decoded picture of a video to the pixels that a player shows: 8 bit blue-green-red, upright.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <opencv2/core.hpp>
+#include <optional>
+
+#include "ros/playback/libav.h"
+
+namespace laparoscope_servo {
+
+// How a stored picture has to be laid: first transposed, then mirrored left-right, then top-bottom.
+struct Orientation {
+  bool transposed = false;
+  bool mirrored_x = false;
+  bool mirrored_y = false;
+};
+
+// Of a display matrix as libavutil/display.h has it. Angles between the right ones go to the nearest.
+Orientation orientationOf(const std::array<std::int32_t, 9>& display_matrix);
+
+class PictureConverter {
+ public:
+  explicit PictureConverter(const Orientation& orientation) : orientation_(orientation) {}
+
+  // A matrix of its own each time, of the picture's size. Colours by the picture's tags: BT.601, as ffmpeg takes it,
+  // where it has none; limited or full range. Throws std::runtime_error for a pixel format that swscale does not know.
+  cv::Mat convert(const AVFrame& picture);
+
+ private:
+  void prepare(const AVFrame& picture);
+
+  Orientation orientation_;
+  libav::Scaler scaler_;
+  std::array<int, 5> prepared_for_{};
+};
+
+}  // namespace laparoscope_servo

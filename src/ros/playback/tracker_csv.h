@@ -1,0 +1,18 @@
+// The table that the offline tool writes: a header line and one line per image.
+#pragma once
+
+#include <cstddef>
+#include <ostream>
+
+#include "ros/tracker/tracker_session.h"
+
+namespace laparoscope_servo {
+
+// frame,stamp,state,g00,g01,g02,g10,g11,g12,g20,g21,g22,visible_fraction,zncc,iterations,processing_time
+void writeCsvHeader(std::ostream& stream);
+
+// `frame` counts from 0; stamp and processing_time in s, the state as in Homography.msg, g with determinant 1. Numbers
+// have 17 digits: read back they are the same doubles.
+void writeCsvRow(std::ostream& stream, std::size_t frame, const Processed& processed);
+
+}  // namespace laparoscope_servo

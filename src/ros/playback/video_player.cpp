@@ -1,0 +1,203 @@
+#include "ros/playback/video_player.h"
+
+#include <image_transport/camera_common.h>
+#include <ros/callback_queue.h>
+#include <rosgraph_msgs/Clock.h>
+
+#include <algorithm>
+#include <boost/make_shared.hpp>
+#include <stdexcept>
+#include <thread>
+
+#include "ros/tracker/camera_info.h"
+#include "ros/tracker/image_conversion.h"
+#include "ros/tracker/result_messages.h"
+
+namespace laparoscope_servo {
+
+namespace {
+
+constexpr std::chrono::milliseconds kClockPeriod(10);
+constexpr std::chrono::milliseconds kCameraInfoTimeout(500);
+constexpr std::chrono::seconds kResultTimeout(2);  // a tracker that gives none must not stop the video
+
+}  // namespace
+
+VideoPlayerConfig videoPlayerConfig(ParameterReader& reader) {
+  VideoPlayerConfig config;
+  reader.require("video", "a bag, a video file or a folder of images");
+  reader.read("video", config.video);
+  reader.read("image_topic", config.image_topic);
+  reader.read("camera_info_topic", config.camera_info_topic);
+  reader.read("camera_info", config.camera_info);
+  reader.read("frame_id", config.frame_id);
+  reader.read("fps", config.fps, 0.1, 1000.0);
+  reader.read("speed", config.speed, 0.01, 100.0);
+  reader.read("start", config.start, 0.0, 1e6);
+  reader.read("first_stamp", config.first_stamp, 1e-3, 1e9);
+  reader.read("loop", config.loop);
+  reader.read("stay", config.stay);
+  reader.read("restart_time", config.restart_time);
+  reader.read("clock", config.clock);
+  reader.read("lockstep", config.lockstep);
+  reader.read("subscribers", config.subscribers, 0, 100);
+  reader.refuseUnknown("");
+  return config;
+}
+
+VideoPlayer::VideoPlayer(ros::NodeHandle node, const VideoPlayerConfig& config) : config_(config), transport_(node) {
+  options_.image_topic = config.image_topic;
+  options_.camera_info_topic = config.camera_info_topic;
+  options_.start = config.start;
+  options_.folder_rate = config.fps;
+  source_ = openImageSource(inputsOf(config.video), options_);
+  if (!source_->hasRecordedStamps()) offset_ = ros::Duration(config.first_stamp);
+  if (!config.camera_info.empty()) camera_info_ = readCameraInfo(config.camera_info);
+  if (config.clock) clock_publisher_ = node.advertise<rosgraph_msgs::Clock>("/clock", 10);
+  if (config.lockstep) {
+    homography_subscriber_ = node.subscribe<Homography>("homography", 10, [this](const HomographyConstPtr& result) {
+      answered_ = answered_ || result->header.stamp == awaited_;
+    });
+  }
+  // A queue long enough that a burst after a slow read loses nothing.
+  image_publisher_ = transport_.advertise("image_raw", 50);
+  const std::string info_topic = image_transport::getCameraInfoTopic(node.resolveName("image_raw"));
+  camera_info_publisher_ = node.advertise<sensor_msgs::CameraInfo>(info_topic, 50);
+}
+
+void VideoPlayer::run() {
+  waitForSubscribers();
+  bool first_time = true;
+  do {
+    const std::size_t before = published_;
+    playOnce();
+    if (ros::ok() && published_ == before) {
+      throw SourceError("'" + config_.video + "' has no image after " + std::to_string(config_.start) + " s");
+    }
+    if (first_time) tellNotes();
+    first_time = false;
+    if (!config_.loop) break;
+    if (!config_.restart_time) offset_ += last_ - begin_ + ros::Duration(1.0 / source_->rate());
+    source_ = openImageSource(inputsOf(config_.video), options_);
+  } while (ros::ok());
+  ROS_INFO("played %zu images of '%s'%s", published_, config_.video.c_str(),
+           config_.stay && ros::ok() ? "; the last one stays until this node is ended" : "");
+  if (config_.stay) ros::spin();
+}
+
+void VideoPlayer::tellNotes() const {
+  for (const std::string& note : source_->notes()) ROS_WARN("'%s': %s", config_.video.c_str(), note.c_str());
+  if (unanswered_ > 0) ROS_WARN("the tracker gave no result for %zu of %zu images", unanswered_, published_);
+}
+
+void VideoPlayer::waitForSubscribers() const {
+  int waited = 0;
+  for (; ros::ok(); ++waited) {
+    const auto subscribers = static_cast<int>(image_publisher_.getNumSubscribers());
+    const bool tracker = !config_.lockstep || homography_subscriber_.getNumPublishers() > 0;
+    if (subscribers >= config_.subscribers && tracker) break;
+    if (waited % 500 == 100) {
+      ROS_INFO("waiting for subscribers of %s: %d of %d%s", image_publisher_.getTopic().c_str(), subscribers,
+               config_.subscribers, tracker ? "" : ", and for a tracker");
+    }
+    std::this_thread::sleep_for(kClockPeriod);
+  }
+  // Who listens to the images mostly listens to the intrinsics, too, and needs them with the first image.
+  const auto end = Clock::now() + kCameraInfoTimeout;
+  while (ros::ok() && waited > 0 && camera_info_publisher_.getNumSubscribers() == 0 && Clock::now() < end) {
+    std::this_thread::sleep_for(kClockPeriod);
+  }
+}
+
+ros::Time VideoPlayer::timeOf(const SourceImage& image) const {
+  return (source_->hasRecordedStamps() ? image.record_time : image.header.stamp) + offset_;
+}
+
+void VideoPlayer::playOnce() {
+  for (bool first = true; ros::ok(); first = false) {
+    const std::optional<SourceImage> image = source_->next();
+    if (!image) return;
+    last_ = timeOf(*image);
+    if (first) {
+      begin_ = last_;
+      begin_due_ = Clock::now();
+    }
+    waitUntil(last_);
+    publishClock(last_);
+    if (image->error.empty()) {
+      awaited_ = image->header.stamp + offset_;
+      answered_ = false;
+      publish(*image);
+      if (config_.lockstep) waitForResult(last_);
+    } else {
+      ROS_ERROR("image %zu is left out: %s", image->frame, image->error.c_str());
+    }
+    ros::spinOnce();
+  }
+}
+
+VideoPlayer::Clock::time_point VideoPlayer::dueTime(const ros::Time& time) const {
+  const std::chrono::duration<double> elapsed((time - begin_).toSec() / config_.speed);
+  return begin_due_ + std::chrono::duration_cast<Clock::duration>(elapsed);
+}
+
+void VideoPlayer::waitUntil(const ros::Time& time) {
+  const auto due = dueTime(time);
+  for (auto next = Clock::now() + kClockPeriod; next < due && ros::ok(); next += kClockPeriod) {
+    std::this_thread::sleep_until(next);
+    const std::chrono::duration<double> left = due - next;
+    publishClock(time - ros::Duration(left.count() * config_.speed));
+  }
+  std::this_thread::sleep_until(due);
+}
+
+void VideoPlayer::waitForResult(const ros::Time& time) {
+  const auto begin = Clock::now();
+  while (ros::ok() && !answered_ && homography_subscriber_.getNumPublishers() > 0 &&
+         Clock::now() - begin < kResultTimeout) {
+    ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.001));
+  }
+  if (!answered_ && ros::ok()) ++unanswered_;
+  // What comes late does not make the next ones hurry.
+  const auto late = Clock::now() - dueTime(time + ros::Duration(1.0 / source_->rate()));
+  if (late > Clock::duration::zero()) begin_due_ += late;
+}
+
+void VideoPlayer::publishClock(const ros::Time& time) {
+  if (!config_.clock) return;
+  rosgraph_msgs::Clock message;
+  message.clock = time;
+  clock_publisher_.publish(message);
+}
+
+void VideoPlayer::publish(const SourceImage& image) {
+  std_msgs::Header header = image.header;
+  header.stamp += offset_;
+  if (!source_->hasRecordedStamps()) header.frame_id = config_.frame_id;
+
+  sensor_msgs::ImagePtr message;
+  if (image.message) {
+    message = boost::make_shared<sensor_msgs::Image>(*image.message);
+    message->header = header;
+  } else {
+    message = imageMessage(header, trackerImage(image.decoded));
+  }
+  if (config_.camera_info.empty()) {
+    if (image.camera_info) camera_info_ = *image.camera_info;
+    if (camera_info_.K[0] == 0.0) {
+      camera_info_.width = message->width;
+      camera_info_.height = message->height;
+    }
+  } else if (camera_info_.width != message->width || camera_info_.height != message->height) {
+    throw std::runtime_error("calibration '" + config_.camera_info + "' is for images of " +
+                             std::to_string(camera_info_.width) + "x" + std::to_string(camera_info_.height) +
+                             " px, but those of '" + config_.video + "' have " + std::to_string(message->width) + "x" +
+                             std::to_string(message->height) + " px");
+  }
+  camera_info_.header = header;
+  camera_info_publisher_.publish(camera_info_);
+  image_publisher_.publish(message);
+  ++published_;
+}
+
+}  // namespace laparoscope_servo

@@ -1,0 +1,92 @@
+// The node `video_player`: plays a bag, a video or a folder of images as a camera driver would publish them, and the
+// time that goes with them as `rosbag play --clock` would.
+//
+// Subscribes: homography (laparoscope_servo/Homography), in lockstep only. Publishes: image_raw (sensor_msgs/Image),
+// camera_info (sensor_msgs/CameraInfo; all zero when no calibration is known, so that nobody takes it for one), and
+// /clock. A bag's images keep their headers, but for stamps that are 0 or repeated: a result is known by its image's
+// stamp. Stamps of a video are first_stamp + time of presentation, whatever the speed at which it is played. Everything
+// is paced by a steady clock. At a loop, time jumps back as with a looped bag. Of a bag, only images and their
+// camera_info are played: nothing that was recorded can move an arm.
+#pragma once
+
+#include <image_transport/image_transport.h>
+#include <ros/ros.h>
+#include <sensor_msgs/CameraInfo.h>
+
+#include <chrono>
+#include <memory>
+#include <string>
+
+#include "laparoscope_servo/Homography.h"
+#include "ros/common/parameters.h"
+#include "ros/playback/image_source.h"
+
+namespace laparoscope_servo {
+
+struct VideoPlayerConfig {
+  std::string video;              // bag, video file, or folder of images; several bags: see inputsOf
+  std::string image_topic;        // of a bag; may be empty when it has only one with images
+  std::string camera_info_topic;  // of a bag; empty: camera_info beside the images
+  std::string camera_info;        // file of camera_calibration (YAML or INI); empty: intrinsics unknown
+  std::string frame_id = "laparoscope_optical";
+  double fps = 25.0;         // Hz, 0.1 to 1000, of a folder and of a video that does not tell its own
+  double speed = 1.0;        // 0.01 to 100: 2 plays twice as fast
+  double start = 0.0;        // s, >= 0: what comes before is skipped
+  double first_stamp = 1.0;  // s, > 0, of the video's first image: 0 means `no time` to ROS
+  bool loop = false;         // begin again at the end
+  bool stay = false;         // at the end the node goes on, so that its last image can be looked at
+  bool restart_time = true;  // false: stamps go on at a loop instead of jumping back
+  bool clock = true;         // publish /clock
+  bool lockstep = false;     // the next image waits for the tracker's result, so that a slow one misses none
+  int subscribers = 1;       // 0 to 100: wait for so many of image_raw before the first image
+};
+
+// Reads the private parameters of the same names; errors stay in the reader.
+VideoPlayerConfig videoPlayerConfig(ParameterReader& reader);
+
+class VideoPlayer {
+ public:
+  // Throws SourceError when the video cannot be opened, std::runtime_error when the calibration cannot be read or is
+  // for images of another size.
+  VideoPlayer(ros::NodeHandle node, const VideoPlayerConfig& config);
+
+  // Plays until the end, or the node's. Throws SourceError when the video is damaged or has no image at all.
+  void run();
+
+  std::size_t published() const { return published_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void waitForSubscribers() const;
+  void playOnce();
+  void waitUntil(const ros::Time& time);
+  Clock::time_point dueTime(const ros::Time& time) const;
+  void publish(const SourceImage& image);
+  void publishClock(const ros::Time& time);
+  void waitForResult(const ros::Time& time);
+  void tellNotes() const;
+  // The time on /clock that the image belongs to.
+  ros::Time timeOf(const SourceImage& image) const;
+
+  VideoPlayerConfig config_;
+  SourceOptions options_;
+  std::unique_ptr<ImageSource> source_;
+  sensor_msgs::CameraInfo camera_info_;
+  image_transport::ImageTransport transport_;
+  // Not a CameraPublisher, which cannot tell whether it is the images that somebody listens to.
+  image_transport::Publisher image_publisher_;
+  ros::Publisher camera_info_publisher_;
+  ros::Publisher clock_publisher_;
+  ros::Subscriber homography_subscriber_;
+  ros::Time awaited_;      // stamp of the image that was published last ...
+  bool answered_ = false;  // ... and whether its result has come
+  std::size_t published_ = 0;
+  std::size_t unanswered_ = 0;   // images that waited for a result in vain
+  ros::Duration offset_;         // added to the stamps of the source
+  ros::Time begin_;              // time on /clock that was due ...
+  Clock::time_point begin_due_;  // ... then
+  ros::Time last_;               // time on /clock of the last image
+};
+
+}  // namespace laparoscope_servo

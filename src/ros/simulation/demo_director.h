@@ -1,0 +1,100 @@
+// The node `demo_director`: plays the surgeon and the nurse of the simulated cart once, and judges the loop.
+//
+// It waits for camera, tracker, controller and arm; selects a ROI in the middle of the image; moves the disabled arm by
+// hand away from there, the tracker following; enables and engages; waits until the ROI has come back and stays; lets
+// the instrument cross meanwhile; writes a summary as JSON. Relative names: camera/camera_info, tracker/homography,
+// aesop/operating_state; services tracker/select_roi, aesop/enable, controller/engage,
+// simulated_camera/cross_instrument.
+#pragma once
+
+#include <laparoscope_servo/Homography.h>
+#include <laparoscope_servo/OperatingState.h>
+#include <ros/ros.h>
+#include <sensor_msgs/CameraInfo.h>
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "laparoscope_servo/aesop/kinematics.h"
+#include "laparoscope_servo/sim/emulator.h"
+#include "laparoscope_servo/sim/emulator_control_client.h"
+#include "ros/common/parameters.h"
+#include "ros/simulation/demo_measures.h"
+
+namespace laparoscope_servo {
+
+struct DemoConfig {
+  std::string control;            // path of the emulator's control socket; required
+  std::string summary;            // file to write; empty: none
+  double roi_side = 120.0;        // px, 16 to 2000
+  double pan = 0.14;              // rad, -0.5 to 0.5: by hand, from the start pose; with the tilt 10 degrees
+  double tilt = 0.105;            // rad, -0.5 to 0.5
+  double spin = 0.0;              // rad, -1.5 to 1.5
+  double deeper = 0.02;           // m, -0.05 to 0.05
+  double hand_time = 6.0;         // s, 0.5 to 60: how long the hand takes
+  double settled_error = 2.0;     // px, 0.1 to 100: the ROI's centre is back
+  double settled_scale = 0.02;    // 0.001 to 1, relative: and its size
+  double settled_time = 2.0;      // s, 0.1 to 60: and stays
+  bool cross_instrument = true;   // once it has settled
+  double startup_timeout = 60.0;  // s, 1 to 600: for the nodes to be there
+  double timeout = 90.0;          // s, 1 to 600: for each of the loop's tasks
+  sim::EmulatorConfig emulator;   // config/aesop.yaml, kinematics, and config/emulator.yaml
+};
+
+// Reads the private parameters; errors stay in the reader.
+DemoConfig demoConfig(ParameterReader& reader);
+
+class DemoDirector {
+ public:
+  DemoDirector(ros::NodeHandle node, const DemoConfig& config);
+
+  // Plays the whole. What goes wrong is in the summary's reason.
+  DemoSummary run();
+
+ private:
+  // The demo cannot go on.
+  class Failed : public std::runtime_error {
+   public:
+    using std::runtime_error::runtime_error;
+  };
+
+  void play();
+  void waitForNodes();
+  void selectRoi();
+  void moveByHand();
+  void closeLoop();
+  void crossInstrument();
+  void finish();
+
+  // Handles messages until the condition holds. Throws Failed: `what` did not come about within `timeout` s.
+  void waitFor(const std::string& what, double timeout, const std::function<bool()>& condition);
+  void onHomography(const Homography& message);
+  Eigen::Isometry3d truePose();
+  PoseError truth();
+  template <typename Service>
+  void call(const std::string& name, Service service);
+
+  DemoConfig config_;
+  ros::NodeHandle node_;
+  aesop::Kinematics kinematics_;
+  std::unique_ptr<sim::EmulatorControlClient> emulator_;
+  ros::Subscriber camera_info_subscriber_;
+  ros::Subscriber homography_subscriber_;
+  ros::Subscriber state_subscriber_;
+
+  std::optional<sensor_msgs::CameraInfo> camera_info_;
+  std::optional<Homography> homography_;
+  std::string operating_state_;
+  geometry::Rectangle roi_;
+  bool selected_ = false;
+  bool crossing_ = false;
+  ViewError error_;
+  Settling settling_;
+  Eigen::Isometry3d start_pose_ = Eigen::Isometry3d::Identity();
+  DemoSummary summary_;
+};
+
+}  // namespace laparoscope_servo

@@ -1,0 +1,54 @@
+// The node `scope_markers`: draws the arm, the scope, its field of view and the insertion point in rviz, from tf.
+//
+// Subscribes: camera_info, tf. Publishes: ~markers (visualization_msgs/MarkerArray), ten times a second.
+#pragma once
+
+#include <ros/ros.h>
+#include <sensor_msgs/CameraInfo.h>
+#include <tf2_ros/buffer.h>
+#include <tf2_ros/transform_listener.h>
+#include <visualization_msgs/MarkerArray.h>
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "laparoscope_servo/geometry/camera.h"
+#include "ros/common/parameters.h"
+
+namespace laparoscope_servo {
+
+struct ScopeMarkersConfig {
+  std::string frame_prefix = "auto";                 // in front of every frame's name, as for the aesop node
+  std::string camera_frame = "laparoscope_optical";  // without the prefix
+  std::string insertion_point = "insertion_point";   // without the prefix
+  double view_depth = 0.08;                          // m, > 0: how far the field of view is drawn
+  double scope_radius = 0.005;                       // m, > 0
+};
+
+// Reads the private parameters of the same names; errors stay in the reader.
+ScopeMarkersConfig scopeMarkersConfig(ParameterReader& reader);
+
+class ScopeMarkers {
+ public:
+  ScopeMarkers(ros::NodeHandle node, ros::NodeHandle private_node, const ScopeMarkersConfig& config);
+
+ private:
+  void publish();
+  void addArm(visualization_msgs::MarkerArray& array) const;
+  void addScope(visualization_msgs::MarkerArray& array) const;
+  void addInsertionPoint(visualization_msgs::MarkerArray& array) const;
+  // Origin of a frame in the base; nothing while tf does not know it.
+  std::optional<Eigen::Vector3d> origin(const std::string& frame) const;
+
+  ScopeMarkersConfig config_;
+  tf2_ros::Buffer tf_;
+  tf2_ros::TransformListener tf_listener_;
+  std::optional<sensor_msgs::CameraInfo> camera_info_;
+  ros::Publisher publisher_;
+  ros::Subscriber camera_info_subscriber_;
+  ros::WallTimer timer_;
+};
+
+}  // namespace laparoscope_servo

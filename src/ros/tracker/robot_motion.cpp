@@ -1,0 +1,45 @@
+#include "ros/tracker/robot_motion.h"
+
+#include <tf2/exceptions.h>
+
+#include <cmath>
+
+#include "ros/common/frame_names.h"
+
+namespace laparoscope_servo {
+
+namespace {
+
+Eigen::Isometry3d toEigen(const geometry_msgs::Transform& transform) {
+  const auto& q = transform.rotation;
+  const auto& t = transform.translation;
+  Eigen::Isometry3d result = Eigen::Isometry3d::Identity();
+  result.linear() = Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized().toRotationMatrix();
+  result.translation() << t.x, t.y, t.z;
+  return result;
+}
+
+}  // namespace
+
+std::string fixedFrame(const RobotMotionConfig& config, const std::string& name_space) {
+  return prefixedFrame(framePrefix(config.frame_prefix, name_space), config.fixed_frame);
+}
+
+std::optional<Eigen::Isometry3d> cameraMotion(const tf2::BufferCore& tf, const std::string& fixed_frame,
+                                              const std::string& frame, const ros::Time& from, const ros::Time& to,
+                                              std::string& why) {
+  try {
+    const Eigen::Isometry3d fixed_T_from = toEigen(tf.lookupTransform(fixed_frame, frame, from).transform);
+    const Eigen::Isometry3d fixed_T_to = toEigen(tf.lookupTransform(fixed_frame, frame, to).transform);
+    const Eigen::Isometry3d motion = fixed_T_to.inverse() * fixed_T_from;
+    if (motion.matrix().allFinite()) return motion;
+    why = "the pose of " + frame + " in " + fixed_frame + " is not finite";
+  } catch (const tf2::ExtrapolationException&) {  // its text holds times, which change with every image
+    why = "tf does not know the pose of " + frame + " in " + fixed_frame + " at the images' stamps";
+  } catch (const tf2::TransformException& error) {
+    why = error.what();
+  }
+  return std::nullopt;
+}
+
+}  // namespace laparoscope_servo

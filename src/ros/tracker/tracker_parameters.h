@@ -1,0 +1,47 @@
+// The tracker's parameters, as the nodelet and the offline tool read them: config/tracker.yaml says what each means.
+#pragma once
+
+#include <XmlRpcValue.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "laparoscope_servo/geometry/homography.h"
+#include "laparoscope_servo/tracking/input_config.h"
+#include "laparoscope_servo/tracking/tracker_config.h"
+#include "laparoscope_servo/tracking/view_config.h"
+#include "ros/tracker/camera_info.h"
+#include "ros/tracker/image_conversion.h"
+#include "ros/tracker/robot_motion.h"
+
+namespace laparoscope_servo {
+
+struct TrackerParameters {
+  tracking::TrackerConfig tracking;
+  tracking::InputConfig input;
+  ImageFormat image{0, YuvRange::kLimited};  // a bit depth of 0: found out
+  std::optional<geometry::Rectangle> roi;    // px, selected in the first image
+  ImageKind image_kind = ImageKind::kRaw;
+  RobotMotionConfig robot_motion;
+  tracking::ViewConfig views;
+  double select_timeout = 5.0;  // s, 0.1 to 60: how long a service waits for an image
+};
+
+// Reads `tree`, called `name` in errors; what is absent keeps its default. Every error is appended to `errors`: the
+// result may be used only when there is none. A parameter under tracking/, input/ or views/ that does not exist is an
+// error, too.
+TrackerParameters readTrackerParameters(const XmlRpc::XmlRpcValue& tree, const std::string& name,
+                                        std::vector<std::string>& errors);
+
+// "x,y,width,height" in px. Throws std::invalid_argument that says what is wrong; whether the rectangle lies in the
+// image is judged when there is one.
+geometry::Rectangle parseRoi(const std::string& text);
+
+// "x,y,width,height", as parseRoi reads it.
+std::string roiText(const geometry::Rectangle& roi);
+
+// All errors below a heading, one a line; empty when there are none.
+std::string errorReport(const std::vector<std::string>& errors);
+
+}  // namespace laparoscope_servo

@@ -1,0 +1,114 @@
+// What the session does about images before and after the tracker has looked at them: times and sizes that do not go
+// on, and pictures that repeat.
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+#include "ros/tracker/tracker_session.h"
+
+namespace laparoscope_servo {
+
+namespace {
+
+cv::Rect boxOf(const geometry::Quadrilateral& corners) {
+  Eigen::Vector2d low = corners[0];
+  Eigen::Vector2d high = corners[0];
+  for (const Eigen::Vector2d& corner : corners) {
+    low = low.cwiseMin(corner);
+    high = high.cwiseMax(corner);
+  }
+  constexpr double kFar = 1e6;  // px: what lies further out fits no int, and is in no image
+  if (!(low.cwiseAbs().maxCoeff() < kFar && high.cwiseAbs().maxCoeff() < kFar)) return {};
+  return {cv::Point(static_cast<int>(low.x()), static_cast<int>(low.y())),
+          cv::Point(static_cast<int>(high.x()), static_cast<int>(high.y()))};
+}
+
+// Of the region's upper edge.
+double angleOf(const tracking::TrackResult& result) {
+  const geometry::Quadrilateral corners = geometry::apply(result.g, result.roi.corners());
+  const Eigen::Vector2d edge = corners[1] - corners[0];
+  return std::atan2(edge.y(), edge.x());
+}
+
+}  // namespace
+
+// The tracker's time goes on whatever the stamps do: that a region is looked for again is decided here.
+void TrackerSession::passGate(const Processed& processed, double& period) {
+  const ros::Time& stamp = processed.header.stamp;
+  const cv::Size size = processed.image.size();
+  const ImageGate::Passed passed = gate_.judge(stamp, size, processed.image.channels());
+  period = passed.period;
+  if (passed.step_back > 0.0) {
+    time_offset_ = time_ + passed.period - stamp.toSec();
+    believed_stamp_.reset();
+  }
+  time_ = stamp.toSec() + time_offset_;
+  if (passed.loop) recall_.end("time jumped back");
+  if (passed.loop && tracker_.hasRoi()) lookForReference("time jumped back");
+  const bool size_returned = passed.other_size && !tracker_.hasRoi() && reference_ && reference_->image.size() == size;
+  if (size_returned) lookForReference("the images have their old size again");
+}
+
+// A view of a recall that is on its way is the reference then, and stays it.
+void TrackerSession::lookForReference(const std::string& why) {
+  if (!reference_ || reference_->stamp != reference_stamp_) return;
+  try {
+    tracker_.recall(reference_->image, reference_->stamp.toSec(), reference_->roi, time_);
+    believed_stamp_.reset();
+  } catch (const std::invalid_argument& error) {
+    tracker_.reset();
+    recall_.end(why + ": " + error.what());
+  }
+}
+
+// A region that is found again upside down is there, but no scope turns as fast: the picture was turned, or it is
+// another one. That is held back for longer than the controller waits by itself (resume_time, 2 s), so that nothing
+// moves by it before somebody has looked.
+std::string TrackerSession::turnedTooFast(const tracking::TrackResult& result) const {
+  constexpr double kMostTurn = M_PI / 4.0;  // rad
+  constexpr double kHeldBack = 3.0;         // s
+  if (!believed_stamp_ || result.selected_now || time_ - believed_time_ > kHeldBack) return "";
+  const double turn = std::remainder(angleOf(result) - believed_angle_, 2.0 * M_PI);
+  if (std::abs(turn) <= kMostTurn) return "";
+  std::ostringstream text;
+  text.precision(2);
+  text << "the picture turned by " << std::lround(turn * 180.0 / M_PI) << " degrees within " << time_ - believed_time_
+       << " s";
+  return text.str();
+}
+
+// What the tracker found in a picture that shows nothing new is not believed, though it is no reason to lose the
+// region.
+void TrackerSession::watchPicture(Processed& processed, const tracking::TrackResult& before) {
+  using tracking::State;
+  tracking::TrackResult& result = processed.result;
+  cv::Rect region;
+  double step = 0.0;
+  if (result.state == State::kTracking) {
+    geometry::Quadrilateral corners = geometry::apply(result.g, result.roi.corners());
+    if (before.state == State::kTracking && !result.selected_now) {
+      const geometry::Quadrilateral last = geometry::apply(before.g, result.roi.corners());
+      for (int k = 0; k < 4; ++k) step = std::max(step, (corners[k] - last[k]).norm());
+    }
+    for (Eigen::Vector2d& corner : corners) {
+      if (lens_) corner = lens_->toRaw(corner).value_or(corner);
+    }
+    region = boxOf(corners);
+  }
+  processed.repeats = repeats_.see(processed.image, region);
+  feed_.see(processed.repeats, time_, step, robot_step_);
+  if (result.state == State::kTracking) {
+    result.reason = turnedTooFast(result);
+    if (!result.reason.empty()) result.state = State::kSearching;
+  }
+  if (feed_.reason().empty() && result.state == State::kTracking) {
+    believed_time_ = time_;
+    believed_angle_ = angleOf(result);
+  }
+  if (feed_.reason().empty() || result.state == State::kIdle) return;
+  if (result.state == State::kTracking) result.state = State::kSearching;
+  result.reason = feed_.reason() + (result.reason.empty() ? "" : "; " + result.reason);
+}
+
+}  // namespace laparoscope_servo

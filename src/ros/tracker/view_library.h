@@ -1,0 +1,41 @@
+// The views of one camera that are stored while the tracker runs. Not thread-safe.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "laparoscope_servo/tracking/view_store.h"
+#include "ros/tracker/tracker_parameters.h"
+#include "ros/tracker/view_recall.h"
+
+namespace laparoscope_servo {
+
+class ViewLibrary {
+ public:
+  explicit ViewLibrary(const TrackerParameters& parameters);
+
+  // Stores the snapshot's image and region. Returns what was stored, and how it is linked with the others. Throws
+  // std::invalid_argument when it cannot be stored.
+  std::string store(const std::string& name, const Snapshot& snapshot);
+  // The way from the snapshot to a view. Throws std::invalid_argument when there is none, or no such view.
+  RecallRoute route(const std::string& name, const Snapshot& snapshot);
+
+  const tracking::ViewStore& views() const { return store_; }
+
+ private:
+  void followCamera(const Snapshot& snapshot);
+
+  TrackerParameters parameters_;
+  tracking::ViewStore store_;
+  std::map<std::string, ros::Time> stamps_;
+  std::optional<geometry::PinholeCamera> camera_;
+  std::shared_ptr<const image::Lens> lens_;
+  std::string forgotten_;  // why views that were stored are no more
+};
+
+// "'a', 'b'": the names of a way.
+std::string routeText(const RecallRoute& route);
+
+}  // namespace laparoscope_servo

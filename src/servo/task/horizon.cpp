@@ -1,0 +1,17 @@
+#include "servo/task/horizon.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace laparoscope_servo::servo {
+
+double horizonError(const Eigen::Vector3d& up_in_camera) {
+  // Of the direction's part in the image: below it, noise turns the picture. Without a step, which would look like a
+  // target that jumps.
+  constexpr double kNone = 0.1, kWhole = 0.2;
+  const Eigen::Vector3d up = up_in_camera.normalized();
+  const double share = std::clamp((up.head<2>().norm() - kNone) / (kWhole - kNone), 0.0, 1.0);
+  return share > 0.0 ? share * std::atan2(up.x(), -up.y()) : 0.0;  // upwards is -y
+}
+
+}  // namespace laparoscope_servo::servo

@@ -1,0 +1,100 @@
+#include "tracking/align/quality.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace laparoscope_servo::tracking {
+
+namespace {
+
+// px: an alignment that still moves by less than this after all its iterations is as good as converged.
+constexpr double kNearlyConverged = 1.0;
+
+// Of the part of the ROI that is in the image. Where more than the rest is taken for occluded, it is as likely that the
+// estimate is wrong: the areas that are left are those that agree with it.
+constexpr double kMinOfImage = 0.15;
+
+constexpr double kRecordRate = 0.05;  // share of a new image in the record: it follows within a second of video
+
+// How much worse than the record an estimate may be: factor and constant on the unexplained share 1 - zncc, and on
+// sigma [grey levels]. A search starts anywhere, and picks the areas that agree; false fits have 1.5 to 4 times the
+// residual.
+struct Tolerance {
+  double unexplained_factor, unexplained, sigma_factor, sigma;
+};
+constexpr Tolerance kTracking = {2.0, 0.10, 2.0, 1.0};
+constexpr Tolerance kSearching = {1.5, 0.05, 1.5, 0.3};
+
+// By which factor the light may have changed between the last estimate that was believed and one that a search has
+// found: at once, and more for each second that has passed.
+constexpr double kMaxGainChange = 1.5;
+constexpr double kGainChangeRate = 0.5;  // 1/s
+
+std::string text(const char* what, double value, const char* limit, double bound) {
+  std::ostringstream stream;
+  stream.precision(3);
+  stream << what << ' ' << value << ", expected " << limit << ' ' << bound;
+  return stream.str();
+}
+
+}  // namespace
+
+void TrackRecord::add(double zncc, double sigma, double innovation, double visible_fraction) {
+  ++count_;
+  const double rate = std::max(kRecordRate, 1.0 / count_);
+  innovation_ += rate * (innovation - innovation_);
+  if (!(visible_fraction >= kRecordVisible)) return;
+  zncc_ += rate * (zncc - zncc_);
+  sigma_ += rate * (sigma - sigma_);
+}
+
+double allowedJump(const TrackRecord& record, const QualityConfig& config, const geometry::Rectangle& roi,
+                   double visible_fraction, double corner_error) {
+  const double expected = 3.0 + 4.0 * record.innovation() + 3.0 * corner_error;
+  const double trust = std::clamp((visible_fraction - 0.25) / 0.25, 0.0, 1.0);
+  return std::max(expected, trust * config.max_jump * std::hypot(roi.width, roi.height));
+}
+
+std::string doubt(const Evidence& e, const QualityConfig& q) {
+  if (e.esm.status == EsmStatus::kOutOfView) return "the ROI's image crosses infinity";
+  if (e.esm.status == EsmStatus::kIllConditioned) return "the pixels kept do not determine the motion";
+  const double min_visible = e.from_track ? q.min_visible_fraction : q.min_return_fraction;
+  if (!(e.visible_fraction >= min_visible))
+    return text("visible fraction", e.visible_fraction, "at least", min_visible);
+  const double of_image = e.visible_fraction / std::max(e.in_image, 1e-9);
+  if (!(of_image >= kMinOfImage))
+    return text("visible fraction of what is in the image", of_image, "at least", kMinOfImage);
+  if (e.esm.status == EsmStatus::kMaxIterations && !(e.esm.last_step <= kNearlyConverged)) {
+    return text("still moving by [px]", e.esm.last_step, "at most", kNearlyConverged);
+  }
+  const geometry::Quadrilateral corners = geometry::apply(e.esm.state.g, e.roi.corners());
+  if (!geometry::isConvex(corners)) return "the ROI's image is not convex";
+  const double ratio = geometry::signedArea(corners) / geometry::signedArea(e.roi.corners());
+  if (!(std::max(ratio, 1.0 / ratio) <= q.max_area_ratio)) {
+    return text("area ratio", ratio, "within a factor of", q.max_area_ratio);
+  }
+  const Tolerance& tolerance = e.from_track ? kTracking : kSearching;
+  const double min_zncc =
+      std::max(q.min_zncc, 1.0 - tolerance.unexplained - tolerance.unexplained_factor * (1.0 - e.record.zncc()));
+  if (!(e.zncc >= min_zncc)) return text("correlation", e.zncc, "at least", min_zncc);
+  const double max_sigma = tolerance.sigma + tolerance.sigma_factor * e.record.sigma();
+  if (!(e.esm.sigma <= max_sigma)) return text("residual [grey levels]", e.esm.sigma, "at most", max_sigma);
+  if (!(e.esm.corner_error <= q.max_corner_error)) {
+    return text("expected corner error [px]", e.esm.corner_error, "at most", q.max_corner_error);
+  }
+  if (!e.from_track) {
+    const double change = e.esm.state.gain / e.last_gain;
+    const double allowed = kMaxGainChange + kGainChangeRate * std::max(0.0, e.unseen);
+    if (!(std::max(change, 1.0 / change) <= allowed))
+      return text("change of gain", change, "within a factor of", allowed);
+  }
+  const geometry::Quadrilateral predicted = geometry::apply(e.predicted, e.roi.corners());
+  double jump = 0.0;
+  for (int k = 0; k < 4; ++k) jump = std::max(jump, (corners[k] - predicted[k]).norm());
+  const double max_jump = allowedJump(e.record, q, e.roi, e.visible_fraction, e.esm.corner_error);
+  if (!(jump <= max_jump)) return text("jump [px]", jump, "at most", max_jump);
+  return "";
+}
+
+}  // namespace laparoscope_servo::tracking

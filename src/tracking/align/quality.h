@@ -1,0 +1,55 @@
+// Whether an estimate may be believed. One test does not do: false fits reach high correlations.
+#pragma once
+
+#include <string>
+
+#include "laparoscope_servo/geometry/homography.h"
+#include "laparoscope_servo/tracking/tracker_config.h"
+#include "tracking/esm/esm.h"
+
+namespace laparoscope_servo::tracking {
+
+// Share of the ROI that has to be visible in an image for it to be learned from.
+constexpr double kRecordVisible = 0.4;
+
+// What estimates of this ROI that were believed have looked like. Tissue that deforms never correlates as well as a
+// plane does, and a noisy camera leaves larger residuals than a good one: what is too bad is relative.
+class TrackRecord {
+ public:
+  // An estimate that was believed while tracking. `innovation` [px]: how far its worst corner was from the prediction.
+  void add(double zncc, double sigma, double innovation, double visible_fraction);
+
+  double zncc() const { return zncc_; }
+  double sigma() const { return sigma_; }            // grey levels
+  double innovation() const { return innovation_; }  // px
+
+ private:
+  int count_ = 0;
+  // Until there is a record: what real tissue, filmed by a real laparoscope, shows.
+  double zncc_ = 0.75;
+  double sigma_ = 8.0;
+  double innovation_ = 4.0;
+};
+
+struct Evidence {
+  EsmResult esm;
+  geometry::Rectangle roi;    // px, in the reference
+  Eigen::Matrix3d predicted;  // G before ESM
+  bool from_track = false;  // the prediction comes from the image before; false: from a search, which has to prove more
+  double last_gain = 1.0;   // of the last estimate that was believed
+  double unseen = 0.0;      // s, since then
+  double visible_fraction = 0.0;  // 0 to 1
+  double in_image = 1.0;          // 0 to 1, share of the ROI that lies in the image
+  double zncc = 0.0;              // over the pixels used, the means of the areas taken out
+  TrackRecord record;
+};
+
+// px: how far the worst corner may be from the prediction, when this share of the ROI is visible and the residuals
+// predict this error of a corner. The less is seen, the more the past counts.
+double allowedJump(const TrackRecord& record, const QualityConfig& config, const geometry::Rectangle& roi,
+                   double visible_fraction, double corner_error);
+
+// Why the estimate is not believed, the value and the limit; empty when every test is passed.
+std::string doubt(const Evidence& evidence, const QualityConfig& config);
+
+}  // namespace laparoscope_servo::tracking

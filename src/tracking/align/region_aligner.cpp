@@ -1,0 +1,181 @@
+#include "tracking/align/region_aligner.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <opencv2/imgproc.hpp>
+
+#include "tracking/align/detail.h"
+
+namespace laparoscope_servo::tracking {
+
+namespace {
+
+constexpr int kMaxStructureRounds = 3;
+constexpr double kGateShift = 2.0;  // px: masks drawn further from the estimate than this are drawn again
+constexpr double kBorder = 4.0;     // px of the coarsest level, of what smoothing takes in from beyond the ROI
+
+// The combination of the channels whose gradient is strongest for its noise: the principal axis of sum grad_c grad_d.
+// Scaled so that the weights' magnitudes sum to one, which keeps the range of grey levels.
+image::ChannelWeights strongestChannel(const cv::Mat& patch) {
+  cv::Mat3f gx, gy, smooth;
+  patch.convertTo(smooth, CV_32FC3);
+  cv::GaussianBlur(smooth, smooth, cv::Size(), 1.0);
+  cv::Sobel(smooth, gx, CV_32F, 1, 0, 1, 0.5);
+  cv::Sobel(smooth, gy, CV_32F, 0, 1, 1, 0.5);
+  Eigen::Matrix3d energy = Eigen::Matrix3d::Zero();
+  for (int j = 0; j < patch.rows; ++j) {
+    for (int i = 0; i < patch.cols; ++i) {
+      const Eigen::Vector3d x(gx(j, i)[0], gx(j, i)[1], gx(j, i)[2]);
+      const Eigen::Vector3d y(gy(j, i)[0], gy(j, i)[1], gy(j, i)[2]);
+      energy += x * x.transpose() + y * y.transpose();
+    }
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(energy);
+  Eigen::Vector3d axis = solver.eigenvectors().col(2);
+  const double magnitude = axis.cwiseAbs().sum();
+  if (solver.info() != Eigen::Success || !(magnitude > 0.0)) return image::kLuma;
+  axis *= (axis.sum() < 0.0 ? -1.0 : 1.0) / magnitude;
+  return {static_cast<float>(axis[0]), static_cast<float>(axis[1]), static_cast<float>(axis[2])};
+}
+
+image::Channels chosenChannels(TrackedChannels wanted, const cv::Mat& patch) {
+  if (patch.channels() == 1 || wanted == TrackedChannels::kLuma) return image::kLuma;
+  if (wanted == TrackedChannels::kStrongest) return strongestChannel(patch);
+  return {{1.0f, 0.0f, 0.0f}, {0.0f, 1.0f, 0.0f}, {0.0f, 0.0f, 1.0f}};
+}
+
+bool usable(const EsmResult& estimate) {
+  return estimate.status == EsmStatus::kConverged || estimate.status == EsmStatus::kMaxIterations;
+}
+
+}  // namespace
+
+double farthestCorner(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b, const geometry::Rectangle& roi) {
+  const geometry::Quadrilateral p = geometry::apply(a, roi.corners());
+  const geometry::Quadrilateral q = geometry::apply(b, roi.corners());
+  double distance = 0.0;
+  for (int k = 0; k < 4; ++k) {
+    const double of_corner = (p[k] - q[k]).norm();
+    if (!std::isfinite(of_corner)) return std::numeric_limits<double>::infinity();
+    distance = std::max(distance, of_corner);
+  }
+  return distance;
+}
+
+Eigen::Matrix3d imageFromPatch(const geometry::Rectangle& roi) {
+  Eigen::Matrix3d m = Eigen::Matrix3d::Identity();
+  m.topRightCorner<2, 1>() << roi.x, roi.y;
+  return m;
+}
+
+RegionAligner::RegionAligner(const TrackerConfig& config, std::shared_ptr<const image::Lens> lens)
+    : config_(config.esm),
+      lens_(lens),
+      occlusion_(config.occlusion),
+      esm_(config.esm, lens),
+      gates_(config.occlusion, config.esm.saturation) {}
+
+void RegionAligner::setReference(const cv::Mat& image, const geometry::Rectangle& roi) {
+  const cv::Rect box = image::seenBox(lens_.get(), roi.corners(), 0.0) & cv::Rect(cv::Point(0, 0), image.size());
+  channels_ = chosenChannels(config_.channels, image(box));
+  const cv::Rect with_border = image::seenBox(lens_.get(), roi.corners(), kBorder * (1 << config_.levels));
+  pyramid_.build(image, with_border, config_.levels, channels_);
+  esm_.setReference(pyramid_, roi);
+  sample(image, Eigen::Matrix3d::Identity());
+  gates_.setReference(patch_, cv::Size(static_cast<int>(roi.width), static_cast<int>(roi.height)));
+  esm_.setWeights(weights());
+}
+
+// The gates' view of the image where the ROI is taken to be.
+void RegionAligner::sample(const cv::Mat& image, const Eigen::Matrix3d& g) {
+  const cv::Size size(static_cast<int>(roi().width), static_cast<int>(roi().height));
+  const int step = samplingStep(size, occlusion_);
+  Eigen::Matrix3d image_T_sample = g * imageFromPatch(roi());
+  image_T_sample.leftCols<2>() *= step;
+  const cv::Size samples((size.width + step - 1) / step, (size.height + step - 1) / step);
+  if (lens_) {
+    image::warpNearest(image, image_T_sample, *lens_, samples, patch_);
+  } else {
+    image::warpNearest(image, image_T_sample, samples, patch_);
+  }
+}
+
+void RegionAligner::look(const cv::Mat& image, const Eigen::Matrix3d& g) {
+  sample(image, g);
+  gates_.observeColour(patch_);
+  esm_.setWeights(weights());
+  shown_ = g;
+}
+
+int RegionAligner::observeStructure(const EsmResult& estimate) {
+  const EsmLevel& level = esm_.level(0);
+  std::array<PatchPair, image::kMaxChannels> pairs;
+  const int count = static_cast<int>(level.planes.size());
+  for (int c = 0; c < count; ++c) pairs[c] = {&level.planes[c].warped, &level.planes[c].value};
+  return gates_.observeStructure(pairs.data(), count, level.valid, estimate.state.gain, estimate.sigma);
+}
+
+Alignment RegionAligner::align(const cv::Mat& image, const EsmState& start, const MotionPrior* prior, double reach) {
+  Alignment result;
+  result.esm.state = start;
+  result.esm.status = EsmStatus::kOutOfView;
+  const double margin = reach + kBorder * (1 << (esm_.levels() - 1));
+  const cv::Rect box = image::seenBox(lens_.get(), geometry::apply(start.g, roi().corners()), margin);
+  result.in_image = !(box & cv::Rect(cv::Point(0, 0), image.size())).empty();
+  if (!result.in_image) return result;
+  pyramid_.build(image, box, config_.levels, channels_);
+  look(image, start.g);
+  result.esm = esm_.align(pyramid_, start, prior);
+  int iterations = result.esm.iterations;
+  const auto refine = [&] {
+    result.esm = esm_.align(pyramid_, result.esm.state, prior, 0);
+    iterations += result.esm.iterations;
+  };
+  if (usable(result.esm) && farthestCorner(shown_, result.esm.state.g, roi()) > kGateShift) {
+    look(image, result.esm.state.g);
+    refine();
+  }
+  for (int round = 0; round < kMaxStructureRounds && usable(result.esm); ++round) {
+    if (observeStructure(result.esm) == 0) break;
+    esm_.setWeights(weights());
+    refine();
+  }
+  result.esm.iterations = iterations;
+  if (usable(result.esm)) {
+    const EsmLevel& level = esm_.level(0);
+    result.visible_fraction = gates_.visibleFraction();
+    if (!level.all_valid) result.share_in_image = cv::mean(level.valid.view())[0];
+    result.zncc = gates_.correlation();
+  }
+  return result;
+}
+
+void RegionAligner::startAfresh() {
+  gates_.forget();
+  esm_.forgetLight();
+}
+
+double RegionAligner::detail() const {
+  const EsmLevel& level = esm_.level(0);
+  const EsmPlane& plane = level.planes[0];
+  return detailCorrelation(plane.warped.view(), plane.value.view(), level.weight.view().mul(level.valid.view()));
+}
+
+cv::Mat RegionAligner::occlusionMask(const Eigen::Matrix3d& g, const cv::Size& size) const {
+  const image::AreaGrid& grid = gates_.grid();
+  cv::Mat1b areas(grid.height(), grid.width());
+  for (int j = 0; j < grid.height(); ++j) {
+    for (int i = 0; i < grid.width(); ++i) areas(j, i) = gates_.occluded(grid.areaOf(i, j)) ? 255 : 0;
+  }
+  const geometry::Quadrilateral corners = geometry::apply(g, roi().corners());
+  cv::Mat1b mask = cv::Mat1b::zeros(size);
+  const cv::Rect box = image::seenBox(lens_.get(), corners, 1.0) & cv::Rect(cv::Point(0, 0), size);
+  if (box.empty()) return mask;
+  cv::Mat1b part = mask(box);
+  image::drawMask(areas, g * imageFromPatch(roi()), lens_.get(), box, part);
+  return mask;
+}
+
+}  // namespace laparoscope_servo::tracking

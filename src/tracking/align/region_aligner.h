@@ -1,0 +1,84 @@
+// Aligns a region of interest (ROI) of the reference with one image: which pixels to use, ESM on them, and what the
+// result shows of the pixels that should not have been used, until both agree.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <opencv2/core.hpp>
+
+#include "laparoscope_servo/geometry/homography.h"
+#include "laparoscope_servo/image/colour_patch.h"
+#include "laparoscope_servo/image/lens.h"
+#include "laparoscope_servo/image/pyramid.h"
+#include "laparoscope_servo/tracking/tracker_config.h"
+#include "tracking/esm/esm.h"
+#include "tracking/occlusion/occlusion_gates.h"
+
+namespace laparoscope_servo::tracking {
+
+struct Alignment {
+  EsmResult esm;                  // iterations: of all alignments together
+  bool in_image = true;           // false: the ROI is expected outside the image, nothing was aligned
+  double visible_fraction = 0.0;  // 0 to 1, share of the ROI's pixels that were used
+  double share_in_image = 1.0;    // 0 to 1, of the ROI's pixels
+  double zncc = 0.0;              // see OcclusionGates::correlation
+};
+
+class RegionAligner {
+ public:
+  // With a lens images are raw; the ROI and homographies are in rectified pixels.
+  explicit RegionAligner(const TrackerConfig& config, std::shared_ptr<const image::Lens> lens = nullptr);
+
+  // `roi`: whole pixels, shown by the image (CV_8UC1 or CV_8UC3). Everything is visible in the reference but its
+  // highlights.
+  void setReference(const cv::Mat& image, const geometry::Rectangle& roi);
+
+  // Starts at `start`. `reach` [px]: by how much a corner may have moved from there without the image's crop being
+  // left.
+  Alignment align(const cv::Mat& image, const EsmState& start, const MotionPrior* prior, double reach);
+
+  // The next start has nothing to do with the last one: what is occluded and how the light is are not known.
+  void startAfresh();
+  // An image is done: see OcclusionGates::advance.
+  void advance() { gates_.advance(); }
+
+  // Of the last alignment: correlation of fine structure, see detailCorrelation.
+  double detail() const;
+
+  // Of an image of `size`: 255 where a pixel of the ROI, seen there at `g`, is taken for occluded, 0 elsewhere.
+  cv::Mat occlusionMask(const Eigen::Matrix3d& g, const cv::Size& size) const;
+
+  // See Esm::referenceCornerError.
+  double referenceCornerError(double sigma) { return esm_.referenceCornerError(sigma); }
+
+  const Esm& esm() const { return esm_; }
+  const OcclusionGates& gates() const { return gates_; }
+  // Of the ROI's pixels, as they are used now; valid until the next call of anything here.
+  cv::Mat1f weights() { return gates_.weights().view(); }
+  const image::Channels& channels() const { return channels_; }
+  const geometry::Rectangle& roi() const { return esm_.roi(); }
+
+ private:
+  void sample(const cv::Mat& image, const Eigen::Matrix3d& g);
+  void look(const cv::Mat& image, const Eigen::Matrix3d& g);
+  int observeStructure(const EsmResult& estimate);
+
+  EsmConfig config_;
+  std::shared_ptr<const image::Lens> lens_;
+  OcclusionConfig occlusion_;
+  Esm esm_;
+  OcclusionGates gates_;
+  image::RegionPyramid pyramid_;
+  image::Channels channels_ = image::kLuma;
+  image::ColourPatch patch_;
+  Eigen::Matrix3d shown_ = Eigen::Matrix3d::Identity();  // where the gates last looked
+};
+
+// px, how far the worst of the ROI's corners moves from one homography to the other; infinite where one of both has no
+// image of it.
+double farthestCorner(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b, const geometry::Rectangle& roi);
+
+// Pixels of a patch of the ROI's size to those of the image that the ROI is taken from.
+Eigen::Matrix3d imageFromPatch(const geometry::Rectangle& roi);
+
+}  // namespace laparoscope_servo::tracking

@@ -1,0 +1,75 @@
+#include "tracking/esm/certainty.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tracking/esm/factors.h"
+
+namespace laparoscope_servo::tracking {
+
+namespace {
+
+constexpr double kSingular = 1e-12;  // conditioning of equations that determine nothing
+
+// The derivative of a corner's image, in normalised template units, at the identity: the rows of J for unit gradients.
+Eigen::Matrix<double, 2, 8> cornerJacobian(const Eigen::Vector2d& p) {
+  Eigen::Matrix<double, 2, 8> j;
+  j.row(0) = esmJacobianRow(1.0, 0.0, p.x(), p.y());
+  j.row(1) = esmJacobianRow(0.0, 1.0, p.x(), p.y());
+  return j;
+}
+
+}  // namespace
+
+// The covariance that the residuals show is A^-1 B A^-1 with A = J'WJ and B the sum of the blocks' J'Wr times itself:
+// whatever the residuals within a block have in common is in it. `noise` is the one number that makes A/noise as large
+// as its inverse.
+Certainty certainty(const Matrix10d& matrix, const std::vector<BlockSums>& blocks, double sigma,
+                    const Matrix8d& prior) {
+  Matrix10d scores = Matrix10d::Zero();
+  int count = 0;
+  for (const BlockSums& sums : blocks) {
+    if (!(sums.weight > 0.0)) continue;
+    scores += sums.score * sums.score.transpose();
+    ++count;
+  }
+  Certainty result;
+  result.noise = sigma * sigma;
+  Matrix8d information = Matrix8d::Zero();
+  const Factors<10> factors(matrix);
+  if (factors.conditioning() > kSingular) {
+    const Matrix10d inverse = factors.solve(Matrix10d::Identity());
+    const Matrix8d shape = inverse.topLeftCorner<8, 8>();
+    const Matrix8d seen = (inverse * scores * inverse).topLeftCorner<8, 8>();
+    const Factors<8> of_shape(shape);
+    // Nine unknowns have been fitted to the blocks.
+    const double freedom = std::max(1.0, count - 9.0) / std::max(1, count);
+    const double seen_noise = of_shape.solve(seen).trace() / 8.0 / freedom;
+    if (std::isfinite(seen_noise)) result.noise = std::max(result.noise, seen_noise);
+    information = of_shape.solve(Matrix8d::Identity()) / result.noise;
+  }
+  information += prior;
+  const Factors<8> posterior(information);
+  if (posterior.conditioning() > kSingular) result.covariance = Matrix8d(posterior.solve(Matrix8d::Identity()));
+  return result;
+}
+
+std::optional<Matrix8d> covarianceOfNoise(const Matrix10d& matrix, double variance) {
+  const Factors<10> factors(matrix);
+  if (!(factors.conditioning() > kSingular)) return std::nullopt;
+  const Matrix10d inverse = factors.solve(Matrix10d::Identity());
+  return Matrix8d(variance * inverse.topLeftCorner<8, 8>());
+}
+
+double cornerError(const Eigen::Matrix3d& g, const geometry::Rectangle& roi, const Matrix8d& covariance) {
+  const Eigen::Matrix3d n = templateFromPixels(roi);
+  double worst = 0.0;
+  for (const Eigen::Vector2d& corner : roi.corners()) {
+    const Eigen::Matrix<double, 2, 8> j =
+        halfSize(roi) * geometry::derivative(g, corner) * cornerJacobian(geometry::apply(n, corner));
+    worst = std::max(worst, (j * covariance * j.transpose()).trace());
+  }
+  return std::sqrt(worst);
+}
+
+}  // namespace laparoscope_servo::tracking

@@ -1,0 +1,29 @@
+// How sure an estimate of ESM is: by the residuals, and by what was known before.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "laparoscope_servo/geometry/homography.h"
+#include "tracking/esm/block_equations.h"
+#include "tracking/esm/normal_equations.h"
+
+namespace laparoscope_servo::tracking {
+
+struct Certainty {
+  std::optional<Matrix8d> covariance;  // of x, as in MotionPrior; empty when nothing determines it
+  double noise = 0.0;                  // see EsmResult
+};
+
+// `matrix` and `blocks`: the equations at the estimate, whose residuals scatter by `sigma` [grey levels]. `prior`:
+// inverse covariance of x before the image was seen, zero for none.
+Certainty certainty(const Matrix10d& matrix, const std::vector<BlockSums>& blocks, double sigma, const Matrix8d& prior);
+
+// The covariance if residuals were independent noise of that variance [grey levels squared], without a prior.
+std::optional<Matrix8d> covarianceOfNoise(const Matrix10d& matrix, double variance);
+
+// px in the image, standard deviation of the worst of the ROI's corners as `g` shows it, for that covariance of x.
+double cornerError(const Eigen::Matrix3d& g, const geometry::Rectangle& roi, const Matrix8d& covariance);
+
+}  // namespace laparoscope_servo::tracking

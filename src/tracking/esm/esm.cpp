@@ -1,0 +1,289 @@
+#include "tracking/esm/esm.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "laparoscope_servo/geometry/sl3.h"
+#include "laparoscope_servo/image/warp.h"
+#include "tracking/esm/certainty.h"
+#include "tracking/esm/factors.h"
+
+namespace laparoscope_servo::tracking {
+
+namespace {
+
+constexpr double kTukey = 4.6851;  // 95 % efficiency for normal noise (Marchand and Chaumette 2004, appendix)
+
+// Steps shrink by about this factor from one to the next before that has been measured.
+constexpr double kContraction = 0.3;
+constexpr double kSlowest = 0.9;         // steps that shrink by less do not converge
+constexpr double kCoarseAccuracy = 0.1;  // px of the level, enough for the next finer one
+constexpr int kPatience =
+    10;                       // iterations on levels that are reached from a coarser one, for the steps to become short
+constexpr double kFar = 0.5;  // px of the level, a step after which the region may still be elsewhere
+constexpr int kHurry = 2;     // iterations on the first level for the steps to become short, or the region is far
+constexpr int kShifts = 4;    // first steps on a coarse level, if far
+constexpr double kSameLight = 0.5;  // of the residual's scale, for its mean
+constexpr int kTrials = 8;          // iterations with the light of the start, if far
+
+// Surprise, chi squared with 8 degrees of freedom, at which a prior begins to count less: Student's t with as many of
+// its own.
+constexpr double kFreedom = 8.0;
+
+Eigen::Matrix3d scaling(double s, double x, double y) {
+  Eigen::Matrix3d m;
+  m << s, 0.0, x,  //
+      0.0, s, y,   //
+      0.0, 0.0, 1.0;
+  return m;
+}
+
+// How much a prior counts that expected x = 0.
+double credibility(const MotionPrior& prior, const geometry::Vector8d& x) {
+  return 2.0 * kFreedom / (kFreedom + x.dot(prior.information * x));
+}
+
+}  // namespace
+
+void Esm::setReference(const image::RegionPyramid& reference, const geometry::Rectangle& roi) {
+  roi_ = roi;
+  n_ = templateFromPixels(roi);
+  n_inv_ = n_.inverse();
+  levels_.clear();
+  forgetLight();
+  for (int l = 0; l < std::min(config_.levels, reference.levels()); ++l) {
+    EsmLevel level(reference, roi, l, lens_.get());
+    if (level.planes.empty()) break;
+    if (config_.light == Light::kLocal) level.centreLight();
+    if (l > 0) matchBlocks(level, levels_.back());
+    levels_.push_back(std::move(level));
+  }
+}
+
+void Esm::setWeights(const cv::Mat1f& weights) {
+  EsmLevel& finest = levels_[0];
+  for (int j = 0; j < finest.height; ++j) std::copy_n(weights.ptr<float>(j), finest.width, finest.weight.row(j));
+  for (std::size_t l = 1; l < levels_.size(); ++l) coarsenWeights(levels_[l - 1], scratch_, levels_[l]);
+}
+
+void Esm::warp(const image::RegionPyramid& current, EsmLevel& level, int l, const Eigen::Matrix3d& g) {
+  const double size = level.scale;
+  const Eigen::Matrix3d level_T_image = scaling(1.0 / size, -current.origin().x / size, -current.origin().y / size);
+  const Eigen::Matrix3d level_T_patch = level_T_image * g * level.image_T_patch;
+  for (std::size_t c = 0; c < level.planes.size(); ++c) {
+    const int channel =
+        std::min(static_cast<int>(c), current.channels() - 1);  // an image without colour stands for all
+    image::Patch& warped = level.planes[c].warped;
+    level.all_valid = lens_ ? image::warpBilinear(current.level(l, channel), g * level.image_T_patch, *lens_,
+                                                  {current.origin(), size}, warped, level.valid)
+                            : image::warpBilinear(current.level(l, channel), level_T_patch, warped, level.valid);
+    warped.extrapolate();
+  }
+  if (!level.all_valid) level.useValid();
+}
+
+void Esm::forgetLight() {
+  light_known_ = false;
+}
+
+// That of the last image, where it is known. Else one bias for all, so that what the blocks differ by still pulls at
+// the motion.
+void Esm::startLight(EsmLevel& level, const EsmState& state) {
+  for (EsmPlane& plane : level.planes) {
+    if (light_known_ && config_.light == Light::kLocal) {
+      plane.bias = plane.before;
+      continue;
+    }
+    for (std::size_t block = 0; block < plane.bias.size(); ++block) {
+      plane.bias[block] = state.bias - (1.0 - state.gain) * plane.mean[block];
+    }
+  }
+}
+
+double Esm::rejection(double sigma) const {
+  return config_.robust ? kTukey * sigma : 0.0;
+}
+
+bool Esm::solve(EsmLevel& level, const MotionPrior* prior, bool shift_only, EsmState& state, double& step) {
+  Matrix10d a = equations_.matrix();
+  Vector10d b = equations_.vector();
+  if (prior != nullptr) {
+    const double unit = prior->noise * credibility(*prior, deviation_);
+    a.topLeftCorner<8, 8>() += unit * prior->information;
+    b.head<8>() += unit * (prior->information * deviation_);
+  }
+  if (shift_only) {
+    a.block<6, 10>(2, 0).setZero();
+    a.block<10, 6>(0, 2).setZero();
+    a.diagonal().segment<6>(2).setOnes();
+    b.segment<6>(2).setZero();
+  }
+  const Factors<10> factors(a);
+  if (!(factors.conditioning() > 1e-9)) return false;
+  const Vector10d x = -factors.solve(b);
+  if (!x.allFinite()) return false;
+  deviation_ += x.head<8>();
+  const geometry::Quadrilateral before = geometry::apply(state.g, roi_.corners());
+  takeStep(level, x, state);
+  const geometry::Quadrilateral after = geometry::apply(state.g, roi_.corners());
+  step = 0.0;
+  for (int k = 0; k < 4; ++k) step = std::max(step, (after[k] - before[k]).norm());
+  return state.g.allFinite() && std::isfinite(step) && state.gain > 0.0;
+}
+
+void Esm::takeStep(EsmLevel& level, const Vector10d& x, EsmState& state) {
+  state.g = state.g * n_inv_ * geometry::sl3Exp(x.head<8>()) * n_;
+  state.g /= std::cbrt(state.g.determinant());
+  state.gain += x[8];
+  state.bias += x[9];
+  double bias = 0.0;
+  double weight = 0.0;
+  auto sums = equations_.blocks().begin();
+  for (EsmPlane& plane : level.planes) {
+    for (std::size_t block = 0; block < plane.bias.size(); ++block, ++sums) {
+      if (config_.light != Light::kLocal) {
+        plane.bias[block] = state.bias;
+      } else if (light_ == Light::kLocal && sums->weight > 0.0) {
+        // The step is one of gain * image + bias; part of it is what the gain's does to the mean.
+        plane.bias[block] += x[8] * plane.mean[block] - (sums->residual + sums->jacobian.dot(x)) / sums->weight;
+        bias += sums->weight * plane.biasOf(block, state.gain);
+        weight += sums->weight;
+      }
+    }
+  }
+  if (weight > 0.0) state.bias = bias / weight;
+}
+
+void Esm::judge(const MotionPrior* prior, EsmResult& result) const {
+  Matrix8d known = Matrix8d::Zero();
+  if (prior != nullptr) known = credibility(*prior, deviation_) * prior->information;
+  const Certainty found = certainty(equations_.matrix(), equations_.blocks(), result.sigma, known);
+  result.noise = found.noise;
+  if (!found.covariance) return;
+  result.covariance = *found.covariance;
+  result.corner_error = cornerError(result.state.g, roi_, result.covariance);
+}
+
+double Esm::referenceCornerError(double sigma) {
+  EsmLevel& level = levels_[0];
+  for (EsmPlane& plane : level.planes) {
+    for (int j = 0; j < level.height; ++j) std::copy_n(plane.value.row(j), level.width, plane.warped.row(j));
+    plane.warped.extrapolate();
+  }
+  level.all_valid = true;
+  equations_.sum(level, roi_, light_, EsmState().gain, rejection(sigma));
+  const std::optional<Matrix8d> covariance = covarianceOfNoise(equations_.matrix(), 2.0 * sigma * sigma);
+  if (!covariance) return std::numeric_limits<double>::infinity();
+  return cornerError(Eigen::Matrix3d::Identity(), roi_, *covariance);
+}
+
+EsmStatus Esm::iterate(const image::RegionPyramid& current, int l, const MotionPrior* prior, const Iteration& how,
+                       EsmResult& result) {
+  EsmLevel& level = levels_[l];
+  if (!geometry::isConvex(geometry::apply(result.state.g, roi_.corners()))) return EsmStatus::kOutOfView;
+  warp(current, level, l, result.state.g);
+  if (how.match_mean) result.state.bias += matchMean(level, result.state.gain);
+  light_ = how.light;
+  result.sigma = residual_scale_.of(level, result.state.gain);
+  equations_.sum(level, roi_, light_, result.state.gain, rejection(result.sigma));
+  ++result.iterations;
+  if (!solve(level, prior, how.shift_only, result.state, result.last_step)) return EsmStatus::kIllConditioned;
+  return EsmStatus::kMaxIterations;
+}
+
+// Far from where the region belongs, the image says little of the light: a fit to what does not correspond would lower
+// the gain, and blocks with a bias each would take up the very differences that pull at the motion. So the light is
+// that of the start, and the first steps on a coarse level are shifts. If that leads nowhere, once more with the mean
+// matched at each step.
+EsmStatus Esm::approach(const image::RegionPyramid& current, int l, const MotionPrior* prior, EsmResult& result) {
+  EsmLevel& level = levels_[l];
+  const EsmState start = result.state;
+  const geometry::Vector8d start_deviation = deviation_;
+  EsmStatus status = EsmStatus::kMaxIterations;
+  for (const bool match : {false, true}) {
+    result.state = start;
+    deviation_ = start_deviation;
+    startLight(level, start);
+    const int most = match ? config_.max_iterations : std::min(config_.max_iterations, kTrials);
+    for (int k = 0; k < most; ++k) {
+      status = iterate(current, l, prior, {Light::kConstant, l > 0 && k < kShifts, match}, result);
+      if (status != EsmStatus::kMaxIterations) break;
+      if (result.last_step > kFar * level.scale) continue;
+      // Near, the mean is that of the reference; where it is not, the light has changed.
+      if (match) return EsmStatus::kConverged;
+      const double missing = matchMean(level, result.state.gain);
+      result.state.bias += missing;
+      if (std::abs(missing) < kSameLight * result.sigma) return EsmStatus::kConverged;
+      break;
+    }
+  }
+  return status;
+}
+
+// From the second step on the ratio of two steps tells how fast they shrink, and how far there is still to go.
+EsmStatus Esm::settle(const image::RegionPyramid& current, int l, int patience, const MotionPrior* prior,
+                      EsmResult& result) {
+  const double scale = levels_[l].scale;
+  const double accuracy = l == 0 ? config_.min_step : std::max(config_.min_step, kCoarseAccuracy * scale);
+  double contraction = kContraction;
+  for (int k = 0; k < config_.max_iterations; ++k) {
+    const double before = result.last_step;
+    const EsmStatus status = iterate(current, l, prior, {config_.light, false, false}, result);
+    if (status != EsmStatus::kMaxIterations) return status;
+    if (k > 0) contraction = std::min(result.last_step / std::max(before, 1e-9), kSlowest);
+    if (result.last_step * contraction / (1.0 - contraction) < accuracy) return EsmStatus::kConverged;
+    if (k >= patience && result.last_step > kFar * scale) break;
+  }
+  return EsmStatus::kMaxIterations;
+}
+
+// Whether the way is far, where the light is not known, a first iteration with one gain and one bias tells.
+EsmStatus Esm::alignLevel(const image::RegionPyramid& current, int l, bool first, const MotionPrior* prior,
+                          EsmResult& result) {
+  if (!(light_known_ && config_.light == Light::kLocal)) startLight(levels_[l], result.state);
+  const bool may_be_far = first && l + 1 == levels() && config_.light != Light::kConstant;
+  if (!may_be_far) return settle(current, l, kPatience, prior, result);
+  const EsmResult start = result;
+  const geometry::Vector8d start_deviation = deviation_;
+  if (!light_known_) {
+    const EsmStatus status = iterate(current, l, prior, {Light::kGlobal, false, false}, result);
+    if (status != EsmStatus::kMaxIterations) return status;
+  }
+  if (light_known_ || result.last_step <= kFar * levels_[l].scale) {
+    const EsmStatus status = settle(current, l, kHurry, prior, result);
+    if (status != EsmStatus::kMaxIterations) return status;
+  }
+  result.state = start.state;
+  deviation_ = start_deviation;
+  const EsmStatus status = approach(current, l, prior, result);
+  return status == EsmStatus::kConverged ? settle(current, l, config_.max_iterations, prior, result) : status;
+}
+
+EsmResult Esm::align(const image::RegionPyramid& current, const EsmState& start, const MotionPrior* prior,
+                     int coarsest) {
+  EsmResult result;
+  result.state = start;
+  result.corner_error = std::numeric_limits<double>::infinity();
+  deviation_.setZero();
+  if (prior != nullptr && prior->predicted != start.g) {
+    deviation_ = geometry::sl3Log(geometry::normaliseDeterminant(n_ * prior->predicted.inverse() * start.g * n_inv_));
+    if (!deviation_.allFinite()) prior = nullptr;
+  }
+  const int first = std::min({coarsest, levels() - 1, current.levels() - 1});
+  for (int l = first; l >= 0; --l) {
+    for (EsmPlane& plane : levels_[l].planes) plane.before = plane.bias;
+    if (l < first && light_known_ && config_.light == Light::kLocal) inheritLight(levels_[l + 1], levels_[l]);
+    result.status = alignLevel(current, l, l == first, prior, result);
+    if (result.status == EsmStatus::kOutOfView || result.status == EsmStatus::kIllConditioned) return result;
+    // What does not settle on a coarse level is not there.
+    if (result.status == EsmStatus::kMaxIterations && result.last_step > kFar * levels_[l].scale) return result;
+  }
+  light_known_ = true;
+  judge(prior, result);
+  return result;
+}
+
+}  // namespace laparoscope_servo::tracking

@@ -1,0 +1,134 @@
+// Efficient second-order minimisation (ESM) on SL(3): aligns a region of the current image with the reference.
+//
+// Benhimane and Malis' method as used by Bourger et al. (2007), with a gain and a bias of the light, the bias for the
+// whole ROI or for each block of it:
+//   minimise over G, a, b:  sum w (a I(G p) + b - T(p))^2, over the pixels of one channel or of three,
+// by x = -(J'WJ)^-1 J'W r with J = (a J(grad of the warped image) + J(grad T)) / 2, and G <- G exp(A(x)).
+// G acts on normalised template coordinates p = N (u, v, 1): N puts the origin into the ROI's centre and divides by
+// half its larger side, so that G is the same at every level of the pyramid and J'J is well conditioned.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "laparoscope_servo/geometry/homography.h"
+#include "laparoscope_servo/geometry/sl3.h"
+#include "laparoscope_servo/image/lens.h"
+#include "laparoscope_servo/image/pyramid.h"
+#include "laparoscope_servo/tracking/tracker_config.h"
+#include "tracking/esm/block_equations.h"
+#include "tracking/esm/esm_level.h"
+#include "tracking/esm/normal_equations.h"
+#include "tracking/esm/residual.h"
+
+namespace laparoscope_servo::tracking {
+
+struct EsmState {
+  Eigen::Matrix3d g =
+      Eigen::Matrix3d::Identity();  // pixels of the reference to pixels of the current image, determinant 1
+  double gain = 1.0;                // gain * image + bias = reference
+  double bias = 0.0;                // grey levels; the mean of the blocks' with Light::kLocal
+};
+
+enum class EsmStatus {
+  kConverged,
+  kMaxIterations,   // still moving by more than min_step; the state is the last iterate
+  kIllConditioned,  // the pixels kept do not determine the eight parameters
+  kOutOfView,       // the ROI's image crosses infinity, or too little of it is in the image
+};
+
+struct EsmResult {
+  EsmState state;
+  EsmStatus status = EsmStatus::kMaxIterations;
+  int iterations = 0;
+  double last_step = 0.0;  // px, how far a corner moved in the last iteration
+  double sigma = 0.0;      // grey levels, robust standard deviation of the residual at the finest level used
+  // Of the estimate, by the residuals and the prior; x as in MotionPrior. Meaningless where corner_error is infinite.
+  Matrix8d covariance = Matrix8d::Zero();
+  // Grey levels squared. Residuals of real tissue are not independent; they count as fewer. This is the variance of
+  // independent ones for which J'WJ would give as uncertain an estimate.
+  double noise = 0.0;
+  double corner_error =
+      0.0;  // px in the image, standard deviation of the worst corner, prior included; infinite if unknown
+};
+
+// What is known of the motion before the image is seen: the deviation x of G from `predicted`, G = predicted N^-1
+// exp(A(x)) N, has the inverse covariance `information` [normalised template units]. An estimate far off what was
+// expected counts the prior less.
+struct MotionPrior {
+  Eigen::Matrix3d predicted = Eigen::Matrix3d::Identity();
+  Matrix8d information = Matrix8d::Zero();
+  double noise = 100.0;  // grey levels squared, what a unit of J'WJ is worth: EsmResult::noise of images before
+};
+
+class Esm {
+ public:
+  // With a lens the pyramids are of raw images, and every other pixel that is spoken of is a rectified one.
+  explicit Esm(const EsmConfig& config, std::shared_ptr<const image::Lens> lens = nullptr)
+      : config_(config), lens_(std::move(lens)) {}
+
+  // Takes the ROI of the pyramid's image for the reference, in as many channels as the pyramid has. The pyramid's
+  // region must hold the ROI; levels that would be smaller than 8 px in the ROI's smaller side are not used. The ROI is
+  // in whole pixels.
+  void setReference(const image::RegionPyramid& reference, const geometry::Rectangle& roi);
+
+  // Weights of the ROI's pixels, CV_32F of its size, for the following alignments. Coarser levels take the least of the
+  // weights that a pixel of theirs covers.
+  void setWeights(const cv::Mat1f& weights);
+
+  // With Light::kLocal the biases of the blocks go on from one alignment to the next; this starts them afresh from the
+  // image.
+  void forgetLight();
+
+  // From level `coarsest` (by default the coarsest there is) down to level 0.
+  EsmResult align(const image::RegionPyramid& current, const EsmState& start, const MotionPrior* prior = nullptr,
+                  int coarsest = 1000);
+
+  // px, standard deviation of the worst corner if the reference were seen with independent noise of `sigma` grey levels
+  // in reference and image, by the reference's own gradients and the weights; infinite where they do not determine it.
+  double referenceCornerError(double sigma);
+
+  int levels() const { return static_cast<int>(levels_.size()); }
+  const geometry::Rectangle& roi() const { return roi_; }
+  const EsmLevel& level(int l) const { return levels_[l]; }
+  // N, see above.
+  const Eigen::Matrix3d& normalisation() const { return n_; }
+
+ private:
+  void warp(const image::RegionPyramid& current, EsmLevel& level, int l, const Eigen::Matrix3d& g);
+  void startLight(EsmLevel& level, const EsmState& state);
+  double rejection(double sigma) const;
+  bool solve(EsmLevel& level, const MotionPrior* prior, bool shift_only, EsmState& state, double& step);
+  void takeStep(EsmLevel& level, const Vector10d& x, EsmState& state);
+  struct Iteration {
+    Light light;      // that the equations have
+    bool shift_only;  // or all eight parameters
+    bool match_mean;  // of the residual, first
+  };
+  // kMaxIterations when there is nothing to say against it.
+  EsmStatus iterate(const image::RegionPyramid& current, int l, const MotionPrior* prior, const Iteration& how,
+                    EsmResult& result);
+  EsmStatus approach(const image::RegionPyramid& current, int l, const MotionPrior* prior, EsmResult& result);
+  EsmStatus settle(const image::RegionPyramid& current, int l, int patience, const MotionPrior* prior,
+                   EsmResult& result);
+  EsmStatus alignLevel(const image::RegionPyramid& current, int l, bool first, const MotionPrior* prior,
+                       EsmResult& result);
+  void judge(const MotionPrior* prior, EsmResult& result) const;
+
+  EsmConfig config_;
+  std::shared_ptr<const image::Lens> lens_;
+  geometry::Rectangle roi_;
+  Eigen::Matrix3d n_ = Eigen::Matrix3d::Identity();  // N: reference pixels to normalised template coordinates
+  Eigen::Matrix3d n_inv_ = Eigen::Matrix3d::Identity();
+  std::vector<EsmLevel> levels_;
+  BlockEquations equations_;
+  ResidualScale residual_scale_;
+  std::vector<float> scratch_;
+  bool light_known_ = false;
+  Light light_ = Light::kConstant;                             // that the equations have at this iteration
+  geometry::Vector8d deviation_ = geometry::Vector8d::Zero();  // from the prior's prediction
+};
+
+}  // namespace laparoscope_servo::tracking

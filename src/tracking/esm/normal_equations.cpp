@@ -1,0 +1,135 @@
+#include "tracking/esm/normal_equations.h"
+
+#include <algorithm>
+#include <array>
+
+namespace laparoscope_servo::tracking {
+
+namespace {
+
+// c * u^a v^b
+struct Monomial {
+  double c;
+  int a;
+  int b;
+};
+
+// J_k = gx P_k(u, v) + gy Q_k(u, v)
+constexpr std::array<Monomial, 8> kP = {
+    {{1, 0, 0}, {0, 0, 0}, {1, 0, 1}, {0, 0, 0}, {1, 1, 0}, {-1, 1, 0}, {-1, 2, 0}, {-1, 1, 1}}};
+constexpr std::array<Monomial, 8> kQ = {
+    {{0, 0, 0}, {1, 0, 0}, {0, 0, 0}, {1, 1, 0}, {-1, 0, 1}, {-2, 0, 1}, {-1, 1, 1}, {-1, 0, 2}}};
+
+// Where the moment of u^a v^b is kept; monomials are ordered by a, then by b.
+constexpr int indexOfDegree4(int a, int b) {
+  return a * 5 - a * (a - 1) / 2 + b;
+}
+
+double product(const Monomial& s, const Monomial& t, const double* moments) {
+  const double c = s.c * t.c;
+  return c == 0.0 ? 0.0 : c * moments[indexOfDegree4(s.a + t.a, s.b + t.b)];
+}
+
+// Adds the row of J for the gradient (gx, gy).
+inline void addRow(double gx, double gy, double u, double v, Vector10d& sum) {
+  const double g3 = -(u * gx + v * gy);
+  sum[0] += gx;
+  sum[1] += gy;
+  sum[2] += gx * v;
+  sum[3] += gy * u;
+  sum[4] += gx * u - gy * v;
+  sum[5] += g3 - gy * v;
+  sum[6] += g3 * u;
+  sum[7] += g3 * v;
+}
+
+}  // namespace
+
+double halfSize(const geometry::Rectangle& roi) {
+  return std::max(roi.width, roi.height) / 2.0;
+}
+
+Eigen::Matrix3d templateFromPixels(const geometry::Rectangle& roi) {
+  const double unit = halfSize(roi);
+  Eigen::Matrix3d n;
+  n << 1.0 / unit, 0.0, -roi.centre().x() / unit,  //
+      0.0, 1.0 / unit, -roi.centre().y() / unit,   //
+      0.0, 0.0, 1.0;
+  return n;
+}
+
+Eigen::Matrix<double, 1, 8> esmJacobianRow(double gx, double gy, double u, double v) {
+  Vector10d j = Vector10d::Zero();
+  addRow(gx, gy, u, v, j);
+  return j.head<8>().transpose();
+}
+
+void NormalEquations::reset(Light light, double gradient_scale) {
+  light_ = light;
+  gradient_scale_ = gradient_scale;
+  moments_ = {};
+  matrix_.setZero();
+  vector_.setZero();
+  gain_column_.setZero();
+  block_jacobian_.setZero();
+  block_weight_ = block_residual_ = 0.0;
+  block_open_ = false;
+}
+
+void NormalEquations::addCell(const CellSums& cell, double u, double v) {
+  if (!block_open_) {
+    block_jacobian_.setZero();
+    block_weight_ = block_residual_ = 0.0;
+    vector_before_ = vector_;
+    block_open_ = true;
+  }
+  const double f = gradient_scale_;
+  double u_power = 1.0;
+  for (int a = 0; a <= 4; ++a, u_power *= u) {
+    double power = f * f * u_power;  // u^a v^b
+    for (int b = 0; a + b <= 4; ++b, power *= v) {
+      const int k = indexOfDegree4(a, b);
+      moments_.xx[k] += power * cell.xx;
+      moments_.xy[k] += power * cell.xy;
+      moments_.yy[k] += power * cell.yy;
+    }
+  }
+  addRow(f * cell.xr, f * cell.yr, u, v, vector_);
+  block_weight_ += cell.w;
+  block_residual_ += cell.r;
+  if (light_ == Light::kConstant) return;
+  addRow(f * cell.xm, f * cell.ym, u, v, gain_column_);
+  matrix_(8, 8) += cell.mm;
+  vector_[8] += cell.mr;
+  addRow(f * cell.x, f * cell.y, u, v, block_jacobian_);
+  block_jacobian_[8] += cell.m;
+}
+
+void NormalEquations::endBlock() {
+  block_open_ = false;
+  if (light_ == Light::kGlobal) {
+    matrix_.col(9).head<9>() += block_jacobian_.head<9>();
+    matrix_(9, 9) += block_weight_;
+    vector_[9] += block_residual_;
+  } else if (light_ == Light::kLocal && block_weight_ > 0.0) {
+    matrix_.topLeftCorner<9, 9>() -=
+        block_jacobian_.head<9>() * (block_jacobian_.head<9>() / block_weight_).transpose();
+    vector_.head<9>() -= block_jacobian_.head<9>() * (block_residual_ / block_weight_);
+  }
+}
+
+Matrix10d NormalEquations::matrix() const {
+  Matrix10d m = matrix_;
+  m.col(8).head<8>() += gain_column_.head<8>();
+  for (int k = 0; k < 8; ++k) {
+    for (int l = k; l < 8; ++l) {
+      m(k, l) += product(kP[k], kP[l], moments_.xx) + product(kP[k], kQ[l], moments_.xy) +
+                 product(kQ[k], kP[l], moments_.xy) + product(kQ[k], kQ[l], moments_.yy);
+    }
+  }
+  if (light_ == Light::kConstant) m(8, 8) = 1.0;
+  if (light_ != Light::kGlobal) m(9, 9) = 1.0;
+  return m.selfadjointView<Eigen::Upper>();
+}
+
+}  // namespace laparoscope_servo::tracking

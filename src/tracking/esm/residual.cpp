@@ -1,0 +1,77 @@
+#include "tracking/esm/residual.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace laparoscope_servo::tracking {
+
+namespace {
+
+constexpr double kMadToSigma = 1.4826;  // normal noise
+constexpr double kMinSigma = 1.0;       // grey levels; below it quantisation is mistaken for outliers
+constexpr int kMaxSamples = 1024;       // of the residual, for its scale
+constexpr int kRun = 4;                 // px side by side, which share what is fetched from memory
+constexpr double kBinsPerLevel = 8.0;   // of the histogram of residuals, which ends at 128 grey levels
+constexpr int kBins = 1024;
+
+}  // namespace
+
+double matchMean(EsmLevel& level, double gain) {
+  const image::Patch& weight = level.usedWeight();
+  double common = 0.0;
+  for (EsmPlane& plane : level.planes) {
+    double sum = 0.0, weights = 0.0;
+    for (int row = 0; row + 1 < static_cast<int>(level.block_row_begin.size()); ++row) {
+      for (int j = level.block_row_begin[row]; j < level.block_row_begin[row + 1]; ++j) {
+        for (int i = 0; i < level.width; ++i) {
+          const double bias =
+              plane.biasOf(row * level.block_columns + level.block_of_strip[i / image::Patch::kStrip], gain);
+          sum += weight(j, i) * (plane.value(j, i) - gain * plane.warped(j, i) - bias);
+          weights += weight(j, i);
+        }
+      }
+    }
+    const double missing = weights > 0.0 ? sum / weights : 0.0;
+    for (double& bias : plane.bias) bias += missing;
+    common += missing / static_cast<double>(level.planes.size());
+  }
+  return common;
+}
+
+double ResidualScale::of(const EsmLevel& level, double gain) {
+  histogram_.assign(kBins, 0);
+  const image::Patch& weight = level.usedWeight();
+  const int pixels = level.width * level.height * static_cast<int>(level.planes.size());
+  const int stride = kRun * std::max(1, pixels / kMaxSamples);
+  const float g = static_cast<float>(gain);
+  int count = 0;
+  for (const EsmPlane& plane : level.planes) {
+    std::size_t block_row = 0;
+    for (int j = 0; j < level.height; ++j) {
+      if (j >= level.block_row_begin[block_row + 1]) ++block_row;
+      const float* weights = weight.row(j);
+      const float* image = plane.warped.row(j);
+      const float* reference = plane.value.row(j);
+      // Runs that start elsewhere in each row, so that no pattern of the image is preferred.
+      for (int first = (j * 7 * kRun) % stride / kRun * kRun; first < level.width; first += stride) {
+        const std::size_t block = block_row * level.block_columns + level.block_of_strip[first / image::Patch::kStrip];
+        const float b = static_cast<float>(plane.biasOf(block, gain));
+        for (int i = first; i < std::min(first + kRun, level.width); ++i) {
+          if (!(weights[i] > 0.0f)) continue;
+          const float residual = std::abs(g * image[i] + b - reference[i]);
+          ++histogram_[std::min(static_cast<int>(residual * static_cast<float>(kBinsPerLevel)), kBins - 1)];
+          ++count;
+        }
+      }
+    }
+  }
+  if (count == 0) return kMinSigma;
+  // The median lies in the bin where half of the samples are reached, as far along as they are reached there.
+  double below = 0.0;
+  int bin = 0;
+  while (below + histogram_[bin] < 0.5 * count) below += histogram_[bin++];
+  const double median = (bin + (0.5 * count - below) / histogram_[bin]) / kBinsPerLevel;
+  return std::max(kMinSigma, kMadToSigma * median);
+}
+
+}  // namespace laparoscope_servo::tracking

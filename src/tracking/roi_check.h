@@ -1,0 +1,24 @@
+// What an image and a region of interest (ROI) must be, to be tracked.
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include "laparoscope_servo/geometry/homography.h"
+#include "laparoscope_servo/image/lens.h"
+#include "tracking/align/region_aligner.h"
+
+namespace laparoscope_servo::tracking {
+
+// Throws std::invalid_argument for an image that is empty, or of another type than CV_8UC1 and CV_8UC3.
+void checkImage(const cv::Mat& image);
+
+// The ROI in whole pixels. Throws std::invalid_argument when a side is below `min_side` [px], or a part of it is not in
+// the image. With a lens (null: none) the image is raw, and the ROI in rectified pixels.
+geometry::Rectangle checkedRoi(const cv::Mat& image, const geometry::Rectangle& roi, int min_side,
+                               const image::Lens* lens);
+
+// px, the corner error that two grey levels of noise cause in the aligner's reference. Throws std::invalid_argument
+// when it is more than `max_error`: the ROI has too little texture.
+double checkedCornerError(RegionAligner& aligner, double max_error);
+
+}  // namespace laparoscope_servo::tracking

@@ -1,0 +1,39 @@
+#include "tracking/search/confirmation.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "laparoscope_servo/geometry/sl3.h"
+#include "tracking/align/region_aligner.h"
+
+namespace laparoscope_servo::tracking {
+
+namespace {
+
+// Of the ROI's diagonal: how far a region that has been found may have gone by the next image, its motion being
+// unknown.
+constexpr double kUnknownMotion = 0.15;
+
+}  // namespace
+
+Eigen::Matrix3d Confirmation::expected() const {
+  return geometry::normaliseDeterminant(candidate_.g * step_);
+}
+
+bool Confirmation::add(const EsmResult& found, const geometry::Rectangle& roi, const TrackRecord& record) {
+  // The target may have been moving all the time.
+  if (count_ > 0) {
+    const double apart = farthestCorner(expected(), found.state.g, roi);
+    const double share = count_ == 1 ? kUnknownMotion : 0.0;
+    const double unknown = share * std::hypot(roi.width, roi.height);
+    const double allowed = allowedJump(record, config_, roi, 0.0, found.corner_error);
+    if (!(apart <= std::max(allowed, unknown))) count_ = 0;
+  }
+  step_ = count_ > 0 ? Eigen::Matrix3d(candidate_.g.inverse() * found.state.g) : Eigen::Matrix3d::Identity();
+  ++count_;
+  candidate_ = found.state;
+  return count_ >= config_.confirmations;
+}
+
+}  // namespace laparoscope_servo::tracking

@@ -1,0 +1,86 @@
+#include "tracking/views/keyframes.h"
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace laparoscope_servo::tracking {
+
+namespace {
+
+constexpr double kLengthStep = 1.3;  // a binary descriptor bears about this much between two views
+constexpr double kTurnStep = 0.6;    // rad
+// Share of the image's diagonal: detectors see nothing near the border of what they are given.
+constexpr double kMargin = 0.08;
+
+}  // namespace
+
+double viewDistance(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b, const geometry::Rectangle& roi) {
+  const Eigen::Vector2d middle(roi.x + 0.5 * roi.width, roi.y + 0.5 * roi.height);
+  const Eigen::Matrix2d from = geometry::derivative(b, middle);
+  const Eigen::Matrix2d to = geometry::derivative(a, middle);
+  if (!(from.determinant() > 0.0) || !(to.determinant() > 0.0)) return std::numeric_limits<double>::infinity();
+  const Eigen::Matrix2d change = to * from.inverse();
+  const Eigen::Vector2d lengths = Eigen::JacobiSVD<Eigen::Matrix2d>(change).singularValues();
+  const double turn = std::atan2(change(1, 0) - change(0, 1), change(0, 0) + change(1, 1));
+  return std::max({std::abs(std::log(lengths[0])) / std::log(kLengthStep),
+                   std::abs(std::log(lengths[1])) / std::log(kLengthStep), std::abs(turn) / kTurnStep});
+}
+
+void Keyframes::setReference(const cv::Mat& image, const geometry::Rectangle& roi, const cv::Mat1f& weights) {
+  roi_ = roi;
+  views_.clear();
+  views_.push_back(cut(image, Eigen::Matrix3d::Identity(), weights));
+}
+
+double Keyframes::nearest(const Eigen::Matrix3d& g, int except) const {
+  double distance = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < count(); ++k) {
+    if (k != except) distance = std::min(distance, viewDistance(g, views_[k].g, roi_));
+  }
+  return distance;
+}
+
+int Keyframes::leastSingular() const {
+  int least = 1;
+  for (int k = 2; k < count(); ++k) {
+    if (nearest(views_[k].g, k) < nearest(views_[least].g, least)) least = k;
+  }
+  return least;
+}
+
+bool Keyframes::wants(const Eigen::Matrix3d& g) const {
+  if (capacity_ == 0 || views_.empty()) return false;
+  const double distance = nearest(g, -1);
+  if (!(distance >= 1.0) || !std::isfinite(distance)) return false;
+  if (count() <= capacity_) return true;
+  const int least = leastSingular();
+  return distance > nearest(views_[least].g, least);
+}
+
+void Keyframes::add(const cv::Mat& image, const Eigen::Matrix3d& g, const cv::Mat1f& weights) {
+  Keyframe view = cut(image, g, weights);
+  if (view.crop.empty()) return;
+  if (count() <= capacity_) {
+    views_.push_back(std::move(view));
+  } else {
+    views_[leastSingular()] = std::move(view);
+  }
+}
+
+Keyframe Keyframes::cut(const cv::Mat& image, const Eigen::Matrix3d& g, const cv::Mat1f& weights) const {
+  const double margin = kMargin * std::hypot(image.cols, image.rows);
+  const geometry::Quadrilateral corners = geometry::apply(g, roi_.corners());
+  const cv::Rect box = image::seenBox(lens_.get(), corners, margin) & cv::Rect(cv::Point(0, 0), image.size());
+  Keyframe view;
+  view.g = g;
+  if (box.empty()) return view;
+  view.crop = image(box).clone();
+  view.first = box.tl();
+  view.trusted = weights > 0.0f;
+  return view;
+}
+
+}  // namespace laparoscope_servo::tracking

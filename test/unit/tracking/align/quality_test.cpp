@@ -1,0 +1,164 @@
+#include "tracking/align/quality.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+namespace laparoscope_servo::tracking {
+namespace {
+
+Evidence good() {
+  Evidence e;
+  e.roi = {100, 100, 101, 101};
+  e.esm.status = EsmStatus::kConverged;
+  e.esm.corner_error = 0.1;
+  e.predicted = Eigen::Matrix3d::Identity();
+  e.from_track = true;
+  e.visible_fraction = 0.9;
+  e.zncc = 0.95;
+  e.esm.sigma = 2.0;
+  for (int k = 0; k < 50; ++k) e.record.add(0.95, 2.0, 1.0, 0.9);
+  return e;
+}
+
+TEST(Doubt, IsEmptyWhenEveryTestIsPassed) {
+  EXPECT_EQ(doubt(good(), QualityConfig()), "");
+}
+
+struct Flaw {
+  const char* name;
+  const char* word;  // what the reason must speak of
+  std::function<void(Evidence&)> apply;
+};
+
+TEST(Doubt, NamesEachFlawByItself) {
+  const double nan = std::nan("");
+  const std::vector<Flaw> flaws = {
+      {"ill", "determine", [](Evidence& e) { e.esm.status = EsmStatus::kIllConditioned; }},
+      {"out", "infinity", [](Evidence& e) { e.esm.status = EsmStatus::kOutOfView; }},
+      {"moving", "moving",
+       [](Evidence& e) {
+         e.esm.status = EsmStatus::kMaxIterations;
+         e.esm.last_step = 3.0;
+       }},
+      {"moving nan", "moving",
+       [=](Evidence& e) {
+         e.esm.status = EsmStatus::kMaxIterations;
+         e.esm.last_step = nan;
+       }},
+      {"covered", "visible", [](Evidence& e) { e.visible_fraction = 0.05; }},
+      {"covered nan", "visible", [=](Evidence& e) { e.visible_fraction = nan; }},
+      {"mostly covered", "visible fraction of what is in the image", [](Evidence& e) { e.visible_fraction = 0.14; }},
+      {"in image nan", "visible", [=](Evidence& e) { e.visible_fraction = e.in_image = nan; }},
+      {"folded", "convex", [](Evidence& e) { e.esm.state.g(0, 0) = -1.0; }},
+      {"nan", "convex", [=](Evidence& e) { e.esm.state.g(0, 0) = nan; }},
+      {"large", "area", [](Evidence& e) { e.esm.state.g(0, 0) = e.esm.state.g(1, 1) = 3.0; }},
+      {"small", "area", [](Evidence& e) { e.esm.state.g(0, 0) = e.esm.state.g(1, 1) = 0.3; }},
+      {"unlike", "correlation", [](Evidence& e) { e.zncc = 0.3; }},
+      {"unlike nan", "correlation", [=](Evidence& e) { e.zncc = nan; }},
+      {"worse than it was", "correlation", [](Evidence& e) { e.zncc = 0.75; }},
+      {"residual", "residual", [](Evidence& e) { e.esm.sigma = 6.0; }},
+      {"residual nan", "residual", [=](Evidence& e) { e.esm.sigma = nan; }},
+      {"vague", "corner error", [](Evidence& e) { e.esm.corner_error = 7.0; }},
+      {"vague inf", "corner error", [](Evidence& e) { e.esm.corner_error = INFINITY; }},
+      {"jump", "jump", [](Evidence& e) { e.esm.state.g(0, 2) = 100.0; }},
+  };
+  for (const Flaw& flaw : flaws) {
+    Evidence e = good();
+    flaw.apply(e);
+    EXPECT_NE(doubt(e, QualityConfig()).find(flaw.word), std::string::npos)
+        << flaw.name << ": " << doubt(e, QualityConfig());
+  }
+}
+
+TEST(Doubt, AsksMoreOfASearch) {
+  const std::vector<Flaw> flaws = {
+      {"visible", "visible", [](Evidence& e) { e.visible_fraction = 0.2; }},
+      {"correlation", "correlation", [](Evidence& e) { e.zncc = 0.84; }},
+      {"residual", "residual", [](Evidence& e) { e.esm.sigma = 4.0; }},
+      {"gain", "gain", [](Evidence& e) { e.esm.state.gain = 2.5; }},
+      {"gain nan", "gain", [](Evidence& e) { e.esm.state.gain = std::nan(""); }},
+  };
+  for (const Flaw& flaw : flaws) {
+    Evidence e = good();
+    flaw.apply(e);
+    if (std::isfinite(e.esm.state.gain)) {
+      EXPECT_EQ(doubt(e, QualityConfig()), "") << flaw.name;
+    }
+    e.from_track = false;
+    EXPECT_NE(doubt(e, QualityConfig()).find(flaw.word), std::string::npos) << flaw.name;
+  }
+}
+
+// Of a ROI that has left the image by half, less has to be visible.
+TEST(Doubt, WhatIsOutsideTheImageIsNotCovered) {
+  Evidence e = good();
+  e.visible_fraction = 0.14;
+  EXPECT_NE(doubt(e, QualityConfig()), "");
+  e.in_image = 0.5;
+  EXPECT_EQ(doubt(e, QualityConfig()), "");
+}
+
+TEST(Doubt, TheLightMayChangeMoreTheLongerItHasNotBeenSeen) {
+  Evidence e = good();
+  e.from_track = false;
+  e.esm.state.gain = 1.8 * e.last_gain;
+  EXPECT_NE(doubt(e, QualityConfig()).find("gain"), std::string::npos);
+  e.unseen = 1.0;
+  EXPECT_EQ(doubt(e, QualityConfig()), "");
+  e.esm.state.gain = e.last_gain / 1.8;
+  EXPECT_EQ(doubt(e, QualityConfig()), "");
+}
+
+TEST(Doubt, WhatIsTooBadDependsOnTheRecord) {
+  Evidence e = good();
+  e.zncc = 0.7;
+  e.esm.sigma = 7.0;
+  EXPECT_NE(doubt(e, QualityConfig()), "");
+  e.record = TrackRecord();  // nothing known yet
+  EXPECT_EQ(doubt(e, QualityConfig()), "");
+}
+
+TEST(AllowedJump, ShrinksWithWhatIsVisible) {
+  const Evidence e = good();
+  const QualityConfig q;
+  EXPECT_NEAR(allowedJump(e.record, q, e.roi, 0.9, 0.1), q.max_jump * std::hypot(101.0, 101.0), 1e-9);
+  double last = 1e9;
+  for (double visible = 1.0; visible >= 0.0; visible -= 0.05) {
+    const double now = allowedJump(e.record, q, e.roi, visible, 0.1);
+    EXPECT_LE(now, last);
+    last = now;
+  }
+  EXPECT_NEAR(last, 3.0 + 4.0 * e.record.innovation() + 0.3, 1e-9);
+}
+
+TEST(TrackRecord, BeginsWithTheFirstImageAndThenFollowsSlowly) {
+  TrackRecord record;
+  record.add(0.9, 3.0, 2.0, 1.0);
+  EXPECT_DOUBLE_EQ(record.zncc(), 0.9);
+  EXPECT_DOUBLE_EQ(record.sigma(), 3.0);
+  EXPECT_DOUBLE_EQ(record.innovation(), 2.0);
+  for (int k = 0; k < 200; ++k) record.add(0.9, 3.0, 2.0, 1.0);
+  record.add(0.5, 30.0, 20.0, 1.0);
+  EXPECT_GT(record.zncc(), 0.87);
+  EXPECT_LT(record.sigma(), 5.0);
+}
+
+TEST(TrackRecord, LearnsNothingOfLikenessFromWhatIsHardlyVisible) {
+  TrackRecord record;
+  const double zncc = record.zncc();
+  record.add(0.2, 50.0, 1.0, 0.1);
+  EXPECT_EQ(record.zncc(), zncc);
+  EXPECT_DOUBLE_EQ(record.innovation(), 1.0);
+}
+
+TEST(Doubt, NearlyConvergedIsGoodEnough) {
+  Evidence e = good();
+  e.esm.status = EsmStatus::kMaxIterations;
+  e.esm.last_step = 0.1;
+  EXPECT_EQ(doubt(e, QualityConfig()), "");
+}
+
+}  // namespace
+}  // namespace laparoscope_servo::tracking

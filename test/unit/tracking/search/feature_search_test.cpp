@@ -1,0 +1,146 @@
+#include "tracking/search/feature_search.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "../../support/synthetic_tissue.h"
+
+namespace laparoscope_servo::tracking {
+namespace {
+
+const cv::Size kSize(480, 360);
+const geometry::Rectangle kRoi = {170, 110, 130, 120};
+
+// A view that turns by `angle` and zooms about the ROI's centre, which goes to `to`; `tilt` foreshortens it.
+Eigen::Matrix3d motion(double zoom, double angle, double tilt, const Eigen::Vector2d& to) {
+  Eigen::Matrix3d tilted = Eigen::Matrix3d::Identity();
+  tilted(0, 0) = std::cos(tilt);
+  tilted(2, 0) = std::sin(tilt) / 500.0;
+  return test::zoomAndTurn(kRoi, zoom, angle, tilted, to);
+}
+
+class FeatureSearchTest : public ::testing::Test {
+ protected:
+  cv::Mat scene_ = test::tissue(kSize, 41);
+  Keyframes views_{8};
+  FeatureSearch search_{SearchConfig()};
+  cv::Mat1f weights_ = cv::Mat1f(120, 130, 1.0f);
+
+  void SetUp() override { views_.setReference(scene_, kRoi, weights_); }
+  std::vector<FeatureCandidate> find(const cv::Mat& image) { return search_.find(image, image::kLuma, views_); }
+  cv::Mat seen(const Eigen::Matrix3d& g, unsigned seed = 1) const {
+    return test::view(scene_, g, 0.9, 10.0, 2.0, seed);
+  }
+};
+
+TEST_F(FeatureSearchTest, FindsTheRegionMovedTurnedAndZoomed) {
+  for (const double zoom : {0.75, 1.0, 1.4}) {
+    for (const double angle : {0.0, 0.8, -1.57}) {
+      const Eigen::Matrix3d g = motion(zoom, angle, 0.2, {200.0, 210.0});
+      const std::vector<FeatureCandidate> found = find(seen(g));
+      ASSERT_FALSE(found.empty()) << zoom << ' ' << angle;
+      EXPECT_LT(test::cornerDistance(found[0].g, g, kRoi), 15.0) << zoom << ' ' << angle;
+      EXPECT_NEAR(found[0].g.determinant(), 1.0, 1e-9);
+      EXPECT_GE(found[0].inliers, SearchConfig().min_inliers);
+    }
+  }
+}
+
+TEST_F(FeatureSearchTest, AnImageThatIsScaledDownGivesPlacesInItsOwnPixels) {
+  SearchConfig config;
+  config.max_pixels = 60000;
+  search_ = FeatureSearch(config);
+  const Eigen::Matrix3d g = motion(1.1, 0.5, 0.0, {250.0, 170.0});
+  const std::vector<FeatureCandidate> found = find(seen(g));
+  ASSERT_FALSE(found.empty());
+  EXPECT_LT(test::cornerDistance(found[0].g, g, kRoi), 15.0);
+}
+
+TEST_F(FeatureSearchTest, TakesGreyImages) {
+  cv::Mat grey, moved;
+  cv::cvtColor(scene_, grey, cv::COLOR_BGR2GRAY);
+  views_.setReference(grey, kRoi, weights_);
+  const Eigen::Matrix3d g = motion(1.0, 0.4, 0.0, {230.0, 190.0});
+  cv::cvtColor(seen(g), moved, cv::COLOR_BGR2GRAY);
+  const std::vector<FeatureCandidate> found = find(moved);
+  ASSERT_FALSE(found.empty());
+  EXPECT_LT(test::cornerDistance(found[0].g, g, kRoi), 15.0);
+}
+
+TEST_F(FeatureSearchTest, BearsAMixtureWithNegativeWeights) {
+  const Eigen::Matrix3d g = motion(1.0, 0.4, 0.0, {230.0, 190.0});
+  const std::vector<FeatureCandidate> found = search_.find(seen(g), {-0.2f, 0.6f, 0.2f}, views_);
+  ASSERT_FALSE(found.empty());
+  EXPECT_LT(test::cornerDistance(found[0].g, g, kRoi), 15.0);
+}
+
+TEST_F(FeatureSearchTest, FindsNothingInSmokeOrDarknessOrATinyImage) {
+  cv::Mat smoke(kSize, CV_8UC3);
+  cv::randn(smoke, cv::Scalar(120, 120, 120), cv::Scalar(2, 2, 2));
+  EXPECT_TRUE(find(smoke).empty());
+  EXPECT_TRUE(find(cv::Mat(kSize, CV_8UC3, cv::Scalar(0, 0, 0))).empty());
+  EXPECT_TRUE(find(cv::Mat(kSize, CV_8UC3, cv::Scalar(255, 255, 255))).empty());
+  EXPECT_TRUE(find(cv::Mat(8, 8, CV_8UC3, cv::Scalar(90, 90, 90))).empty());
+}
+
+TEST_F(FeatureSearchTest, WithoutAReferenceThereIsNoCandidate) {
+  Keyframes none(4);
+  EXPECT_TRUE(search_.find(scene_, image::kLuma, none).empty());
+}
+
+TEST_F(FeatureSearchTest, OccludedPixelsOfAViewGiveNoFeatures) {
+  weights_.setTo(0.0f);
+  weights_(cv::Rect(65, 0, 65, 120)).setTo(1.0f);
+  views_.setReference(scene_, kRoi, weights_);
+  find(scene_);
+  ASSERT_TRUE(views_.at(0).described);
+  ASSERT_FALSE(views_.at(0).features.points.empty());
+  for (const cv::Point2f& point : views_.at(0).features.points) {
+    EXPECT_GE(point.x, kRoi.x + 64);
+    EXPECT_LE(point.x, kRoi.x + kRoi.width + 1);
+    EXPECT_GE(point.y, kRoi.y - 1);
+    EXPECT_LE(point.y, kRoi.y + kRoi.height + 1);
+  }
+}
+
+TEST_F(FeatureSearchTest, ViewsTakeTurnsAndAreDescribedWhenAsked) {
+  for (const double zoom : {1.4, 2.0}) {
+    const Eigen::Matrix3d g = motion(zoom, 0.0, 0.0, {240.0, 180.0});
+    ASSERT_TRUE(views_.wants(g));
+    views_.add(seen(g), g, weights_);
+  }
+  find(scene_);
+  EXPECT_TRUE(views_.at(0).described);
+  EXPECT_TRUE(views_.at(1).described);
+  EXPECT_FALSE(views_.at(2).described);
+  find(scene_);
+  EXPECT_TRUE(views_.at(2).described);
+}
+
+TEST_F(FeatureSearchTest, AViewFindsWhatTheReferenceDoesNot) {
+  const Eigen::Matrix3d close = motion(2.6, 0.0, 0.0, {240.0, 180.0});
+  const Eigen::Matrix3d now = motion(2.5, 0.3, 0.0, {230.0, 190.0});
+  EXPECT_TRUE(find(seen(now, 2)).empty());
+  views_.add(seen(close), close, weights_);
+  search_.restart();
+  const std::vector<FeatureCandidate> found = find(seen(now, 2));
+  ASSERT_FALSE(found.empty());
+  EXPECT_LT(test::cornerDistance(found[0].g, now, kRoi), 30.0);
+}
+
+TEST_F(FeatureSearchTest, TheSameImageGivesTheSameCandidates) {
+  const cv::Mat image = seen(motion(0.9, 0.7, 0.3, {250.0, 170.0}));
+  const std::vector<FeatureCandidate> a = find(image);
+  search_.restart();
+  const std::vector<FeatureCandidate> b = find(image);
+  ASSERT_FALSE(a.empty());
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    EXPECT_EQ(a[k].g, b[k].g);
+    EXPECT_EQ(a[k].inliers, b[k].inliers);
+  }
+}
+
+}  // namespace
+}  // namespace laparoscope_servo::tracking
