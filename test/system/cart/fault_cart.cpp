@@ -2,6 +2,7 @@
 
 #include <std_srvs/SetBool.h>
 
+#include <cstdio>
 #include <limits>
 
 #include "laparoscope_servo/SelectRoi.h"
@@ -80,6 +81,12 @@ std::string FaultCart::waitFor(const char* what, const std::function<bool()>& co
   return bench.waitFor(condition, seconds) ? "" : std::string("waited in vain for ") + what;
 }
 
+std::string FaultCart::waitWhileEngaged(const char* what, const std::function<bool()>& condition) {
+  bool reached = false;
+  bench.waitFor([&] { return (reached = condition()) || stateIs("LOST") || stateIs("FAULT"); });
+  return reached ? "" : std::string("waited in vain for ") + what;
+}
+
 std::string FaultCart::engage(bool on) {
   std_srvs::SetBool call;
   call.request.data = static_cast<std::uint8_t>(on);
@@ -104,7 +111,20 @@ double FaultCart::offset() const {
   return std::hypot(x - kRoiX - middle, y - kRoiY - middle);
 }
 
+// On a machine that is too busy for it, the emulator may fall silent or pictures come late, and the cart stops as it
+// has to: then the steps are taken again.
 std::string FaultCart::bringTo(Situation situation) {
+  constexpr int kAttempts = 4;
+  std::string problem;
+  for (int k = 0; k < kAttempts; ++k) {
+    problem = tryToBringTo(situation);
+    if (problem.empty()) return "";
+    std::printf("not brought to %s: %s\n", name(situation), problem.c_str());
+  }
+  return problem;
+}
+
+std::string FaultCart::tryToBringTo(Situation situation) {
   for (const auto step : {&FaultCart::stand, &FaultCart::see}) {
     const std::string problem = (this->*step)();
     if (!problem.empty()) return problem;
@@ -187,13 +207,13 @@ std::string FaultCart::go(Situation situation) {
   const int told = operating.told();
   bench.waitFor([&] { return operating.told() > told + 2; });
   operating.press(true);
-  problem = waitFor("SERVO", [this] { return stateIs("SERVO"); });
+  problem = waitWhileEngaged("SERVO", [this] { return stateIs("SERVO"); });
   if (!problem.empty()) return problem + " (" + state() + ": " + reason() + ")";
   if (manual) operating.push(kStick);
-  problem = waitFor("motion", [this] { return std::abs(bench.truth().motion().qdot[1]) > 0.02; });
+  problem = waitWhileEngaged("motion", [this] { return std::abs(bench.truth().motion().qdot[1]) > 0.02; });
   if (problem.empty() && situation == Situation::kHold) {
     relay->cover();
-    problem = waitFor("HOLD", [this] { return stateIs("HOLD") && !bench.jointsMove(); });
+    problem = waitWhileEngaged("HOLD", [this] { return stateIs("HOLD") && !bench.jointsMove(); });
   }
   return problem.empty() ? "" : problem + " (" + state() + ": " + reason() + ")";
 }

@@ -61,12 +61,15 @@ class FaultCart {
   std::unique_ptr<ChildProcess> camera, tracker, controller;
 
  private:
+  std::string tryToBringTo(Situation situation);
   std::string stand();
   std::string see();
   std::string go(Situation situation);
   void hand(const aesop::JointVector& goal);
   // Why `condition` has not come true; empty when it has.
   std::string waitFor(const char* what, const std::function<bool()>& condition, double seconds = 20.0);
+  // The same, no longer than the engagement lasts.
+  std::string waitWhileEngaged(const char* what, const std::function<bool()>& condition);
 
   const std::string none_;
   aesop::Kinematics kinematics_{aesop::KinematicsConfig()};
