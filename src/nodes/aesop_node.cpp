@@ -1,4 +1,4 @@
-// Node `aesop`: drives the arm over a serial port. See README, node `aesop`.
+// Node `aesop`: drives the arm over a serial port. See doc/nodes/aesop.md.
 #include "ros/aesop/aesop_node.h"
 
 #include <ros/ros.h>

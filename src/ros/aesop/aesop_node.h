@@ -1,4 +1,4 @@
-// The aesop node: topics, services and tf around aesop::Driver and a serial port. doc and units: README, node `aesop`.
+// The aesop node: topics, services and tf around aesop::Driver and a serial port. Their units: doc/nodes/aesop.md.
 //
 // One thread, one loop at a steady rate: neither a standing nor a jumping ROS clock touches the watchdogs.
 #pragma once

@@ -1,4 +1,4 @@
-// The services and the topic under ~calibrate_insertion_point, see README, node `aesop`.
+// The services and the topic under ~calibrate_insertion_point: doc/nodes/aesop.md.
 #pragma once
 
 #include <diagnostic_updater/DiagnosticStatusWrapper.h>

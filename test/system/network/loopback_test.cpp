@@ -1,4 +1,4 @@
-// Started as the README shows, nothing listens beyond the loopback address.
+// Started as doc/network.md says, nothing listens beyond the loopback address.
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>
