@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "bench/kernels/kernel_bench.h"
-#include "esm_kernels.h"  // private to the tracking part
+#include "tracking/esm/esm_kernels.h"  // private to the tracking part
 
 namespace laparoscope_servo::bench {
 

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "../../support/synthetic_tissue.h"
+#include "support/synthetic_tissue.h"
 
 namespace laparoscope_servo::image {
 namespace {

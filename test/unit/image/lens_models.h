@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "../../support/synthetic_lens.h"
+#include "support/synthetic_lens.h"
 
 namespace laparoscope_servo::image {
 

@@ -5,7 +5,7 @@
 #include <opencv2/core.hpp>
 #include <stdexcept>
 
-#include "../../support/synthetic_tissue.h"
+#include "support/synthetic_tissue.h"
 
 namespace laparoscope_servo::image {
 namespace {

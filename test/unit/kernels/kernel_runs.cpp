@@ -4,12 +4,12 @@
 
 #include <Eigen/Core>
 
-#include "../../../src/tracking/esm_kernels.h"  // private to the part
 #include "laparoscope_servo/image/area_grid.h"
 #include "laparoscope_servo/image/colour_patch.h"
 #include "laparoscope_servo/image/patch.h"
 #include "laparoscope_servo/image/pyramid.h"
 #include "laparoscope_servo/image/warp.h"
+#include "tracking/esm/esm_kernels.h"  // private to the part
 #include "tracking/esm/esm_level.h"
 #include "tracking/occlusion/colour_gate.h"
 #include "tracking/occlusion/occlusion_gates.h"

@@ -10,8 +10,8 @@
 #include <cstdlib>
 #include <vector>
 
-#include "../../support/synthetic_tissue.h"
 #include "laparoscope_servo/tracking/region_tracker.h"
+#include "support/synthetic_tissue.h"
 
 // A sanitiser has an allocator of its own.
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)

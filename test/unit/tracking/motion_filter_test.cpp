@@ -6,7 +6,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include "../../support/synthetic_tissue.h"
+#include "support/synthetic_tissue.h"
 #include "tracking/align/region_aligner.h"
 
 namespace laparoscope_servo::tracking {

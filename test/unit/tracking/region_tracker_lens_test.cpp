@@ -4,9 +4,9 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "../../support/synthetic_lens.h"
-#include "../../support/synthetic_tissue.h"
 #include "laparoscope_servo/tracking/region_tracker.h"
+#include "support/synthetic_lens.h"
+#include "support/synthetic_tissue.h"
 
 namespace laparoscope_servo::tracking {
 namespace {

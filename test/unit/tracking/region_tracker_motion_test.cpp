@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "../../support/synthetic_tissue.h"
 #include "laparoscope_servo/tracking/region_tracker.h"
+#include "support/synthetic_tissue.h"
 
 namespace laparoscope_servo::tracking {
 namespace {

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "../../support/synthetic_tissue.h"
+#include "support/synthetic_tissue.h"
 
 namespace laparoscope_servo::tracking {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "../../support/synthetic_tissue.h"
+#include "support/synthetic_tissue.h"
 
 namespace laparoscope_servo::tracking {
 namespace {

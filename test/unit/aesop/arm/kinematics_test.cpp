@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "laparoscope_servo/geometry/se3.h"
-#include "nominal_pose.h"
+#include "unit/aesop/nominal_pose.h"
 
 namespace laparoscope_servo::aesop {
 namespace {

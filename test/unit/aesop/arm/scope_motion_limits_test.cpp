@@ -7,7 +7,7 @@
 #include <random>
 
 #include "laparoscope_servo/aesop/scope_motion.h"
-#include "nominal_pose.h"
+#include "unit/aesop/nominal_pose.h"
 
 namespace laparoscope_servo::aesop {
 namespace {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-#include "nominal_pose.h"
+#include "unit/aesop/nominal_pose.h"
 
 namespace laparoscope_servo::aesop {
 namespace {

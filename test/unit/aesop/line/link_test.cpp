@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "fake_controller.h"
+#include "unit/aesop/fake_controller.h"
 
 namespace laparoscope_servo::aesop {
 namespace {

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "laparoscope_servo/aesop/session.h"
-#include "session_fixture.h"
+#include "unit/aesop/session_fixture.h"
 
 namespace laparoscope_servo::aesop {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "session_fixture.h"
+#include "unit/aesop/session_fixture.h"
 
 namespace laparoscope_servo::aesop {
 namespace {

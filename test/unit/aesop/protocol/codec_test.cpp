@@ -7,8 +7,8 @@
 
 #include "laparoscope_servo/aesop/session.h"
 #include "laparoscope_servo/sim/emulator.h"
-#include "line_codec.h"
-#include "messages.h"
+#include "unit/aesop/line_codec.h"
+#include "unit/aesop/messages.h"
 
 namespace laparoscope_servo::aesop {
 namespace {

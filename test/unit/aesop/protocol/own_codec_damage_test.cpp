@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "aesop/protocol/own_codec.h"
-#include "messages.h"
+#include "unit/aesop/messages.h"
 
 namespace laparoscope_servo::aesop {
 namespace {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "messages.h"
+#include "unit/aesop/messages.h"
 
 namespace laparoscope_servo::aesop {
 namespace {

@@ -13,8 +13,8 @@
 #include <limits>
 #include <thread>
 
-#include "recorded_session.h"
 #include "support/temporary_folder.h"
+#include "unit/aesop/recorded_session.h"
 
 namespace laparoscope_servo::aesop {
 namespace {

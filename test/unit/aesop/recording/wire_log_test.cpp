@@ -5,8 +5,8 @@
 #include <limits>
 #include <random>
 
-#include "recorded_session.h"
 #include "support/page_examples.h"
+#include "unit/aesop/recorded_session.h"
 
 namespace laparoscope_servo::aesop {
 namespace {

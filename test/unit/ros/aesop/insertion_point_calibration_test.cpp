@@ -1,7 +1,7 @@
 // Calibrations of the insertion point: what comes of them, and what they refuse.
 #include "ros/aesop/insertion_point_calibration.h"
 
-#include "calibration_loop.h"
+#include "unit/ros/calibration_loop.h"
 
 namespace laparoscope_servo {
 namespace {

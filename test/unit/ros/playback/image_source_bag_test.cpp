@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "image_source_fixture.h"
+#include "unit/ros/image_source_fixture.h"
 
 namespace laparoscope_servo {
 namespace {

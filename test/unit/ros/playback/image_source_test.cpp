@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "image_source_fixture.h"
+#include "unit/ros/image_source_fixture.h"
 
 namespace laparoscope_servo {
 namespace {

@@ -1,4 +1,4 @@
-#include "jpeg_end.h"
+#include "ros/playback/jpeg_end.h"
 
 #include <gtest/gtest.h>
 

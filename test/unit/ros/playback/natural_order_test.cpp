@@ -1,4 +1,4 @@
-#include "natural_order.h"
+#include "ros/playback/natural_order.h"
 
 #include <gtest/gtest.h>
 

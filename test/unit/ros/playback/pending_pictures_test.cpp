@@ -1,4 +1,4 @@
-#include "pending_pictures.h"
+#include "ros/playback/pending_pictures.h"
 
 #include <gtest/gtest.h>
 

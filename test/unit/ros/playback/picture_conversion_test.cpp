@@ -1,4 +1,4 @@
-#include "picture_conversion.h"
+#include "ros/playback/picture_conversion.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "usable_stamps.h"
+#include "ros/playback/usable_stamps.h"
 
 #include <gtest/gtest.h>
 

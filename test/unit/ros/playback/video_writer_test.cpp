@@ -1,4 +1,4 @@
-#include "video_writer.h"
+#include "ros/playback/video_writer.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "plane_loop.h"
+#include "unit/servo/plane_loop.h"
 
 namespace laparoscope_servo::servo {
 namespace {

@@ -8,7 +8,7 @@
 #include <functional>
 #include <random>
 
-#include "plane_loop.h"
+#include "unit/servo/plane_loop.h"
 
 namespace laparoscope_servo::servo::test {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "safety_facts.h"
+#include "unit/servo/safety_facts.h"
 
 namespace laparoscope_servo::servo {
 namespace {

@@ -6,8 +6,8 @@
 #include <functional>
 #include <vector>
 
-#include "controller_input.h"
-#include "plane_loop.h"
+#include "unit/servo/controller_input.h"
+#include "unit/servo/plane_loop.h"
 
 namespace laparoscope_servo::servo {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "../../support/synthetic_tissue.h"
+#include "support/synthetic_tissue.h"
 
 namespace laparoscope_servo::tracking {
 namespace {

@@ -1,4 +1,4 @@
-#include "../../../src/tracking/esm_kernels.h"  // private to the part
+#include "tracking/esm/esm_kernels.h"  // private to the part
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../../support/synthetic_tissue.h"
+#include "support/synthetic_tissue.h"
 
 namespace laparoscope_servo::tracking {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "../../support/synthetic_tissue.h"
+#include "support/synthetic_tissue.h"
 
 namespace laparoscope_servo::tracking {
 namespace {

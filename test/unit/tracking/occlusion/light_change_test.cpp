@@ -5,7 +5,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "../../support/synthetic_tissue.h"
+#include "support/synthetic_tissue.h"
 #include "tracking/occlusion/colour_gate.h"
 
 namespace laparoscope_servo::tracking {

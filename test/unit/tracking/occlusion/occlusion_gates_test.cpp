@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "../../support/synthetic_tissue.h"
+#include "support/synthetic_tissue.h"
 
 namespace laparoscope_servo::tracking {
 namespace {

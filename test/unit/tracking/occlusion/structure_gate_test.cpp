@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "../../support/synthetic_tissue.h"
+#include "support/synthetic_tissue.h"
 
 namespace laparoscope_servo::tracking {
 namespace {

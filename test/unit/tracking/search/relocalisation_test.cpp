@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "../../support/synthetic_tissue.h"
+#include "support/synthetic_tissue.h"
 #include "tracking/esm/esm.h"
 
 namespace laparoscope_servo::tracking {
