@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <Eigen/SVD>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -74,6 +75,16 @@ Eigen::Matrix2d derivative(const Eigen::Matrix3d& g, const Eigen::Vector2d& p) {
 
 double signedArea(const Quadrilateral& q) {
   return 0.5 * cross(q[2] - q[0], q[3] - q[1]);
+}
+
+double largestDistance(const Quadrilateral& a, const Quadrilateral& b) {
+  double largest = 0.0;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    const double distance = (a[k] - b[k]).norm();
+    if (!std::isfinite(distance)) return std::numeric_limits<double>::infinity();
+    largest = std::max(largest, distance);
+  }
+  return largest;
 }
 
 bool isConvex(const Quadrilateral& q) {

@@ -82,11 +82,7 @@ inline Eigen::Matrix3d zoomAndTurn(const geometry::Rectangle& roi, double zoom, 
 
 // px, the largest distance between the corners of the ROI as both homographies show them.
 inline double cornerDistance(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b, const geometry::Rectangle& roi) {
-  const geometry::Quadrilateral p = geometry::apply(a, roi.corners());
-  const geometry::Quadrilateral q = geometry::apply(b, roi.corners());
-  double distance = 0.0;
-  for (int k = 0; k < 4; ++k) distance = std::max(distance, (p[k] - q[k]).norm());
-  return distance;
+  return geometry::largestDistance(geometry::apply(a, roi.corners()), geometry::apply(b, roi.corners()));
 }
 
 }  // namespace laparoscope_servo::test

@@ -43,6 +43,10 @@ Eigen::Matrix2d derivative(const Eigen::Matrix3d& g, const Eigen::Vector2d& p);
 // Signed area in px², positive when the corners turn clockwise as seen in the image (as a Rectangle's do).
 double signedArea(const Quadrilateral& q);
 
+// The largest distance between corresponding corners; infinite where a corner is not finite, so that no comparison
+// takes it for near.
+double largestDistance(const Quadrilateral& a, const Quadrilateral& b);
+
 // Strictly convex, turning as a Rectangle's corners do, and finite.
 bool isConvex(const Quadrilateral& q);
 

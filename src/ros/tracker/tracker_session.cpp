@@ -109,7 +109,7 @@ std::optional<Eigen::Matrix3d> TrackerSession::motionBefore(Processed& processed
         geometry::pixelsFromPlane(*motion, Eigen::Vector3d::UnitZ(), parameters_.robot_motion.depth, *camera);
     const geometry::Quadrilateral corners = geometry::apply(before_.g, before_.roi.corners());
     const geometry::Quadrilateral moved = geometry::apply(pixels, corners);
-    for (int k = 0; k < 4; ++k) robot_step_ = std::max(robot_step_, (moved[k] - corners[k]).norm());
+    robot_step_ = std::max(robot_step_, geometry::largestDistance(moved, corners));
     return pixels;
   } catch (const std::invalid_argument& error) {
     processed.motion_error = error.what();

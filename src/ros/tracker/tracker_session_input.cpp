@@ -89,7 +89,7 @@ void TrackerSession::watchPicture(Processed& processed, const tracking::TrackRes
     geometry::Quadrilateral corners = geometry::apply(result.g, result.roi.corners());
     if (before.state == State::kTracking && !result.selected_now) {
       const geometry::Quadrilateral last = geometry::apply(before.g, result.roi.corners());
-      for (int k = 0; k < 4; ++k) step = std::max(step, (corners[k] - last[k]).norm());
+      step = geometry::largestDistance(corners, last);
     }
     for (Eigen::Vector2d& corner : corners) {
       if (lens_) corner = lens_->toRaw(corner).value_or(corner);

@@ -90,8 +90,7 @@ std::string doubt(const Evidence& e, const QualityConfig& q) {
       return text("change of gain", change, "within a factor of", allowed);
   }
   const geometry::Quadrilateral predicted = geometry::apply(e.predicted, e.roi.corners());
-  double jump = 0.0;
-  for (int k = 0; k < 4; ++k) jump = std::max(jump, (corners[k] - predicted[k]).norm());
+  const double jump = geometry::largestDistance(corners, predicted);
   const double max_jump = allowedJump(e.record, q, e.roi, e.visible_fraction, e.esm.corner_error);
   if (!(jump <= max_jump)) return text("jump [px]", jump, "at most", max_jump);
   return "";

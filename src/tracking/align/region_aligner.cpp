@@ -53,15 +53,7 @@ bool usable(const EsmResult& estimate) {
 }  // namespace
 
 double farthestCorner(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b, const geometry::Rectangle& roi) {
-  const geometry::Quadrilateral p = geometry::apply(a, roi.corners());
-  const geometry::Quadrilateral q = geometry::apply(b, roi.corners());
-  double distance = 0.0;
-  for (int k = 0; k < 4; ++k) {
-    const double of_corner = (p[k] - q[k]).norm();
-    if (!std::isfinite(of_corner)) return std::numeric_limits<double>::infinity();
-    distance = std::max(distance, of_corner);
-  }
-  return distance;
+  return geometry::largestDistance(geometry::apply(a, roi.corners()), geometry::apply(b, roi.corners()));
 }
 
 Eigen::Matrix3d imageFromPatch(const geometry::Rectangle& roi) {

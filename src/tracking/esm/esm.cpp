@@ -129,8 +129,7 @@ bool Esm::solve(EsmLevel& level, const MotionPrior* prior, bool shift_only, EsmS
   const geometry::Quadrilateral before = geometry::apply(state.g, roi_.corners());
   takeStep(level, x, state);
   const geometry::Quadrilateral after = geometry::apply(state.g, roi_.corners());
-  step = 0.0;
-  for (int k = 0; k < 4; ++k) step = std::max(step, (after[k] - before[k]).norm());
+  step = geometry::largestDistance(before, after);
   return state.g.allFinite() && std::isfinite(step) && state.gain > 0.0;
 }
 

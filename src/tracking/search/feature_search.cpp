@@ -18,12 +18,10 @@ constexpr int kFastThreshold = 5;  // grey levels: tissue has little contrast
 constexpr float kOctaveStep = 1.2f;
 constexpr int kOctaves = 4;
 constexpr int kEdge = 16;         // px, of the downscaled image: nothing is detected nearer to its border
-constexpr int kBrightest = 250;   // grey levels: highlights move with the lamp
 constexpr int kGrowBright = 3;    // px, of the downscaled image
 constexpr double kInlier = 4.0;   // px, of the downscaled image
 constexpr int kManyInliers = 30;  // from here on eight parameters are better determined than four
 constexpr int kMaxTrials = 1000;
-constexpr double kMaxAreaRatio = 50.0;
 
 #if CV_VERSION_MAJOR * 10000 + CV_VERSION_MINOR * 100 + CV_VERSION_REVISION >= 40501
 constexpr int kRobustMethod = cv::USAC_MAGSAC;
@@ -73,14 +71,6 @@ Eigen::Matrix3d toEigen(const cv::Mat& m) {
   return result;
 }
 
-bool plausible(const Eigen::Matrix3d& g, const geometry::Rectangle& roi) {
-  if (!g.allFinite() || !(g.determinant() > 0.0)) return false;
-  const geometry::Quadrilateral corners = geometry::apply(g, roi.corners());
-  if (!geometry::isConvex(corners)) return false;
-  const double ratio = geometry::signedArea(corners) / geometry::signedArea(roi.corners());
-  return std::max(ratio, 1.0 / ratio) <= kMaxAreaRatio;
-}
-
 // Raw points to rectified ones; those that the lens cannot have shown are dropped.
 void rectify(const image::Lens& lens, Features& features) {
   int kept = 0;
@@ -98,13 +88,23 @@ void rectify(const image::Lens& lens, Features& features) {
 
 }  // namespace
 
-FeatureSearch::FeatureSearch(const SearchConfig& config, std::shared_ptr<const image::Lens> lens)
-    : config_(config),
+FeatureSearch::FeatureSearch(const TrackerConfig& config, std::shared_ptr<const image::Lens> lens)
+    : config_(config.search),
+      saturation_(config.esm.saturation),
+      max_area_ratio_(config.quality.max_area_ratio),
       lens_(std::move(lens)),
-      many_(cv::ORB::create(kSurplus * config.max_features, kOctaveStep, kOctaves, kEdge, 0, 2, cv::ORB::HARRIS_SCORE,
+      many_(cv::ORB::create(kSurplus * config_.max_features, kOctaveStep, kOctaves, kEdge, 0, 2, cv::ORB::HARRIS_SCORE,
                             31, kFastThreshold)),
-      few_(cv::ORB::create(config.max_features / 2, kOctaveStep, kOctaves, kEdge, 0, 2, cv::ORB::HARRIS_SCORE, 31,
+      few_(cv::ORB::create(config_.max_features / 2, kOctaveStep, kOctaves, kEdge, 0, 2, cv::ORB::HARRIS_SCORE, 31,
                            kFastThreshold)) {}
+
+bool FeatureSearch::plausible(const Eigen::Matrix3d& g, const geometry::Rectangle& roi) const {
+  if (!g.allFinite() || !(g.determinant() > 0.0)) return false;
+  const geometry::Quadrilateral corners = geometry::apply(g, roi.corners());
+  if (!geometry::isConvex(corners)) return false;
+  const double ratio = geometry::signedArea(corners) / geometry::signedArea(roi.corners());
+  return std::max(ratio, 1.0 / ratio) <= max_area_ratio_;
+}
 
 Features FeatureSearch::draw(const cv::Mat& image, const cv::Point& first, const cv::Mat1b& mask, double scale,
                              const image::ChannelWeights& weights, int count, bool spread) {
@@ -118,7 +118,7 @@ Features FeatureSearch::draw(const cv::Mat& image, const cv::Point& first, const
     small = image;
   }
   cv::Mat1b usable;
-  cv::inRange(small, cv::Scalar::all(0), cv::Scalar::all(kBrightest - 1), usable);
+  cv::inRange(small, cv::Scalar::all(0), cv::Scalar::all(saturation_ - 1), usable);  // highlights move with the lamp
   cv::erode(usable, usable, cv::Mat(), cv::Point(-1, -1), kGrowBright);
   if (!mask.empty()) {
     cv::Mat1b wanted;

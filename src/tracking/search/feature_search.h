@@ -21,7 +21,8 @@ struct FeatureCandidate {
 class FeatureSearch {
  public:
   // With a lens the images are raw, homographies and the ROI rectified.
-  explicit FeatureSearch(const SearchConfig& config, std::shared_ptr<const image::Lens> lens = nullptr);
+  // Of the configuration `search`, what `esm` calls saturated, and which sizes `quality` will accept.
+  explicit FeatureSearch(const TrackerConfig& config, std::shared_ptr<const image::Lens> lens = nullptr);
 
   // Where the views say that the ROI may be in `image` (CV_8UC1 or CV_8UC3), best first; none when nothing agrees. The
   // reference is asked every time, the other views one a call in turn, so that the time is bounded whatever is stored.
@@ -38,7 +39,11 @@ class FeatureSearch {
   void match(const Keyframe& view, const geometry::Rectangle& roi, const Features& seen, double scale,
              std::vector<FeatureCandidate>& found) const;
 
+  bool plausible(const Eigen::Matrix3d& g, const geometry::Rectangle& roi) const;
+
   SearchConfig config_;
+  int saturation_;         // grey levels
+  double max_area_ratio_;  // of the ROI, to the reference
   std::shared_ptr<const image::Lens> lens_;
   cv::Ptr<cv::ORB> many_;  // of the image, thinned out afterwards
   cv::Ptr<cv::ORB> few_;   // of a view

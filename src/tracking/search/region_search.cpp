@@ -21,7 +21,7 @@ RegionSearch::RegionSearch(const TrackerConfig& config, std::shared_ptr<const im
     : config_(config.search),
       lens_(lens),
       keyframes_(config.search.keyframes, lens),
-      feature_search_(config.search, lens),
+      feature_search_(config, lens),
       confirmation_(config.quality) {}
 
 void RegionSearch::setReference(const cv::Mat& image, RegionAligner& aligner) {

@@ -142,6 +142,21 @@ TEST(SignedArea, ChangesSignWithTheSenseOfTheTurn) {
   EXPECT_EQ(signedArea({q[0], q[3], q[2], q[1]}), -200.0);
 }
 
+TEST(LargestDistance, OfWhatIsNotFiniteIsInfinite) {
+  const Quadrilateral a = Rectangle{10.0, 20.0, 30.0, 40.0}.corners();
+  Quadrilateral b = a;
+  b[2] += Eigen::Vector2d(3.0, 4.0);
+  EXPECT_NEAR(largestDistance(a, b), 5.0, 1e-12);
+  for (const double lost : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+    for (std::size_t k = 0; k < b.size(); ++k) {
+      Quadrilateral c = b;
+      c[k].x() = lost;
+      EXPECT_EQ(largestDistance(a, c), std::numeric_limits<double>::infinity()) << k;
+      EXPECT_EQ(largestDistance(c, a), std::numeric_limits<double>::infinity()) << k;
+    }
+  }
+}
+
 TEST(IsConvex, RefusesWhatNoRectangleLooksLike) {
   using V = Eigen::Vector2d;
   EXPECT_TRUE(isConvex({V(0, 0), V(10, 1), V(9, 11), V(-1, 8)}));

@@ -24,7 +24,7 @@ class FeatureSearchTest : public ::testing::Test {
  protected:
   cv::Mat scene_ = test::tissue(kSize, 41);
   Keyframes views_{8};
-  FeatureSearch search_{SearchConfig()};
+  FeatureSearch search_{TrackerConfig()};
   cv::Mat1f weights_ = cv::Mat1f(120, 130, 1.0f);
 
   void SetUp() override { views_.setReference(scene_, kRoi, weights_); }
@@ -48,8 +48,8 @@ TEST_F(FeatureSearchTest, FindsTheRegionMovedTurnedAndZoomed) {
 }
 
 TEST_F(FeatureSearchTest, AnImageThatIsScaledDownGivesPlacesInItsOwnPixels) {
-  SearchConfig config;
-  config.max_pixels = 60000;
+  TrackerConfig config;
+  config.search.max_pixels = 60000;
   search_ = FeatureSearch(config);
   const Eigen::Matrix3d g = motion(1.1, 0.5, 0.0, {250.0, 170.0});
   const std::vector<FeatureCandidate> found = find(seen(g));
@@ -82,6 +82,32 @@ TEST_F(FeatureSearchTest, FindsNothingInSmokeOrDarknessOrATinyImage) {
   EXPECT_TRUE(find(cv::Mat(kSize, CV_8UC3, cv::Scalar(0, 0, 0))).empty());
   EXPECT_TRUE(find(cv::Mat(kSize, CV_8UC3, cv::Scalar(255, 255, 255))).empty());
   EXPECT_TRUE(find(cv::Mat(8, 8, CV_8UC3, cv::Scalar(90, 90, 90))).empty());
+}
+
+// A size that no estimate may have would take the place of one that may.
+TEST_F(FeatureSearchTest, OffersNoSizeThatWouldBeRefused) {
+  const cv::Mat nearer = seen(motion(1.6, 0.0, 0.0, {200.0, 210.0}));
+  ASSERT_FALSE(find(nearer).empty());
+  TrackerConfig config;
+  config.quality.max_area_ratio = 1.5;
+  search_ = FeatureSearch(config);
+  EXPECT_TRUE(find(nearer).empty());
+}
+
+// What the alignment does not take for saturated, the search does not either.
+TEST_F(FeatureSearchTest, SaturationIsThatOfTheAlignment) {
+  cv::Mat bright;
+  scene_.convertTo(bright, -1, 0.4, 150.0);
+  const auto inliers = [&](int saturation) {
+    TrackerConfig config;
+    config.esm.saturation = saturation;
+    search_ = FeatureSearch(config);
+    views_.setReference(bright, kRoi, weights_);
+    const std::vector<FeatureCandidate> found = find(bright);
+    return found.empty() ? 0 : found[0].inliers;
+  };
+  EXPECT_GT(inliers(256), 30);
+  EXPECT_EQ(inliers(155), 0) << "all of it is brighter";
 }
 
 TEST_F(FeatureSearchTest, WithoutAReferenceThereIsNoCandidate) {
