@@ -24,6 +24,13 @@ cv::Rect boxOf(const geometry::Quadrilateral& corners) {
           cv::Point(static_cast<int>(high.x()), static_cast<int>(high.y()))};
 }
 
+// px, of the corner that is.
+double farthest(const geometry::Quadrilateral& a, const geometry::Quadrilateral& b) {
+  double most = 0.0;
+  for (std::size_t k = 0; k < a.size(); ++k) most = std::max(most, (a[k] - b[k]).norm());
+  return most;
+}
+
 // Of the region's upper edge.
 double angleOf(const tracking::TrackResult& result) {
   const geometry::Quadrilateral corners = geometry::apply(result.g, result.roi.corners());
@@ -78,26 +85,36 @@ std::string TrackerSession::turnedTooFast(const tracking::TrackResult& result) c
   return text.str();
 }
 
+geometry::Quadrilateral TrackerSession::onSensor(geometry::Quadrilateral corners) const {
+  for (Eigen::Vector2d& corner : corners) {
+    if (lens_) corner = lens_->toRaw(corner).value_or(corner);
+  }
+  return corners;
+}
+
 // What the tracker found in a picture that shows nothing new is not believed, though it is no reason to lose the
 // region.
 void TrackerSession::watchPicture(Processed& processed, const tracking::TrackResult& before) {
   using tracking::State;
   tracking::TrackResult& result = processed.result;
-  cv::Rect region;
-  double step = 0.0;
-  if (result.state == State::kTracking) {
-    geometry::Quadrilateral corners = geometry::apply(result.g, result.roi.corners());
-    if (before.state == State::kTracking && !result.selected_now) {
-      const geometry::Quadrilateral last = geometry::apply(before.g, result.roi.corners());
-      for (int k = 0; k < 4; ++k) step = std::max(step, (corners[k] - last[k]).norm());
+  tracking::FrozenFeed::Motion motion;
+  motion.by_robot = robot_step_;
+  geometry::Quadrilateral corners{};
+  const bool tracked = result.state == State::kTracking;
+  if (tracked) {
+    corners = geometry::apply(result.g, result.roi.corners());
+    const bool again = !result.selected_now;
+    if (again && before.state == State::kTracking) {
+      motion.step = farthest(corners, geometry::apply(before.g, result.roi.corners()));
     }
-    for (Eigen::Vector2d& corner : corners) {
-      if (lens_) corner = lens_->toRaw(corner).value_or(corner);
-    }
-    region = boxOf(corners);
+    if (again && new_corners_) motion.since_new = farthest(corners, *new_corners_);
+    box_ = boxOf(onSensor(corners));
   }
-  processed.repeats = repeats_.see(processed.image, region);
-  feed_.see(processed.repeats, time_, step, robot_step_);
+  if (result.state == State::kIdle) box_ = {};
+  processed.repeats = repeats_.see(processed.image, box_);
+  if (processed.repeats.part == 0 && processed.repeats.region == 0) new_corners_.reset();
+  if (tracked && !new_corners_) new_corners_ = corners;
+  feed_.see(processed.repeats, time_, motion);
   if (result.state == State::kTracking) {
     result.reason = turnedTooFast(result);
     if (!result.reason.empty()) result.state = State::kSearching;

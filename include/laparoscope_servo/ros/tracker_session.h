@@ -104,6 +104,7 @@ class TrackerSession {
 
   void passGate(const Processed& processed, double& period);
   void lookForReference(const std::string& why);
+  geometry::Quadrilateral onSensor(geometry::Quadrilateral corners) const;
   void watchPicture(Processed& processed, const tracking::TrackResult& before);
   std::string turnedTooFast(const tracking::TrackResult& result) const;
   tracking::TrackResult track(Processed& processed, const std::optional<geometry::Rectangle>& request,
@@ -124,6 +125,8 @@ class TrackerSession {
   bool start_roi_pending_ = false;           // the parameters' ROI waits for its image
   BitDepth depth_;
   ImageGate gate_;
+  cv::Rect box_;  // px, of the image as it comes: about the region where it was tracked last
+  std::optional<geometry::Quadrilateral> new_corners_;  // in the last picture that was new in every part of it
   image::RepeatWatch repeats_;
   tracking::FrozenFeed feed_;
   double time_offset_ = 0.0;  // s, from stamps to the tracker's time, which never goes back
