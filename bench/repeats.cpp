@@ -25,8 +25,7 @@ constexpr double kPeriod = 0.04;  // s, between images
 struct Row {
   std::string name;
   cv::Rect region;
-  double step = 0.0;       // px an image, that the region is said to move by
-  double since_new = 0.0;  // px, see FrozenFeed
+  double step = 0.0;  // px an image, that the region is said to move by
   image::RepeatWatch watch;
   tracking::FrozenFeed feed{tracking::InputConfig()};
   long whole = 0, within = 0, part = 0, said = 0;
@@ -38,8 +37,7 @@ struct Row {
 void see(Row& row, const cv::Mat& picture, long frame) {
   const auto begin = std::chrono::steady_clock::now();
   const image::Repeats repeats = row.watch.see(picture, row.region);
-  row.since_new = repeats.part == 0 ? 0.0 : row.since_new + row.step;
-  row.feed.see(repeats, kPeriod * static_cast<double>(frame), {row.step, row.since_new, 0.0});
+  row.feed.see(repeats, kPeriod * static_cast<double>(frame), {row.step, row.step * repeats.part, 0.0});
   row.time += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   row.longest_part = std::max(row.longest_part, repeats.part);
   row.part += repeats.part > 0 ? 1 : 0;

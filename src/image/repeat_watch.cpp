@@ -124,7 +124,7 @@ bool RepeatWatch::bandRepeats(const cv::Rect& tiles) const {
   return false;
 }
 
-// What each tile does, whatever the others do. A picture that repeats in whole says nothing about what changes.
+// A picture that repeats in whole says nothing about which tiles change.
 void RepeatWatch::countTiles() {
   const auto places = static_cast<int>(ring_.size());
   const Prints& now = ring_[static_cast<std::size_t>(newest_)];

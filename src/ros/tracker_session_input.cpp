@@ -24,13 +24,6 @@ cv::Rect boxOf(const geometry::Quadrilateral& corners) {
           cv::Point(static_cast<int>(high.x()), static_cast<int>(high.y()))};
 }
 
-// px, of the corner that is.
-double farthest(const geometry::Quadrilateral& a, const geometry::Quadrilateral& b) {
-  double most = 0.0;
-  for (std::size_t k = 0; k < a.size(); ++k) most = std::max(most, (a[k] - b[k]).norm());
-  return most;
-}
-
 // Of the region's upper edge.
 double angleOf(const tracking::TrackResult& result) {
   const geometry::Quadrilateral corners = geometry::apply(result.g, result.roi.corners());
@@ -94,26 +87,22 @@ geometry::Quadrilateral TrackerSession::onSensor(geometry::Quadrilateral corners
 
 // What the tracker found in a picture that shows nothing new is not believed, though it is no reason to lose the
 // region.
-void TrackerSession::watchPicture(Processed& processed, const tracking::TrackResult& before) {
+void TrackerSession::watchPicture(Processed& processed) {
   using tracking::State;
   tracking::TrackResult& result = processed.result;
   tracking::FrozenFeed::Motion motion;
   motion.by_robot = robot_step_;
-  geometry::Quadrilateral corners{};
-  const bool tracked = result.state == State::kTracking;
-  if (tracked) {
+  std::optional<geometry::Quadrilateral> corners;
+  if (result.selected_now) path_.clear();
+  if (result.state == State::kTracking) {
     corners = geometry::apply(result.g, result.roi.corners());
-    const bool again = !result.selected_now;
-    if (again && before.state == State::kTracking) {
-      motion.step = farthest(corners, geometry::apply(before.g, result.roi.corners()));
-    }
-    if (again && new_corners_) motion.since_new = farthest(corners, *new_corners_);
-    box_ = boxOf(onSensor(corners));
+    motion.step = path_.farthest(*corners, 1);
+    box_ = boxOf(onSensor(*corners));
   }
   if (result.state == State::kIdle) box_ = {};
   processed.repeats = repeats_.see(processed.image, box_);
-  if (processed.repeats.part == 0 && processed.repeats.region == 0) new_corners_.reset();
-  if (tracked && !new_corners_) new_corners_ = corners;
+  if (corners) motion.of_part = path_.farthest(*corners, processed.repeats.part);
+  path_.add(corners);
   feed_.see(processed.repeats, time_, motion);
   if (result.state == State::kTracking) {
     result.reason = turnedTooFast(result);

@@ -7,22 +7,24 @@ namespace laparoscope_servo::tracking {
 
 void FrozenFeed::see(const image::Repeats& repeats, double stamp, const Motion& motion) {
   watchMotion(repeats, motion);
-  if (repeats.region == 0 && repeats.part == 0) last_new_stamp_ = stamp;
+  if (repeats.region == 0) last_new_stamp_ = stamp;
+  if (repeats.part == 0) last_new_part_stamp_ = stamp;
   stamp_ = stamp;
   judge(repeats);
 }
 
 void FrozenFeed::watchMotion(const image::Repeats& repeats, const Motion& motion) {
-  // The mean of the last two or so: one estimate that jumps is no motion, and a motion is over as quickly.
+  // The mean of the last two or so: one estimate that jumps is no motion, and a motion is over as quickly. What repeats
+  // may be what the region was found by: then the estimate tells of motion, not of rest.
   const double speed = 0.5 * (speed_ + motion.step);
-  // What repeats may be what the region was found by: then the estimate tells of motion, not of rest.
-  if ((repeats.region == 0 && repeats.part == 0) || speed > speed_) {
+  if (repeats.region == 0 || speed > speed_) {
     speed_ = speed;
     moving_ = speed_ > config_.moving;
   }
   if (repeats.region > 0 && motion.by_robot > config_.moved) moving_ = true;
-  by_robot_ = repeats.part == 0 ? 0.0 : by_robot_ + (repeats.region == 0 ? motion.by_robot : 0.0);
-  part_moved_ = repeats.part > 0 && std::max(motion.since_new, by_robot_) > config_.moved;
+  // While the region was not taken for one that repeats, the robot's word is of one image.
+  const double by_robot = repeats.region == 0 ? motion.by_robot * repeats.part : motion.by_robot;
+  part_moved_ = repeats.part > 0 && std::max(motion.of_part, by_robot) > config_.moved;
 }
 
 void FrozenFeed::judge(const image::Repeats& repeats) {
@@ -44,14 +46,19 @@ void FrozenFeed::judge(const image::Repeats& repeats) {
   if (frozen_ == Frozen::kNot) return;
   std::ostringstream text;
   text.precision(3);
-  text << (frozen_ == Frozen::kWhole    ? "the picture repeats"
-           : frozen_ == Frozen::kRegion ? "the picture repeats within the region"
-                                        : "the picture repeats within a part of the region");
-  const int count = frozen_ == Frozen::kWhole    ? repeats.whole
-                    : frozen_ == Frozen::kRegion ? repeats.region
-                                                 : repeats.part;
+  text << "the picture repeats";
+  int count = repeats.whole;
+  double since = last_new_stamp_;
+  if (frozen_ == Frozen::kRegion) {
+    text << " within the region";
+    count = repeats.region;
+  } else if (frozen_ == Frozen::kPart) {
+    text << " within a part of the region";
+    count = repeats.part;
+    since = last_new_part_stamp_;
+  }
   if (count > 0) {
-    text << ": " << count << (count == 1 ? " image, " : " images, ") << stamp_ - last_new_stamp_ << " s";
+    text << ": " << count << (count == 1 ? " image, " : " images, ") << stamp_ - since << " s";
   } else {
     text << " every few images";
   }

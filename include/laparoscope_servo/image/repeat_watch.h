@@ -29,11 +29,10 @@ class RepeatWatch {
   // Pictures that are remembered: more than the buffers of a driver (V4L2's usual number is 4), so that old pictures
   // which come in turn are found, too.
   static constexpr int kMemory = 8;
-  static constexpr int kTile = 16;  // px: a macroblock
-  static constexpr int kBand = 4;   // tiles: what a codec skips does not reach across the picture in all of them
-  static constexpr double kPart = 0.25;
-  static constexpr int kLive =
-      4;  // pictures in a row that showed something new: no clock, whose digits change by the second
+  static constexpr int kTile = 16;       // px: a macroblock
+  static constexpr int kBand = 4;        // tiles: what a codec skips does not reach across the picture in all of them
+  static constexpr double kPart = 0.25;  // of the region's texture: less does not drag the tracker along
+  static constexpr int kLive = 4;        // pictures in a row that were new: no clock, whose digits change by the second
 
   // The next picture, of 8 bit, and the region of interest in it [px]; an empty one: none, as if it were new.
   Repeats see(const cv::Mat& image, const cv::Rect& region);
@@ -58,6 +57,7 @@ class RepeatWatch {
   int newest_ = 0;
   int known_ = 0;  // pictures before the newest
   Repeats counts_;
+  // Of a tile, whatever the others do.
   struct History {
     std::array<int, 2> repeats{};  // in a row, of each field
     int fresh = 0;                 // pictures in a row that were new here; kLive: there have been as many

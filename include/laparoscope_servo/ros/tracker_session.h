@@ -21,6 +21,7 @@
 #include "laparoscope_servo/ros/image_gate.h"
 #include "laparoscope_servo/ros/tracker_parameters.h"
 #include "laparoscope_servo/ros/view_recall.h"
+#include "laparoscope_servo/tracking/corner_path.h"
 #include "laparoscope_servo/tracking/frozen_feed.h"
 #include "laparoscope_servo/tracking/region_tracker.h"
 
@@ -105,7 +106,7 @@ class TrackerSession {
   void passGate(const Processed& processed, double& period);
   void lookForReference(const std::string& why);
   geometry::Quadrilateral onSensor(geometry::Quadrilateral corners) const;
-  void watchPicture(Processed& processed, const tracking::TrackResult& before);
+  void watchPicture(Processed& processed);
   std::string turnedTooFast(const tracking::TrackResult& result) const;
   tracking::TrackResult track(Processed& processed, const std::optional<geometry::Rectangle>& request,
                               bool& new_reference);
@@ -126,7 +127,7 @@ class TrackerSession {
   BitDepth depth_;
   ImageGate gate_;
   cv::Rect box_;  // px, of the image as it comes: about the region where it was tracked last
-  std::optional<geometry::Quadrilateral> new_corners_;  // in the last picture that was new in every part of it
+  tracking::CornerPath path_;
   image::RepeatWatch repeats_;
   tracking::FrozenFeed feed_;
   double time_offset_ = 0.0;  // s, from stamps to the tracker's time, which never goes back

@@ -94,9 +94,7 @@ TEST_F(FrozenFeedTest, DoesNotBearAPartThatStaysBehind) {
 }
 
 TEST_F(FrozenFeedTest, DoesNotBearAPartThatTheRobotHasMoved) {
-  frozen(inPart(0), {0.0, 0.0, 0.9});
-  EXPECT_FALSE(frozen(inPart(1), {0.0, 0.0, 0.9}));
-  EXPECT_FALSE(frozen(inPart(2), {0.0, 0.0, 0.9}));
+  for (int k = 0; k <= 2; ++k) EXPECT_FALSE(frozen(inPart(k), {0.0, 0.0, 0.9}));
   EXPECT_TRUE(frozen(inPart(3), {0.0, 0.0, 0.9})) << "image by image";
 }
 
