@@ -28,8 +28,8 @@ struct Row {
   double step = 0.0;  // px an image, that the region is said to move by
   image::RepeatWatch watch;
   tracking::FrozenFeed feed{tracking::InputConfig()};
-  long whole = 0, within = 0, said = 0;
-  int longest_whole = 0, longest_within = 0;
+  long whole = 0, within = 0, part = 0, said = 0;
+  int longest_whole = 0, longest_within = 0, longest_part = 0;
   long first_said = -1;
   double time = 0.0;  // s
 };
@@ -37,8 +37,10 @@ struct Row {
 void see(Row& row, const cv::Mat& picture, long frame) {
   const auto begin = std::chrono::steady_clock::now();
   const image::Repeats repeats = row.watch.see(picture, row.region);
-  row.feed.see(repeats, kPeriod * static_cast<double>(frame), row.step, 0.0);
+  row.feed.see(repeats, kPeriod * static_cast<double>(frame), {row.step, row.step * repeats.part, 0.0});
   row.time += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  row.longest_part = std::max(row.longest_part, repeats.part);
+  row.part += repeats.part > 0 ? 1 : 0;
   row.whole += repeats.whole > 0 ? 1 : 0;
   row.within += repeats.region > 0 ? 1 : 0;
   row.longest_whole = std::max(row.longest_whole, repeats.whole);
@@ -66,11 +68,12 @@ int measure(const cv::Size& size, const std::vector<std::string>& rois) {
   for (; std::fread(picture.data, picture.total() * 3, 1, stdin) == 1; ++frames) {
     for (Row& row : rows) see(row, picture, frames);
   }
-  std::cout << "region,images,whole repeats,longest,repeats within,longest,images said,first said,ms an image\n";
+  std::cout << "region,images,whole repeats,longest,repeats within,longest,in part,longest,images said,first said,ms "
+               "an image\n";
   for (const Row& row : rows) {
     std::cout << '"' << row.name << "\"," << frames << ',' << row.whole << ',' << row.longest_whole << ',' << row.within
-              << ',' << row.longest_within << ',' << row.said << ',' << row.first_said << ','
-              << 1e3 * row.time / static_cast<double>(std::max(1L, frames)) << '\n';
+              << ',' << row.longest_within << ',' << row.part << ',' << row.longest_part << ',' << row.said << ','
+              << row.first_said << ',' << 1e3 * row.time / static_cast<double>(std::max(1L, frames)) << '\n';
   }
   return EXIT_SUCCESS;
 }

@@ -1,6 +1,7 @@
 #include "laparoscope_servo/image/repeat_watch.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <cstring>
 
 namespace laparoscope_servo::image {
@@ -46,6 +47,23 @@ cv::Rect tilesOf(const cv::Rect& region, const cv::Size& tiles) {
   return cv::Rect(cv::Point(region.x / kTile, region.y / kTile), cv::Point(up(region.br().x), up(region.br().y))) & all;
 }
 
+// How much there is to see in a tile: the sum of the differences between pixels two apart, along the rows and across.
+double textureOf(const cv::Mat& image, const cv::Rect& tile) {
+  constexpr int kApart = 2;  // px: less is the noise of one pixel
+  const int channels = image.channels();
+  const int channel = channels / 2;  // the green one
+  long sum = 0;
+  for (int y = tile.y; y < std::min(tile.br().y, image.rows - kApart); y += kApart) {
+    const unsigned char* const row = image.ptr(y) + channel;
+    const unsigned char* const below = image.ptr(y + kApart) + channel;
+    for (int x = tile.x; x < std::min(tile.br().x, image.cols - kApart); ++x) {
+      sum += std::abs(row[(x + kApart) * channels] - row[x * channels]) +
+             std::abs(below[x * channels] - row[x * channels]);
+    }
+  }
+  return static_cast<double>(sum);
+}
+
 }  // namespace
 
 Repeats RepeatWatch::see(const cv::Mat& image, const cv::Rect& region) {
@@ -54,6 +72,7 @@ Repeats RepeatWatch::see(const cv::Mat& image, const cv::Rect& region) {
     size_ = image.size();
     type_ = image.type();
     tiles_ = cv::Size((size_.width + kTile - 1) / kTile, (size_.height + kTile - 1) / kTile);
+    history_.assign(static_cast<std::size_t>(tiles_.area()), History());
   }
   newest_ = (newest_ + 1) % static_cast<int>(ring_.size());
   take(image, ring_[static_cast<std::size_t>(newest_)]);
@@ -62,6 +81,8 @@ Repeats RepeatWatch::see(const cv::Mat& image, const cv::Rect& region) {
   const cv::Rect tiles = tilesOf(in_image, tiles_);
   counts_.region = !in_image.empty() && (repeats(tiles) || bandRepeats(tiles)) ? counts_.region + 1 : 0;
   counts_.region = std::max(counts_.region, counts_.whole);
+  countTiles();
+  counts_.part = in_image.empty() ? counts_.whole : std::max(counts_.whole, partRepeats(image, tiles));
   known_ = std::min(known_ + 1, kMemory);
   return counts_;
 }
@@ -69,6 +90,7 @@ Repeats RepeatWatch::see(const cv::Mat& image, const cv::Rect& region) {
 void RepeatWatch::clear() {
   known_ = 0;
   counts_ = Repeats();
+  std::fill(history_.begin(), history_.end(), History());
 }
 
 void RepeatWatch::take(const cv::Mat& image, Prints& prints) const {
@@ -100,6 +122,51 @@ bool RepeatWatch::bandRepeats(const cv::Rect& tiles) const {
     if (repeats(cv::Rect(x, 0, kBand, tiles_.height))) return true;
   }
   return false;
+}
+
+// A picture that repeats in whole says nothing about which tiles change.
+void RepeatWatch::countTiles() {
+  const auto places = static_cast<int>(ring_.size());
+  const Prints& now = ring_[static_cast<std::size_t>(newest_)];
+  for (std::size_t tile = 0; tile < history_.size(); ++tile) {
+    History& history = history_[tile];
+    for (std::size_t field = 0; field < 2; ++field) {
+      bool seen = false;
+      for (int back = 1; back <= known_ && !seen; ++back) {
+        const Prints& then = ring_[static_cast<std::size_t>((newest_ - back + places) % places)];
+        seen = then[tile].field[field] == now[tile].field[field];
+      }
+      history.repeats[field] = seen ? history.repeats[field] + 1 : 0;
+    }
+    if (history.fresh >= kLive || known_ == 0 || counts_.whole > 0) continue;
+    const bool fresh = history.repeats[0] == 0 && history.repeats[1] == 0;
+    history.fresh = fresh ? history.fresh + 1 : 0;
+  }
+}
+
+int RepeatWatch::partRepeats(const cv::Mat& image, const cv::Rect& tiles) const {
+  struct Tile {
+    int repeats;
+    cv::Rect pixels;
+  };
+  std::vector<Tile> live;
+  bool any = false;
+  for (int y = tiles.y; y < tiles.br().y; ++y) {
+    for (int x = tiles.x; x < tiles.br().x; ++x) {
+      const History& history = history_[static_cast<std::size_t>(y) * tiles_.width + x];
+      if (history.fresh < kLive) continue;
+      const int repeats = std::max(history.repeats[0], history.repeats[1]);
+      live.push_back({repeats, cv::Rect(x * kTile, y * kTile, kTile, kTile)});
+      any = any || repeats > 0;
+    }
+  }
+  if (!any) return 0;  // as most pictures are: nothing to be weighed
+  std::sort(live.begin(), live.end(), [](const Tile& a, const Tile& b) { return a.repeats > b.repeats; });
+  std::vector<double> up_to;
+  double sum = 0.0;
+  for (const Tile& tile : live) up_to.push_back(sum += textureOf(image, tile.pixels));
+  const auto enough = std::lower_bound(up_to.begin(), up_to.end(), kPart * sum);
+  return sum > 0.0 ? live[static_cast<std::size_t>(enough - up_to.begin())].repeats : 0;
 }
 
 bool RepeatWatch::repeats(const cv::Rect& tiles) const {

@@ -1,30 +1,44 @@
 #include "laparoscope_servo/tracking/frozen_feed.h"
 
+#include <algorithm>
 #include <sstream>
 
 namespace laparoscope_servo::tracking {
 
-void FrozenFeed::see(const image::Repeats& repeats, double stamp, double step, double robot_step) {
-  if (repeats.region == 0) {
-    // The mean of the last two or so: one estimate that jumps is no motion, and a motion is over as quickly.
-    speed_ = 0.5 * (speed_ + step);
-    moving_ = speed_ > config_.moving;
-    last_new_stamp_ = stamp;
-  } else if (robot_step > config_.moved) {
-    moving_ = true;
-  }
+void FrozenFeed::see(const image::Repeats& repeats, double stamp, const Motion& motion) {
+  watchMotion(repeats, motion);
+  if (repeats.region == 0) last_new_stamp_ = stamp;
+  if (repeats.part == 0) last_new_part_stamp_ = stamp;
   stamp_ = stamp;
   judge(repeats);
 }
 
+void FrozenFeed::watchMotion(const image::Repeats& repeats, const Motion& motion) {
+  // The mean of the last two or so: one estimate that jumps is no motion, and a motion is over as quickly. What repeats
+  // may be what the region was found by: then the estimate tells of motion, not of rest.
+  const double speed = 0.5 * (speed_ + motion.step);
+  if (repeats.region == 0 || speed > speed_) {
+    speed_ = speed;
+    moving_ = speed_ > config_.moving;
+  }
+  if (repeats.region > 0 && motion.by_robot > config_.moved) moving_ = true;
+  // While the region was not taken for one that repeats, the robot's word is of one image.
+  const double by_robot = repeats.region == 0 ? motion.by_robot * repeats.part : motion.by_robot;
+  part_moved_ = repeats.part > 0 && std::max(motion.of_part, by_robot) > config_.moved;
+}
+
 void FrozenFeed::judge(const image::Repeats& repeats) {
   const int region_limit = moving_ ? config_.max_repeats : config_.max_still_repeats;
-  const bool repeated = frozen_ == Frozen::kRegion ? repeats.region > 0 : repeats.whole > 0;
+  const bool repeated = frozen_ == Frozen::kPart     ? repeats.part > 0
+                        : frozen_ == Frozen::kRegion ? repeats.region > 0
+                                                     : repeats.whole > 0;
   fresh_ = repeated ? 0 : fresh_ + 1;
   if (repeats.whole > config_.max_repeats) {
     frozen_ = Frozen::kWhole;
   } else if (repeats.region > region_limit) {
     frozen_ = Frozen::kRegion;
+  } else if (repeats.part > config_.max_repeats && part_moved_) {
+    frozen_ = Frozen::kPart;
   } else if (fresh_ > config_.max_repeats) {
     frozen_ = Frozen::kNot;
   }
@@ -32,10 +46,19 @@ void FrozenFeed::judge(const image::Repeats& repeats) {
   if (frozen_ == Frozen::kNot) return;
   std::ostringstream text;
   text.precision(3);
-  text << (frozen_ == Frozen::kWhole ? "the picture repeats" : "the picture repeats within the region");
-  const int count = frozen_ == Frozen::kWhole ? repeats.whole : repeats.region;
+  text << "the picture repeats";
+  int count = repeats.whole;
+  double since = last_new_stamp_;
+  if (frozen_ == Frozen::kRegion) {
+    text << " within the region";
+    count = repeats.region;
+  } else if (frozen_ == Frozen::kPart) {
+    text << " within a part of the region";
+    count = repeats.part;
+    since = last_new_part_stamp_;
+  }
   if (count > 0) {
-    text << ": " << count << (count == 1 ? " image, " : " images, ") << stamp_ - last_new_stamp_ << " s";
+    text << ": " << count << (count == 1 ? " image, " : " images, ") << stamp_ - since << " s";
   } else {
     text << " every few images";
   }

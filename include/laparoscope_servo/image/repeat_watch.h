@@ -19,6 +19,9 @@ struct Repeats {
   // In the region alone, or in a band across the whole picture, kBand tiles wide, that the region has a part in: a
   // picture of which one half stands still. At least `whole`.
   int region = 0;
+  // In a part of the region alone: of all the texture in the region, kPart repeated as often, each tile for itself.
+  // Tiles that have never been seen to change do not count: what is burnt into the picture repeats for ever.
+  int part = 0;
 };
 
 class RepeatWatch {
@@ -26,8 +29,10 @@ class RepeatWatch {
   // Pictures that are remembered: more than the buffers of a driver (V4L2's usual number is 4), so that old pictures
   // which come in turn are found, too.
   static constexpr int kMemory = 8;
-  static constexpr int kTile = 32;  // px
-  static constexpr int kBand = 2;   // tiles: what a codec skips does not reach across the picture in both
+  static constexpr int kTile = 16;       // px: a macroblock
+  static constexpr int kBand = 4;        // tiles: what a codec skips does not reach across the picture in all of them
+  static constexpr double kPart = 0.25;  // of the region's texture: less does not drag the tracker along
+  static constexpr int kLive = 4;        // pictures in a row that were new: no clock, whose digits change by the second
 
   // The next picture, of 8 bit, and the region of interest in it [px]; an empty one: none, as if it were new.
   Repeats see(const cv::Mat& image, const cv::Rect& region);
@@ -42,6 +47,8 @@ class RepeatWatch {
   void take(const cv::Mat& image, Prints& prints) const;
   bool repeats(const cv::Rect& tiles) const;
   bool bandRepeats(const cv::Rect& tiles) const;
+  void countTiles();
+  int partRepeats(const cv::Mat& image, const cv::Rect& tiles) const;
 
   cv::Size size_;
   int type_ = -1;
@@ -50,6 +57,12 @@ class RepeatWatch {
   int newest_ = 0;
   int known_ = 0;  // pictures before the newest
   Repeats counts_;
+  // Of a tile, whatever the others do.
+  struct History {
+    std::array<int, 2> repeats{};  // in a row, of each field
+    int fresh = 0;                 // pictures in a row that were new here; kLive: there have been as many
+  };
+  std::vector<History> history_;  // of each tile
 };
 
 }  // namespace laparoscope_servo::image

@@ -1,7 +1,8 @@
 // Decides from repeated pictures whether the images still show what is there.
 //
 // A whole picture that repeats is none. The region alone may repeat in a compressed feed, whose codec skips what hardly
-// changes: that is believed while nothing says that the region should have moved, and not for long.
+// changes: that is believed while nothing says that the region should have moved, and not for long. A part of the
+// region may repeat for as long as the region has not moved by more than a codec would pass over.
 #pragma once
 
 #include <string>
@@ -15,23 +16,32 @@ class FrozenFeed {
  public:
   explicit FrozenFeed(const InputConfig& config) : config_(config) {}
 
-  // Of one picture: how it repeats, its stamp [s], by how much the region moved since the picture before by the image,
-  // and since it last looked new by what a robot says [px; 0 where nothing is known].
-  void see(const image::Repeats& repeats, double stamp, double step, double robot_step);
+  // How far a region moved [px], its corner that moved most; 0 where it was not tracked or nothing is known.
+  struct Motion {
+    double step = 0.0;      // by the image, since the picture before
+    double of_part = 0.0;   // by the image, at most during the pictures in which the part repeated that repeats now
+    double by_robot = 0.0;  // by what a robot says, since the last picture that was believed and not one that repeats
+  };
+
+  // Of one picture: how it repeats, its stamp [s], how the region moved.
+  void see(const image::Repeats& repeats, double stamp, const Motion& motion);
 
   // Why the picture shows nothing that may be believed; empty when it may be. Once said, it is said until more than
   // `max_repeats` pictures in a row were new.
   const std::string& reason() const { return reason_; }
 
  private:
+  void watchMotion(const image::Repeats& repeats, const Motion& motion);
   void judge(const image::Repeats& repeats);
 
   InputConfig config_;
   double last_new_stamp_ = 0.0;
+  double last_new_part_stamp_ = 0.0;
   double stamp_ = 0.0;
   double speed_ = 0.0;  // px an image, over the last new ones
   bool moving_ = false;
-  enum class Frozen { kNot, kWhole, kRegion } frozen_ = Frozen::kNot;
+  bool part_moved_ = false;  // further than what can look the same, while a part of it does
+  enum class Frozen { kNot, kWhole, kRegion, kPart } frozen_ = Frozen::kNot;
   int fresh_ = 0;  // new pictures in a row since
   std::string reason_;
 };

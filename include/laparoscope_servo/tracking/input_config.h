@@ -12,7 +12,8 @@ struct InputConfig {
   int max_repeats = 1;         // 0 to 25 pictures in a row that may repeat in whole, or in a region that moves
   int max_still_repeats = 15;  // max_repeats to 1000, in the region alone, while nothing says that it should move
   double moving = 0.5;         // px, 0.05 to 100, an image: a region that moved by more before was moving
-  double moved = 2.0;          // px, 0.1 to 100: a region that the robot has moved by more cannot look the same
+  double moved =
+      2.0;  // px, 0.1 to 100: what has moved by more cannot look the same: the region by the robot, a part by either
 
   // Of stamps and sizes that do not go on as those before.
   int restart_images = 3;  // 2 to 100 images in a row, after which another time, or another size, is believed

@@ -63,7 +63,7 @@ void TrackerSession::complete(Processed& processed, const std::optional<geometry
   robot_step_ = 0.0;
   processed.result = track(processed, request, new_reference);
   const tracking::TrackResult found = processed.result;
-  watchPicture(processed, before_);
+  watchPicture(processed);
   before_ = found;
   if (had_roi && !tracker_.hasRoi()) ++epoch_;
   if (!tracker_.hasRoi() && recall_.due() == nullptr) recall_.end(processed.result.reason);

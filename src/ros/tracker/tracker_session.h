@@ -17,6 +17,7 @@
 #include "laparoscope_servo/geometry/camera.h"
 #include "laparoscope_servo/geometry/homography.h"
 #include "laparoscope_servo/image/repeat_watch.h"
+#include "laparoscope_servo/tracking/corner_path.h"
 #include "laparoscope_servo/tracking/frozen_feed.h"
 #include "laparoscope_servo/tracking/region_tracker.h"
 #include "ros/tracker/camera_info.h"
@@ -104,7 +105,8 @@ class TrackerSession {
 
   void passGate(const Processed& processed, double& period);
   void lookForReference(const std::string& why);
-  void watchPicture(Processed& processed, const tracking::TrackResult& before);
+  geometry::Quadrilateral onSensor(geometry::Quadrilateral corners) const;
+  void watchPicture(Processed& processed);
   std::string turnedTooFast(const tracking::TrackResult& result) const;
   tracking::TrackResult track(Processed& processed, const std::optional<geometry::Rectangle>& request,
                               bool& new_reference);
@@ -124,6 +126,8 @@ class TrackerSession {
   bool start_roi_pending_ = false;           // the parameters' ROI waits for its image
   BitDepth depth_;
   ImageGate gate_;
+  cv::Rect box_;  // px, of the image as it comes: about the region where it was tracked last
+  tracking::CornerPath path_;
   image::RepeatWatch repeats_;
   tracking::FrozenFeed feed_;
   double time_offset_ = 0.0;  // s, from stamps to the tracker's time, which never goes back

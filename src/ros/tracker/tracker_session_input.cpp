@@ -78,26 +78,32 @@ std::string TrackerSession::turnedTooFast(const tracking::TrackResult& result) c
   return text.str();
 }
 
+geometry::Quadrilateral TrackerSession::onSensor(geometry::Quadrilateral corners) const {
+  for (Eigen::Vector2d& corner : corners) {
+    if (lens_) corner = lens_->toRaw(corner).value_or(corner);
+  }
+  return corners;
+}
+
 // What the tracker found in a picture that shows nothing new is not believed, though it is no reason to lose the
 // region.
-void TrackerSession::watchPicture(Processed& processed, const tracking::TrackResult& before) {
+void TrackerSession::watchPicture(Processed& processed) {
   using tracking::State;
   tracking::TrackResult& result = processed.result;
-  cv::Rect region;
-  double step = 0.0;
+  tracking::FrozenFeed::Motion motion;
+  motion.by_robot = robot_step_;
+  std::optional<geometry::Quadrilateral> corners;
+  if (result.selected_now) path_.clear();
   if (result.state == State::kTracking) {
-    geometry::Quadrilateral corners = geometry::apply(result.g, result.roi.corners());
-    if (before.state == State::kTracking && !result.selected_now) {
-      const geometry::Quadrilateral last = geometry::apply(before.g, result.roi.corners());
-      step = geometry::largestDistance(corners, last);
-    }
-    for (Eigen::Vector2d& corner : corners) {
-      if (lens_) corner = lens_->toRaw(corner).value_or(corner);
-    }
-    region = boxOf(corners);
+    corners = geometry::apply(result.g, result.roi.corners());
+    motion.step = path_.farthest(*corners, 1);
+    box_ = boxOf(onSensor(*corners));
   }
-  processed.repeats = repeats_.see(processed.image, region);
-  feed_.see(processed.repeats, time_, step, robot_step_);
+  if (result.state == State::kIdle) box_ = {};
+  processed.repeats = repeats_.see(processed.image, box_);
+  if (corners) motion.of_part = path_.farthest(*corners, processed.repeats.part);
+  path_.add(corners);
+  feed_.see(processed.repeats, time_, motion);
   if (result.state == State::kTracking) {
     result.reason = turnedTooFast(result);
     if (!result.reason.empty()) result.state = State::kSearching;

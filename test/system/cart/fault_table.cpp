@@ -54,6 +54,8 @@ std::vector<FaultRow> ofImages() {
   const std::string lost = "HOLD LOST", doubted = "HOLD LOST FAULT";
   return {
       image("frozen", kServo | kHold, Outcome::kStands, doubted, frozen),
+      image("frozen where the region is", kServo, Outcome::kStands, doubted, frozenInside),
+      image("half of the last", kServo, Outcome::kStands, doubted, half),
       image("two in turn", kServo, Outcome::kStands, doubted, twoInTurn),
       image("swapped in pairs", kServo, Outcome::kEither, lost, swapped),
       image("mirrored left to right", kServo, Outcome::kStands, doubted, [] { return flipped(1); }),

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <functional>
 #include <opencv2/core.hpp>
 
 namespace laparoscope_servo::image {
@@ -105,6 +107,72 @@ TEST_F(RepeatWatchTest, FindsAHalfThatStandsStillAndThatTheRegionReachesInto) {
   EXPECT_EQ(counted(cv::Rect(0, 128, 320, 32), region), 0) << "a row of tiles alone, as a codec may skip it";
   EXPECT_EQ(counted(cv::Rect(0, 128, 288, 64), region), 0) << "not all across";
   EXPECT_EQ(counted(cv::Rect(0, 128, 320, 128), cv::Rect(90, 10, 140, 100)), 0) << "the region is not in it";
+}
+
+// Of the region: how often a part repeats after `live` pictures that were new everywhere.
+class PartTest : public RepeatWatchTest {
+ protected:
+  int parts(int live, const std::function<void(cv::Mat&, const cv::Mat&)>& keep, int still = 3) {
+    RepeatWatch watch;
+    for (int k = 0; k < live; ++k) watch.see(noise(), kRegion);
+    const cv::Mat last = noise();
+    watch.see(last, kRegion);
+    Repeats repeats;
+    for (int k = 0; k < still; ++k) {
+      cv::Mat next = noise();
+      keep(next, last);
+      repeats = watch.see(next, kRegion);
+      EXPECT_EQ(repeats.whole, 0);
+    }
+    return repeats.part;
+  }
+  static std::function<void(cv::Mat&, const cv::Mat&)> rectangle(const cv::Rect& where) {
+    return [where](cv::Mat& next, const cv::Mat& last) { last(where).copyTo(next(where)); };
+  }
+};
+
+TEST_F(PartTest, CountsAPartOfAnyShapeThatHoldsAQuarterOfTheTexture) {
+  EXPECT_EQ(parts(6, rectangle(kRegion)), 3) << "all of it";
+  EXPECT_EQ(parts(6, rectangle(cv::Rect(0, 0, 112, 150))), 3) << "left";
+  EXPECT_EQ(parts(6, rectangle(cv::Rect(0, 80, 200, 70))), 3) << "below";
+  EXPECT_EQ(parts(6, rectangle(cv::Rect(112, 64, 88, 86))), 3) << "a corner";
+  EXPECT_EQ(parts(6, rectangle(cv::Rect(64, 64, 96, 32))), 3) << "a stripe";
+  EXPECT_EQ(parts(6,
+                  [](cv::Mat& next, const cv::Mat& last) {
+                    for (int row = kRegion.y; row < kRegion.br().y; row += 4) {
+                      const cv::Rect line(kRegion.x, row, kRegion.width, 1);
+                      last(line).copyTo(next(line));
+                    }
+                  }),
+            3)
+      << "one line in four";
+  EXPECT_EQ(parts(6,
+                  [](cv::Mat& next, const cv::Mat& last) {
+                    for (int row = 0; row < next.rows; row += 32) {
+                      const int end = std::min(row + 16, next.rows);
+                      last.rowRange(row, end).copyTo(next.rowRange(row, end));
+                    }
+                  }),
+            3)
+      << "every second row of blocks";
+}
+
+TEST_F(PartTest, CountsNothingThatIsSmallOrBesideTheRegion) {
+  EXPECT_EQ(parts(6, rectangle(cv::Rect(80, 48, 16, 16))), 0) << "one block";
+  EXPECT_EQ(parts(6, rectangle(cv::Rect(0, 0, 80, 150))), 0) << "left of it";
+  EXPECT_EQ(parts(6, rectangle(cv::Rect(0, 0, 200, 48))), 0) << "above";
+}
+
+TEST_F(PartTest, CountsNoFlatPartNorWhatIsBurntIn) {
+  const auto flat = [](cv::Mat& next, const cv::Mat&) { next(cv::Rect(0, 64, 200, 86)).setTo(255); };
+  EXPECT_EQ(parts(6, flat), 0) << "saturated";
+  RepeatWatch watch;
+  const cv::Mat logo = noise()(cv::Rect(80, 48, 48, 48)).clone();
+  for (int k = 0; k < 30; ++k) {
+    cv::Mat next = noise();
+    logo.copyTo(next(cv::Rect(80, 48, 48, 48)));
+    EXPECT_EQ(watch.see(next, kRegion).part, 0) << k;
+  }
 }
 
 TEST_F(RepeatWatchTest, FindsAFieldThatStandsStill) {

@@ -11,9 +11,17 @@ class FrozenFeedTest : public testing::Test {
   bool frozen(int whole, int region, double step = 0.0, double robot = 0.0) {
     image::Repeats repeats;
     repeats.whole = whole;
-    repeats.region = region;
-    feed_.see(repeats, stamp_ += 0.04, step, robot);
+    repeats.region = repeats.part = region;
+    return frozen(repeats, {step, 0.0, robot});
+  }
+  bool frozen(const image::Repeats& repeats, const FrozenFeed::Motion& motion) {
+    feed_.see(repeats, stamp_ += 0.04, motion);
     return !feed_.reason().empty();
+  }
+  static image::Repeats inPart(int count) {
+    image::Repeats repeats;
+    repeats.part = count;
+    return repeats;
   }
 
   InputConfig config_;
@@ -70,6 +78,33 @@ TEST_F(FrozenFeedTest, DoesNotBearItWhereTheRobotHasMovedIt) {
   EXPECT_TRUE(frozen(0, 7, 0.0, 2.1));
 }
 
+TEST_F(FrozenFeedTest, BearsAPartThatACodecSkipsWhileTheRegionMovesByLittle) {
+  for (int k = 0; k < 5; ++k) frozen(inPart(0), {1.0, 0.0, 0.0});
+  for (int k = 1; k <= 100; ++k) EXPECT_FALSE(frozen(inPart(k), {0.1, 1.9, 0.01}));
+}
+
+TEST_F(FrozenFeedTest, DoesNotBearAPartThatStaysBehind) {
+  frozen(inPart(0), {});
+  EXPECT_FALSE(frozen(inPart(1), {3.0, 3.0, 0.0})) << "once, as in a grabber that repeats every nth";
+  EXPECT_TRUE(frozen(inPart(2), {3.0, 6.0, 0.0}));
+  EXPECT_EQ(feed_.reason(), "the picture repeats within a part of the region: 2 images, 0.08 s");
+  EXPECT_TRUE(frozen(inPart(3), {})) << "nor where the region is lost by it";
+  EXPECT_TRUE(frozen(inPart(0), {}));
+  EXPECT_FALSE(frozen(inPart(0), {}));
+}
+
+TEST_F(FrozenFeedTest, DoesNotBearAPartThatTheRobotHasMoved) {
+  for (int k = 0; k <= 2; ++k) EXPECT_FALSE(frozen(inPart(k), {0.0, 0.0, 0.9}));
+  EXPECT_TRUE(frozen(inPart(3), {0.0, 0.0, 0.9})) << "image by image";
+}
+
+// A half of the picture that stands still repeats in the region, too: the rest of it may still tell of motion.
+TEST_F(FrozenFeedTest, DoesNotBearARegionThatBeginsToMove) {
+  frozen(0, 0, 0.2);
+  EXPECT_FALSE(frozen(0, 1, 1.5));
+  EXPECT_TRUE(frozen(0, 2, 3.0));
+}
+
 TEST_F(FrozenFeedTest, TakesOneEstimateThatJumpsForNoMotion) {
   for (int k = 0; k < 5; ++k) frozen(0, 0, 0.1);
   frozen(0, 0, 0.7);
@@ -82,8 +117,8 @@ TEST_F(FrozenFeedTest, RefusesToBearAnythingWhereToldSo) {
   FrozenFeed feed(strict);
   image::Repeats once;
   once.whole = once.region = 1;
-  feed.see(image::Repeats(), 1.0, 0.0, 0.0);
-  feed.see(once, 1.04, 0.0, 0.0);
+  feed.see(image::Repeats(), 1.0, {});
+  feed.see(once, 1.04, {});
   EXPECT_FALSE(feed.reason().empty());
 }
 
