@@ -81,7 +81,7 @@ Repeats RepeatWatch::see(const cv::Mat& image, const cv::Rect& region) {
   const cv::Rect tiles = tilesOf(in_image, tiles_);
   counts_.region = !in_image.empty() && (repeats(tiles) || bandRepeats(tiles)) ? counts_.region + 1 : 0;
   counts_.region = std::max(counts_.region, counts_.whole);
-  countTiles();
+  countTiles(nearby(tiles));
   counts_.part = in_image.empty() ? counts_.whole : std::max(counts_.whole, partRepeats(image, tiles));
   known_ = std::min(known_ + 1, kMemory);
   return counts_;
@@ -91,6 +91,7 @@ void RepeatWatch::clear() {
   known_ = 0;
   counts_ = Repeats();
   std::fill(history_.begin(), history_.end(), History());
+  watched_ = cv::Rect();
 }
 
 void RepeatWatch::take(const cv::Mat& image, Prints& prints) const {
@@ -124,11 +125,21 @@ bool RepeatWatch::bandRepeats(const cv::Rect& tiles) const {
   return false;
 }
 
+// Where the region may be within some pictures: the tiles of large images need not all be counted.
+cv::Rect RepeatWatch::nearby(const cv::Rect& tiles) const {
+  const cv::Size margin(std::max(kMargin, tiles.width / 2), std::max(kMargin, tiles.height / 2));
+  const cv::Rect grown(tiles.x - margin.width, tiles.y - margin.height, tiles.width + 2 * margin.width,
+                       tiles.height + 2 * margin.height);
+  return grown & cv::Rect(cv::Point(0, 0), tiles_);
+}
+
 // A picture that repeats in whole says nothing about which tiles change.
-void RepeatWatch::countTiles() {
+void RepeatWatch::countTiles(const cv::Rect& tiles) {
+  if (tiles != watched_) forgetOutside(tiles);
+  watched_ = tiles;
   const auto places = static_cast<int>(ring_.size());
   const Prints& now = ring_[static_cast<std::size_t>(newest_)];
-  for (std::size_t tile = 0; tile < history_.size(); ++tile) {
+  const auto count = [&](std::size_t tile) {
     History& history = history_[tile];
     for (std::size_t field = 0; field < 2; ++field) {
       bool seen = false;
@@ -138,9 +149,20 @@ void RepeatWatch::countTiles() {
       }
       history.repeats[field] = seen ? history.repeats[field] + 1 : 0;
     }
-    if (history.fresh >= kLive || known_ == 0 || counts_.whole > 0) continue;
+    if (history.fresh >= kLive || known_ == 0 || counts_.whole > 0) return;
     const bool fresh = history.repeats[0] == 0 && history.repeats[1] == 0;
     history.fresh = fresh ? history.fresh + 1 : 0;
+  };
+  for (int y = tiles.y; y < tiles.br().y; ++y) {
+    for (int x = tiles.x; x < tiles.br().x; ++x) count(static_cast<std::size_t>(y) * tiles_.width + x);
+  }
+}
+
+void RepeatWatch::forgetOutside(const cv::Rect& tiles) {
+  for (int y = watched_.y; y < watched_.br().y; ++y) {
+    for (int x = watched_.x; x < watched_.br().x; ++x) {
+      if (!tiles.contains(cv::Point(x, y))) history_[static_cast<std::size_t>(y) * tiles_.width + x] = History();
+    }
   }
 }
 

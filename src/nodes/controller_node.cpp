@@ -1,4 +1,4 @@
-// Node `controller`: see laparoscope_servo/ros/controller_node.h.
+// Node `controller`: see ros/controller/controller_node.h.
 #include "ros/controller/controller_node.h"
 
 #include <ros/callback_queue.h>

@@ -1,4 +1,4 @@
-// Node `demo_director`: see laparoscope_servo/ros/demo_director.h. Exit status 0 only when the loop converged.
+// Node `demo_director`: see ros/simulation/demo_director.h. Exit status 0 only when the loop converged.
 #include <ros/ros.h>
 
 #include <cstdlib>

@@ -1,4 +1,4 @@
-// Node `scope_markers`: see laparoscope_servo/ros/scope_markers.h.
+// Node `scope_markers`: see ros/simulation/scope_markers.h.
 #include <ros/ros.h>
 
 #include "ros/common/frame_names.h"

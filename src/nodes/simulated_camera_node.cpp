@@ -1,4 +1,4 @@
-// Node `simulated_camera`: see laparoscope_servo/ros/simulated_camera.h.
+// Node `simulated_camera`: see ros/simulation/simulated_camera.h.
 #include <ros/ros.h>
 
 #include <cstdlib>

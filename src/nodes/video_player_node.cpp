@@ -1,4 +1,4 @@
-// Node `video_player`: see laparoscope_servo/ros/video_player.h.
+// Node `video_player`: see ros/playback/video_player.h.
 #include <ros/ros.h>
 
 #include <cstdlib>

@@ -1,4 +1,4 @@
-// simulate_servo: the closed loop without ROS, see laparoscope_servo/ros/servo_simulation.h; many runs of it,
+// simulate_servo: the closed loop without ROS, see laparoscope_servo/closed_loop/servo_simulation.h; many runs of it,
 // servo_runs.h.
 #include <boost/program_options.hpp>
 #include <functional>

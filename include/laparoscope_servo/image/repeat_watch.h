@@ -32,6 +32,7 @@ class RepeatWatch {
   static constexpr int kTile = 16;       // px: a macroblock
   static constexpr int kBand = 4;        // tiles: what a codec skips does not reach across the picture in all of them
   static constexpr double kPart = 0.25;  // of the region's texture: less does not drag the tracker along
+  static constexpr int kMargin = 8;      // tiles about the region that are counted, at least
   static constexpr int kLive = 4;        // pictures in a row that were new: no clock, whose digits change by the second
 
   // The next picture, of 8 bit, and the region of interest in it [px]; an empty one: none, as if it were new.
@@ -47,7 +48,9 @@ class RepeatWatch {
   void take(const cv::Mat& image, Prints& prints) const;
   bool repeats(const cv::Rect& tiles) const;
   bool bandRepeats(const cv::Rect& tiles) const;
-  void countTiles();
+  cv::Rect nearby(const cv::Rect& tiles) const;
+  void countTiles(const cv::Rect& tiles);
+  void forgetOutside(const cv::Rect& tiles);
   int partRepeats(const cv::Mat& image, const cv::Rect& tiles) const;
 
   cv::Size size_;
@@ -62,7 +65,8 @@ class RepeatWatch {
     std::array<int, 2> repeats{};  // in a row, of each field
     int fresh = 0;                 // pictures in a row that were new here; kLive: there have been as many
   };
-  std::vector<History> history_;  // of each tile
+  std::vector<History> history_;  // of each tile, counted where it is watched
+  cv::Rect watched_;              // tiles
 };
 
 }  // namespace laparoscope_servo::image
