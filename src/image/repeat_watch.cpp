@@ -114,13 +114,27 @@ void RepeatWatch::take(const cv::Mat& image, Prints& prints) const {
   }
 }
 
+// Black bars beside a picture repeat for ever.
+bool RepeatWatch::hasBeenLive(const cv::Rect& tiles) const {
+  for (int y = tiles.y; y < tiles.br().y; ++y) {
+    for (int x = tiles.x; x < tiles.br().x; ++x) {
+      if (history_[static_cast<std::size_t>(y) * tiles_.width + x].fresh >= kLive) return true;
+    }
+  }
+  return false;
+}
+
 // Rows or columns of tiles across the whole picture, all of them within the region's extent.
 bool RepeatWatch::bandRepeats(const cv::Rect& tiles) const {
   for (int y = tiles.y; y + kBand <= tiles.br().y; ++y) {
-    if (repeats(cv::Rect(0, y, tiles_.width, kBand))) return true;
+    if (hasBeenLive(cv::Rect(tiles.x, y, tiles.width, kBand)) && repeats(cv::Rect(0, y, tiles_.width, kBand))) {
+      return true;
+    }
   }
   for (int x = tiles.x; x + kBand <= tiles.br().x; ++x) {
-    if (repeats(cv::Rect(x, 0, kBand, tiles_.height))) return true;
+    if (hasBeenLive(cv::Rect(x, tiles.y, kBand, tiles.height)) && repeats(cv::Rect(x, 0, kBand, tiles_.height))) {
+      return true;
+    }
   }
   return false;
 }

@@ -47,6 +47,7 @@ class RepeatWatch {
 
   void take(const cv::Mat& image, Prints& prints) const;
   bool repeats(const cv::Rect& tiles) const;
+  bool hasBeenLive(const cv::Rect& tiles) const;
   bool bandRepeats(const cv::Rect& tiles) const;
   cv::Rect nearby(const cv::Rect& tiles) const;
   void countTiles(const cv::Rect& tiles);

@@ -93,6 +93,7 @@ TEST_F(RepeatWatchTest, FindsAHalfThatStandsStillAndThatTheRegionReachesInto) {
   const cv::Mat first = fresh();
   const auto counted = [&](const cv::Rect& still, const cv::Rect& where) {
     RepeatWatch watch;
+    for (int k = 0; k < RepeatWatch::kLive; ++k) watch.see(fresh(), where);
     watch.see(first, where);
     cv::Mat live = fresh();
     first(still).copyTo(live(still));
@@ -107,6 +108,20 @@ TEST_F(RepeatWatchTest, FindsAHalfThatStandsStillAndThatTheRegionReachesInto) {
   EXPECT_EQ(counted(cv::Rect(0, 128, 320, 32), region), 0) << "a row of tiles alone, as a codec may skip it";
   EXPECT_EQ(counted(cv::Rect(0, 128, 288, 64), region), 0) << "not all across";
   EXPECT_EQ(counted(cv::Rect(0, 128, 320, 128), cv::Rect(90, 10, 140, 100)), 0) << "the region is not in it";
+}
+
+// A picture of 4:3 on a screen of 16:9, and a region that was drawn into the bar.
+TEST_F(RepeatWatchTest, TakesNoBarBesideThePictureForAPartThatStandsStill) {
+  const cv::Size size(512, 256);
+  const cv::Rect bar(0, 0, 160, 256), region(64, 60, 160, 140);
+  for (int k = 0; k < 30; ++k) {
+    cv::Mat image(size, CV_8UC3);
+    random_.fill(image, cv::RNG::UNIFORM, 0, 256);
+    image(bar) = cv::Scalar(16, 16, 16);
+    const Repeats repeats = watch_.see(image, region);
+    ASSERT_EQ(repeats.region, 0) << k;
+    ASSERT_EQ(repeats.part, 0) << k;
+  }
 }
 
 // Of the region: how often a part repeats after `live` pictures that were new everywhere.
