@@ -14,8 +14,9 @@ namespace {
 constexpr double kGap = 0.5;          // s without an image after which nothing is compared
 constexpr double kSpan = 3.0;         // s of reports that are kept: more than kGap and the latest explanation
 constexpr double kReportLife = 0.25;  // s for which a report stands for the motion; the robot reports at 10 Hz or more
-constexpr double kReports = 1.0;      // s without a report after which the robot is one that says nothing
-constexpr double kPatience = 0.3;     // s that an image waits for a report of its time
+constexpr double kReports = 0.3;      // s without a report after which the robot is one that says nothing
+constexpr double kSameOptics = 0.05;  // rad, by which the camera may be turned about the shaft as before
+constexpr double kPatience = 0.2;     // s that an image waits for a report of its time
 constexpr double kCornerError = 0.3;  // px: the noise of an image that is worse grows with it
 // Times that noise: the tracker believes in nothing beyond 1.5 px, and no corner error may blind the guard.
 constexpr double kWorst = 5.0;
@@ -30,6 +31,9 @@ constexpr double kOther = 400.0;
 // less lets faults that explain nothing lie nearer to the doubt, more makes those that begin later be found later.
 constexpr double kOnset = 3.0;
 constexpr double kConfirmed = 0.5;  // so near to kOnset, no fault explains anything
+// Where depths are so wrong that the picture moves by less than this of what they say, it is no doubt of the budget's,
+// but here it would pass for a frozen one.
+constexpr double kLeastReach = 0.5;
 
 }  // namespace
 
@@ -146,7 +150,7 @@ Effect EffectGuard::observe(const EffectObservation& image, const CommandHistory
     if (!in_vain && reports(first.time) && last_report_ < first.time) break;
     waiting_.pop_front();
     if (in_vain) {
-      start(first, false);
+      start(first, true);
     } else {
       judge(first, commands, delay);
     }
@@ -161,7 +165,9 @@ bool EffectGuard::reports(double time) const {
 
 void EffectGuard::judge(const EffectObservation& image, const CommandHistory& commands, double delay) {
   const double dt = image.time - last_.time;
-  if (!started_ || !(dt > 0.0 && dt <= kGap) || image.error.m_star != last_.error.m_star) {
+  const bool other_region = image.error.m_star != last_.error.m_star;
+  const bool other_optics = !image.scope.camera_R_shaft.isApprox(last_.scope.camera_R_shaft, kSameOptics);
+  if (!started_ || !(dt > 0.0 && dt <= kGap) || other_region || other_optics) {
     start(image, true);
     return;
   }
@@ -242,8 +248,8 @@ void EffectGuard::begin(Track& fault, const Track& good) const {
 void EffectGuard::judge() {
   const Track* good = nullptr;
   for (const Track& track : tracks_) {
-    if (track.explanation.fault.empty() && (good == nullptr || track.log_likelihood > good->log_likelihood))
-      good = &track;
+    const bool is_good = track.explanation.fault.empty() && track.explanation.reach > kLeastReach;
+    if (is_good && (good == nullptr || track.log_likelihood > good->log_likelihood)) good = &track;
   }
   const Track* fault = nullptr;
   for (Track& track : tracks_) {

@@ -184,12 +184,12 @@ ScopeVelocity ScopeServo::command(const ServoInput& input, const ServoLimits& li
   const LawVelocity wanted = law_->velocity(follows ? error : band_.apply(error, input.time), input.scope);
   if (!wanted.sum().vector().allFinite()) return wanted.sum();
   const double gain = limits.scale * gainFactor();
-  // The centring's own turn comes last: where there is no room for it, the centre need not wait for it.
-  ScopeVelocity centring = scaled(wanted.centring, gain), turn_of_centring;
-  std::swap(centring.spin, turn_of_centring.spin);
-  ScopeVelocity velocity =
-      limiter_.apply({scaled(follow, limits.scale), scaled(wanted.turning, gain), centring, turn_of_centring},
-                     input.period, limits.scale);
+  // Pan and tilt come first: where there is no room for spin and insertion, the centre need not wait for them.
+  ScopeVelocity centring = scaled(wanted.centring, gain), aside;
+  std::swap(centring.spin, aside.spin);
+  std::swap(centring.insertion, aside.insertion);
+  ScopeVelocity velocity = limiter_.apply({scaled(follow, limits.scale), scaled(wanted.turning, gain), centring, aside},
+                                          input.period, limits.scale);
   velocity.insertion = std::clamp(velocity.insertion, -limits.insertion, limits.insertion);
   velocity.spin = std::clamp(velocity.spin, -limits.spin, limits.spin);
   if (!limits.insertion_allowed) velocity.insertion = std::min(0.0, velocity.insertion);

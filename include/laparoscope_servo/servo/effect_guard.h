@@ -55,7 +55,7 @@ class EffectGuard {
 
   // Judges an image by what the robot said of its motion until then; where it never says anything, by `commands`, each
   // executed `delay` [s] after it was given. Where it has not yet said what it did until then, the image waits for the
-  // next call, for 0.3 s at most; then nothing is concluded from it. An image with the time of the last one changes
+  // next call, for 0.2 s at most; then nothing is concluded from it. An image with the time of the last one changes
   // nothing; one of another region, or after a pause, is only the start of what follows.
   Effect observe(const EffectObservation& image, const CommandHistory& commands, double delay);
 
