@@ -57,7 +57,10 @@ class Stopping {
     const bool ended = s.state == servo::ControllerState::kLost || s.state == servo::ControllerState::kFault;
     if (ended && run.stopped < 0.0) run.stopped = s.t;
     if (s.state == servo::ControllerState::kHold && before_ != servo::ControllerState::kHold) ++run.holds;
-    if (!ended && s.state != servo::ControllerState::kIdle) run.evidence = std::max(run.evidence, s.evidence);
+    if (!ended && s.state != servo::ControllerState::kIdle) {
+      run.evidence = std::max(run.evidence, s.evidence);
+      run.unconfirmed = std::max(run.unconfirmed, s.unconfirmed);
+    }
     before_ = s.state;
     if (s.t <= from_) start_ = s.moved;
     const Eigen::Vector4d way = s.moved - start_;
@@ -172,7 +175,7 @@ void writeRuns(const std::vector<RunSummary>& runs, std::ostream& stream) {
   stream << "seed,start_pan,start_tilt,start_spin,start_insertion,refused_starts,settled,settled_centre,settled_scale,"
             "settled_orientation,left_image,centre_rms,scale_rms,orientation_rms,moving_share,reversals,"
             "max_commanded_lateral_speed,max_lateral_speed,max_lateral_offset,final_state,stopped,holds,"
-            "turned,inserted,evidence\n";
+            "turned,inserted,evidence,unconfirmed\n";
   stream.precision(9);
   for (const RunSummary& r : runs) {
     const scope::Velocity& start = r.drawn.start;
@@ -180,8 +183,9 @@ void writeRuns(const std::vector<RunSummary>& runs, std::ostream& stream) {
            << r.drawn.refused << ',' << r.settled << ',' << r.settled_centre << ',' << r.settled_scale << ','
            << r.settled_orientation << ',' << (r.left_image ? 1 : 0) << ',' << r.centre_rms << ',' << r.scale_rms << ','
            << r.orientation_rms << ',' << r.moving_share << ',' << r.reversals << ',' << r.max_commanded_lateral_speed
-           << ',' << r.max_lateral_speed << ',' << r.max_lateral_offset << ',' << name(r.final_state) << ','
-           << r.stopped << ',' << r.holds << ',' << r.turned << ',' << r.inserted << ',' << r.evidence << '\n';
+           << ',' << r.max_lateral_speed << ',' << r.max_lateral_offset << ',' << name(r.final_state) << ',' << r.stopped
+           << ',' << r.holds << ',' << r.turned << ',' << r.inserted << ',' << r.evidence << ',' << r.unconfirmed
+           << '\n';
   }
 }
 
@@ -219,6 +223,8 @@ void printRuns(const std::vector<RunSummary>& runs, const RunBounds& bounds, std
   printSpread("  turned", all([](const RunSummary& r) { return r.turned / kDegree; }), " deg", stream);
   printSpread("  inserted", all([](const RunSummary& r) { return 1e3 * r.inserted; }), " mm", stream);
   printSpread("  evidence of a fault", all([](const RunSummary& r) { return r.evidence; }), "", stream);
+  printSpread("  share of the motion allowed unseen", all([](const RunSummary& r) { return r.unconfirmed; }), "",
+              stream);
   stream << "at the insertion point\n";
   printSpread("  commanded lateral speed", all([](const RunSummary& r) { return r.max_commanded_lateral_speed; }),
               " m/s", stream);

@@ -194,6 +194,7 @@ class Loop {
     s.command = output.command;
     s.moved = moved_;
     s.evidence = controller_.effect().evidence();
+    s.unconfirmed = controller_.effect().budget().spent();
     const Eigen::Matrix3d h = seenHomography(time);
     const Eigen::Vector2d centre =
         geometry::apply(geometry::pixelsFromNormalised(h, config_.camera), config_.roi.centre());

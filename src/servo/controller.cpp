@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "laparoscope_servo/servo/dead_zone.h"
+
 namespace laparoscope_servo::servo {
 
 namespace {
@@ -17,6 +19,14 @@ ControllerConfig checked(const ControllerConfig& config) {
 
 // s, beyond the delay, after which a motion shows in the image: the command's acceleration, an image's exposure.
 constexpr double kShows = 0.1;
+
+// Of the motion before its effect was seen: at this share the scope stands. A step goes 4 % further. At once and not by
+// and by: a scope that stops shows more than one that creeps.
+constexpr double kUsedUp = 0.97;
+// Spin and insertion, which show nothing of a fault of pan and tilt, get slower from the one share on, down to the
+// other of their speed.
+constexpr double kSlowerAside = 0.8;
+constexpr double kSlowest = 0.1;
 
 // Of a tracker that nobody looks at.
 TrackerFacts nothingMissing() {
@@ -42,6 +52,7 @@ Controller::Controller(const ControllerConfig& config)
       stick_(config.safety, config.limits.velocity),
       repeats_(config.safety.max_repeated_errors),
       effect_(config.effect, {config.target.centre_noise, config.target.depth_noise, config.target.orientation_noise}),
+      opposed_(config.dead_zone.width),
       insertion_point_(config.insertion_point.estimator, priorOf(config.insertion_point)),
       d2_correction_(config.insertion_point.correction_rate) {}
 
@@ -62,7 +73,7 @@ SafetyFacts Controller::facts(const ControllerInput& input) const {
   const TaskErrorInput& task = input.task_error;
   facts.tracker = {task.problem,          task.age,         task.image_age, task.valid, task.region,
                    task.visible_fraction, task.corner_error};
-  if (engaged()) facts.effect = {effect_.effect(), effect_.words()};
+  if (engaged() && config_.effect.enabled) facts.effect = effectFacts();
   if (!task.problem.empty() || !task.valid) return facts;
   facts.tracker.problem = implausible(task);
   if (facts.tracker.problem.empty() && repeats_.repeats()) {
@@ -70,6 +81,13 @@ SafetyFacts Controller::facts(const ControllerInput& input) const {
         "the picture repeats: the task error stays the same to the last digit while the scope moves";
   }
   return facts;
+}
+
+EffectFacts Controller::effectFacts() const {
+  if (!opposed_.words().empty()) return {Effect::kWrong, opposed_.words()};
+  if (effect_.effect() == Effect::kAsCommanded && effect_.budget().spent() >= kUsedUp)
+    return {Effect::kDoubted, "the picture has not yet shown what the motion of the scope does"};
+  return {effect_.effect(), effect_.words()};
 }
 
 // What is estimated takes the place of the calibration, which is its prior: where the poses tell nothing, they agree.
@@ -110,6 +128,7 @@ std::string Controller::engage(const ControllerInput& input) {
   request.request = EngageRequest::kOn;
   machine_.step(request);
   effect_.rearm();
+  opposed_.restart();
   has_time_ = false;  // the pause since the last step is no step
   last_time_ = input.time;
   servo_.reset();
@@ -142,6 +161,7 @@ ControllerOutput Controller::update(const ControllerInput& input) {
   if (input.robot_report.present) {
     servo_.report(input.time - input.robot_report.age, input.robot_report.velocity);
     effect_.report(input.time - input.robot_report.age, input.robot_report.velocity);
+    opposed_.report(input.time - input.robot_report.age, input.robot_report.velocity, servo_.history(), servo_.delay());
   }
   if (!input.clock_jump.empty()) insertion_point_.reset();
   // A pose that is told again says nothing new, and one of a scope that is not in the body nothing at all.
@@ -155,13 +175,16 @@ ControllerOutput Controller::update(const ControllerInput& input) {
   correctDepth(input);
   watchRepetition(input.task_error);
   watchEffect(input);
+  const double told_for = std::clamp(input.time - last_time_, 0.0, config_.predictor.command_lifetime);
+  effect_.command(told_for * told_, task_ == Task::kHoldView);
   SafetyFacts known = facts(input);
   SafetyOutput safety = machine_.step(known);
   ControllerOutput output;
   const bool moves = safety.state == ControllerState::kServo && !task_changed_;
   const std::string stick = stick_.update(input.manual, moves && task_ == Task::kManual, input.time);
   if (moves) {
-    output.command = task_ == Task::kManual ? drive(input, stick) : servo_.command(servoInput(input), limits(safety));
+    output.command =
+        task_ == Task::kManual ? drive(input, stick) : servo_.command(servoInput(input), limits(safety, input.time));
     known.command_finite = output.command.vector().allFinite();
     if (!known.command_finite) {
       safety = machine_.step(known);
@@ -169,6 +192,7 @@ ControllerOutput Controller::update(const ControllerInput& input) {
     }
   }
   if (safety.reset_history) servo_.stop(input.time);
+  told_ = afterDeadZone(output.command, config_.dead_zone.width).vector();
   const bool noticed = (output.command.vector().cwiseAbs().array() > config_.dead_zone.width.vector().array()).any();
   if (!noticed) moves_since_.reset();
   if (noticed && !moves_since_) moves_since_ = input.time;
@@ -198,11 +222,19 @@ void Controller::watchRepetition(const TaskErrorInput& task_error) {
   repeats_.take(*task_error.image_time, task_error.error, moves && task_ == Task::kHoldView);
 }
 
-ServoLimits Controller::limits(const SafetyOutput& safety) const {
+ServoLimits Controller::limits(const SafetyOutput& safety, double time) const {
   ServoLimits limits{safety.speed_scale, safety.insertion_allowed};
+  if (!config_.effect.enabled) return limits;
   constexpr double kSeen = 0.1;  // s, until what the robot does is seen and judged
-  if (config_.effect.enabled && !effect_.confirmed())
-    limits.insertion = config_.effect.unconfirmed_insertion / (servo_.delay() + kSeen);
+  if (!effect_.confirmed()) limits.insertion = 0.5 * config_.effect.unconfirmed_insertion / (servo_.delay() + kSeen);
+  // Where the region is at its place, nothing is wrong with pan and tilt that could show.
+  if (told_.head<2>().isZero(0.0)) return limits;
+  const double left = std::clamp((1.0 - effect_.budget().aside()) / (1.0 - kSlowerAside), kSlowest, 1.0);
+  if (!(left < 1.0)) return limits;
+  const double step = has_time_ ? std::min(time - last_time_, config_.safety.max_period) : 0.0;
+  const Eigen::Vector4d slowed = told_.cwiseAbs() - step * config_.limits.acceleration.vector();
+  limits.spin = std::max(slowed[2], left * config_.limits.velocity.spin);
+  limits.insertion = std::min(limits.insertion, std::max(slowed[3], left * config_.limits.velocity.insertion));
   return limits;
 }
 

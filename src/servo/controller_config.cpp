@@ -122,6 +122,7 @@ void checkEffect(const EffectConfig& config, Checker& check) {
   check.range("effect/certain", config.certain, 1.0, 1000.0);
   check.atLeast("effect/certain", config.certain, "effect/doubt", config.doubt);
   check.range("effect/standing_time", config.standing_time, 0.05, 10.0, "s");
+  check.range("effect/unconfirmed_turn", config.unconfirmed_turn, 1e-3, 10.0, "rad");
   check.range("effect/unconfirmed_insertion", config.unconfirmed_insertion, 1e-4, 1.0, "m");
 }
 

@@ -20,6 +20,8 @@ struct CartFault {
   bool stops = true;
   // And it must not go on before somebody has engaged it again. What another fault hides, nobody knows.
   bool needs_somebody = false;
+  bool of_picture = false;  // only its effect shows it
+  bool blinds = false;      // takes away what an effect is judged by
   Interference interference;
   std::function<void(SimulatedCart&)> begin, end;  // of what the robot does
   double from = 0.0;                               // s
@@ -36,9 +38,14 @@ class RandomCartFaults {
   int whole(int count) { return static_cast<int>(random_() % static_cast<unsigned>(count)); }
   double sign() { return whole(2) == 0 ? -1.0 : 1.0; }
 
-  // Two faults that begin within 0.6 s of `now` and last for 0.3 to 2.5 s. `manual`: the task is MANUAL.
+  // Two faults that begin within 0.6 s of `now` and last for 0.3 to 2.5 s. `manual`: the task is MANUAL. Two mirrors
+  // make a true picture, and who judges an effect has to know it.
   std::vector<CartFault> pair(double now, bool manual) {
     std::vector<CartFault> faults{one(manual), one(manual)};
+    const auto clash = [](const CartFault& a, const CartFault& b) {
+      return a.of_picture && (b.of_picture || b.blinds);
+    };
+    while (clash(faults[0], faults[1]) || clash(faults[1], faults[0])) faults[1] = one(manual);
     for (CartFault& fault : faults) {
       fault.from = now + real(0.0, 0.6);
       fault.until = fault.from + real(0.3, 2.5);
@@ -51,14 +58,15 @@ class RandomCartFaults {
   using Maker = CartFault (RandomCartFaults::*)();
 
   CartFault one(bool manual) {
-    static const std::vector<Maker> kinds{&RandomCartFaults::ofTracker, &RandomCartFaults::ofTracker,
-                                          &RandomCartFaults::ofRobot,   &RandomCartFaults::ofPose,
-                                          &RandomCartFaults::ofDeadMan, &RandomCartFaults::ofTime,
-                                          &RandomCartFaults::ofManual};
+    static const std::vector<Maker> kinds{
+        &RandomCartFaults::ofPicture, &RandomCartFaults::ofPicture, &RandomCartFaults::ofTracker,
+        &RandomCartFaults::ofTracker, &RandomCartFaults::ofRobot,   &RandomCartFaults::ofPose,
+        &RandomCartFaults::ofDeadMan, &RandomCartFaults::ofTime,    &RandomCartFaults::ofManual};
     const bool of_manual = manual && whole(3) == 0;
-    const int kind = of_manual ? 6 : whole(6);
+    const int kind = of_manual ? 8 : whole(8);
     CartFault fault = (this->*kinds[static_cast<std::size_t>(kind)])();
-    if (manual && kind < 2) fault.stops = false;  // nothing that comes from a camera counts
+    fault.of_picture = kind < 2;
+    if (manual && kind < 4) fault.stops = false;  // nothing that comes from a camera counts
     return fault;
   }
 
@@ -77,9 +85,19 @@ class RandomCartFaults {
     fault.interference.tracker = tracker;
     return fault;
   }
+  static CartFault withPicture(const std::string& name, const Eigen::Matrix3d& change) {
+    CartFault fault;
+    fault.name = name;
+    fault.interference.picture = [change](Eigen::Matrix3d& h) { h = change * h * change.inverse(); };
+    return fault;
+  }
   static CartFault bearable(CartFault fault) {
     fault.stops = false;
     return fault;
+  }
+  static CartFault blinding(CartFault fault) {
+    fault.blinds = true;
+    return bearable(fault);
   }
   static CartFault forSomebody(CartFault fault) {
     fault.needs_somebody = true;
@@ -89,6 +107,33 @@ class RandomCartFaults {
     static const double values[] = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
                                     -std::numeric_limits<double>::infinity()};
     return values[whole(3)];
+  }
+
+  // What is seen is not what is there. Old pictures in turn are the tracker's to notice.
+  CartFault ofPicture() {
+    switch (whole(5)) {
+      case 0: {
+        const auto first = std::make_shared<std::vector<servo::TaskErrorInput>>();
+        return withTracker("frozen", [first](servo::TaskErrorInput& seen) {
+          if (first->empty()) first->push_back(seen);
+          seen = first->front();
+        });
+      }
+      case 1:
+        return withPicture("mirrored x", Eigen::Vector3d(-1.0, 1.0, 1.0).asDiagonal());
+      case 2:
+        return withPicture("mirrored y", Eigen::Vector3d(1.0, -1.0, 1.0).asDiagonal());
+      case 3: {
+        const double roll = sign() * real(60.0, 180.0);
+        const Eigen::Matrix3d turn = geometry::so3Exp({0.0, 0.0, roll * M_PI / 180.0});
+        return withPicture("rolled by " + std::to_string(std::lround(roll)) + " degrees", turn);
+      }
+      default: {
+        const Eigen::Matrix3d turn = geometry::so3Exp({0.0, 0.0, M_PI});
+        return withInput("shaft frame turned by 180 degrees",
+                         [turn](Input& input) { input.depth.camera_R_shaft = turn * input.depth.camera_R_shaft; });
+      }
+    }
   }
 
   CartFault ofTracker() {
@@ -130,7 +175,7 @@ class RandomCartFaults {
           seen.visible_fraction = std::min(seen.visible_fraction, 0.35);
         }));
       case 7:
-        return bearable(withTracker("corners unknown", [](servo::TaskErrorInput& seen) {
+        return blinding(withTracker("corners unknown", [](servo::TaskErrorInput& seen) {
           seen.corner_error = std::numeric_limits<double>::infinity();
         }));
       case 8: {

@@ -94,6 +94,7 @@ struct SimulationSample {
   double worst_corner = 0.0;    // px, of the ROI from the image's border, the nearest; negative: outside
   Eigen::Vector4d moved = Eigen::Vector4d::Zero();  // rad, m: by the scope since the start (pan, tilt, spin, insertion)
   double evidence = 0.0;                            // of the guard of effect
+  double unconfirmed = 0.0;                         // of the same, share of the motion that it allows unseen
   servo::ControllerState state = servo::ControllerState::kIdle;
 };
 

@@ -12,6 +12,7 @@
 #include "laparoscope_servo/servo/effect_guard.h"
 #include "laparoscope_servo/servo/insertion_point_estimator.h"
 #include "laparoscope_servo/servo/manual_stick.h"
+#include "laparoscope_servo/servo/opposed_motion.h"
 #include "laparoscope_servo/servo/repeat_watch.h"
 #include "laparoscope_servo/servo/safety_machine.h"
 #include "laparoscope_servo/servo/scope_servo.h"
@@ -103,7 +104,8 @@ class Controller {
   double d2(const ControllerInput& input) const;
   void correctDepth(const ControllerInput& input);
   void watchEffect(const ControllerInput& input);
-  ServoLimits limits(const SafetyOutput& safety) const;
+  EffectFacts effectFacts() const;
+  ServoLimits limits(const SafetyOutput& safety, double time) const;
   ServoInput servoInput(const ControllerInput& input) const;
   void watchRepetition(const TaskErrorInput& task_error);
   scope::Velocity drive(const ControllerInput& input, const std::string& problem);
@@ -117,9 +119,11 @@ class Controller {
   ManualStick stick_;
   RepeatWatch repeats_;
   EffectGuard effect_;
+  OpposedMotion opposed_;
   std::optional<double> moves_since_;  // s; nothing: the command is within the dead zone
   InsertionPointEstimator insertion_point_;
-  SlowCorrection d2_correction_;  // m
+  SlowCorrection d2_correction_;                    // m
+  Eigen::Vector4d told_ = Eigen::Vector4d::Zero();  // the robot in the last step, after its dead zone
   bool has_time_ = false;
   double last_time_ = 0.0;  // s, of the last step
 };

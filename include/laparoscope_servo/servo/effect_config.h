@@ -14,11 +14,13 @@ struct EffectConfig {
   double unrest_time = 0.5;          // s, for which tissue that moves otherwise is not judged by
   double memory = 2.5;               // s, over which images are forgotten
   // Log of the ratio of likelihoods, the best fault over the picture as it should be:
-  double doubt = 5.5;                    // from here on the scope stands,
-  double release = 3.0;                  // below this it goes on,
-  double certain = 9.0;                  // and this, once it stands, is a fault
-  double standing_time = 0.5;            // s, from the doubt until the scope stands and that is seen
-  double unconfirmed_insertion = 0.002;  // m, that the scope may go in or out before its effect was seen
+  double doubt = 5.5;          // from here on the scope stands,
+  double release = 3.0;        // below this it goes on,
+  double certain = 9.0;        // and this, once it stands, is a fault
+  double standing_time = 0.5;  // s, from the doubt until the scope stands and that is seen
+  // How far the scope may go before its effect was seen, see effect_budget.h.
+  double unconfirmed_turn = 0.044;       // rad
+  double unconfirmed_insertion = 0.004;  // m
 };
 
 }  // namespace laparoscope_servo::servo

@@ -18,12 +18,14 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <deque>
 #include <string>
 #include <vector>
 
 #include "laparoscope_servo/scope/geometry.h"
 #include "laparoscope_servo/servo/command_history.h"
 #include "laparoscope_servo/servo/effect.h"
+#include "laparoscope_servo/servo/effect_budget.h"
 #include "laparoscope_servo/servo/effect_config.h"
 #include "laparoscope_servo/servo/task_function.h"
 
@@ -51,9 +53,10 @@ class EffectGuard {
   // What the robot says that it did at `time` [s].
   void report(double time, const scope::Velocity& velocity);
 
-  // Judges an image by what the robot said of its motion until then; where it says nothing, by `commands`, each
-  // executed `delay` [s] after it was given. An image with the time of the last one changes nothing; one of another
-  // region, or after a pause, is only the start of what follows.
+  // Judges an image by what the robot said of its motion until then; where it never says anything, by `commands`, each
+  // executed `delay` [s] after it was given. Where it has not yet said what it did until then, the image waits for the
+  // next call, for 0.2 s at most; then nothing is concluded from it. An image with the time of the last one changes
+  // nothing; one of another region, or after a pause, is only the start of what follows.
   Effect observe(const EffectObservation& image, const CommandHistory& commands, double delay);
 
   Effect effect() const { return effect_; }
@@ -63,8 +66,12 @@ class EffectGuard {
   double evidence() const { return evidence_; }
   // Since it was armed, or last doubted, the picture has moved as no fault explains.
   bool confirmed() const { return confirmed_; }
+  // How far the scope may go before that is seen.
+  const EffectBudget& budget() const { return budget_; }
+  // The scope was told to go by (pan, tilt, spin [rad], insertion [m]); `for_view`: by the control law.
+  void command(const Eigen::Vector4d& displacement, bool for_view) { budget_.command(displacement, for_view); }
 
-  // Nothing is held against the picture any more; what is known of the tissue's motion stays.
+  // Somebody has engaged: nothing is held against the picture any more; what is known of the tissue's motion stays.
   void rearm();
 
  private:
@@ -72,17 +79,22 @@ class EffectGuard {
   // An explanation, and what the tissue does if it is true.
   struct Track;
 
-  void start(const EffectObservation& image);
+  // `other`: this may be another picture.
+  void start(const EffectObservation& image, bool other);
+  bool reports(double time) const;
+  void judge(const EffectObservation& image, const CommandHistory& commands, double delay);
   void advance(double dt);
   Eigen::Vector4d executed(double end, double late, const CommandHistory& commands, double delay) const;
   Features predicted(const EffectExplanation& explanation, const Eigen::Vector4d& displacement) const;
-  bool compare(const EffectObservation& image);
+  double compare(const EffectObservation& image, const Eigen::Vector4d& pending);
   void calm(double dt, const std::vector<Features>& innovations, const Features& variance);
   void begin(Track& fault, const Track& good) const;
   void judge();
+  void forget();
   void decide(const std::string& fault);
 
   EffectConfig config_;
+  EffectBudget budget_;
   Features noise_;   // variance
   Features tissue_;  // 1/s, standard deviation of its velocity
   std::vector<Track> tracks_;
@@ -90,6 +102,7 @@ class EffectGuard {
   double last_report_;  // s
   bool started_ = false;
   EffectObservation last_;
+  std::deque<EffectObservation> waiting_;
   std::array<Eigen::Matrix2d, 4> covariance_;  // of place and velocity, the same for each explanation
   Features unrest_ = Features::Ones();         // over the variance that is expected
   double evidence_ = 0.0;

@@ -30,9 +30,11 @@ struct ServoInput {
 };
 
 struct ServoLimits {
-  double scale = 1.0;                                          // 0 to 1, of all velocities and their limits
-  bool insertion_allowed = true;                               // false: not deeper
-  double insertion = std::numeric_limits<double>::infinity();  // m/s, in and out; the other axes go on as they are
+  double scale = 1.0;             // 0 to 1, of all velocities and their limits
+  bool insertion_allowed = true;  // false: not deeper
+  // In and out, and about the shaft; the other axes go on as they are.
+  double insertion = std::numeric_limits<double>::infinity();  // m/s
+  double spin = std::numeric_limits<double>::infinity();       // rad/s
 };
 
 class ScopeServo {

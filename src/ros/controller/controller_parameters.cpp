@@ -80,6 +80,7 @@ void readEffect(ParameterReader& reader, servo::EffectConfig& effect) {
   readNumber(reader, "effect/release", effect.release);
   readNumber(reader, "effect/certain", effect.certain);
   readNumber(reader, "effect/standing_time", effect.standing_time);
+  readNumber(reader, "effect/unconfirmed_turn", effect.unconfirmed_turn);
   readNumber(reader, "effect/unconfirmed_insertion", effect.unconfirmed_insertion);
 }
 

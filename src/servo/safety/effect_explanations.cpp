@@ -41,7 +41,7 @@ std::string mirrored(int roll) {
 std::vector<EffectExplanation> effectExplanations() {
   std::vector<EffectExplanation> all;
   for (const double late : {-0.06, 0.0, 0.06, 0.14}) {
-    for (const double reach : {0.6, 1.0, 1.6}) {
+    for (const double reach : {0.4, 0.6, 1.0, 1.6}) {
       EffectExplanation good;
       good.late = late;
       good.reach = reach;

@@ -13,7 +13,10 @@ namespace {
 
 constexpr double kGap = 0.5;          // s without an image after which nothing is compared
 constexpr double kSpan = 3.0;         // s of reports that are kept: more than kGap and the latest explanation
-constexpr double kReportLife = 0.1;   // s for which a report stands for the motion; the robot reports at 10 Hz or more
+constexpr double kReportLife = 0.25;  // s for which a report stands for the motion; the robot reports at 10 Hz or more
+constexpr double kReports = 0.3;      // s without a report after which the robot is one that says nothing
+constexpr double kSameOptics = 0.05;  // rad, by which the camera may be turned about the shaft as before
+constexpr double kPatience = 0.2;     // s that an image waits for a report of its time
 constexpr double kCornerError = 0.3;  // px: the noise of an image that is worse grows with it
 // Times that noise: the tracker believes in nothing beyond 1.5 px, and no corner error may blind the guard.
 constexpr double kWorst = 5.0;
@@ -22,10 +25,15 @@ constexpr double kWorst = 5.0;
 // which the insertion is reversed and lets the others turn by up to 18 % more in the median; 25 is as 16.
 constexpr double kBound = 16.0;
 constexpr double kJump = 100.0;  // the same: where no explanation is nearer, the tracker slipped or the tissue was torn
+// And here another picture may have taken the place: tissue that is pulled by 20 mm in half a second stays below.
+constexpr double kOther = 400.0;
 // Log of how much less likely it is that a fault begins in an image than that there is none. Chosen, not varied since:
 // less lets faults that explain nothing lie nearer to the doubt, more makes those that begin later be found later.
 constexpr double kOnset = 3.0;
 constexpr double kConfirmed = 0.5;  // so near to kOnset, no fault explains anything
+// Where depths are so wrong that the picture moves by less than this of what they say, it is no doubt of the budget's,
+// but here it would pass for a frozen one.
+constexpr double kLeastReach = 0.5;
 
 }  // namespace
 
@@ -44,7 +52,10 @@ struct EffectGuard::Track {
 };
 
 EffectGuard::EffectGuard(const EffectConfig& config, const Eigen::Vector3d& noise)
-    : config_(config), reports_(kSpan, kReportLife), last_report_(-std::numeric_limits<double>::infinity()) {
+    : config_(config),
+      budget_(config),
+      reports_(kSpan, kReportLife),
+      last_report_(-std::numeric_limits<double>::infinity()) {
   noise_ = Features(noise[0], noise[0], noise[1], noise[2]).cwiseAbs2();
   tissue_ << config.tissue_centre, config.tissue_centre, config.tissue_depth, config.tissue_orientation;
   for (const EffectExplanation& explanation : effectExplanations()) {
@@ -59,9 +70,14 @@ EffectGuard& EffectGuard::operator=(EffectGuard&&) noexcept = default;
 
 void EffectGuard::rearm() {
   effect_ = Effect::kAsCommanded;
-  evidence_ = 0.0;
   words_.clear();
   confirmed_ = doubted_before_ = false;
+  budget_.restart();
+  forget();
+}
+
+void EffectGuard::forget() {
+  evidence_ = 0.0;
   for (Track& track : tracks_) track.log_likelihood = 0.0;
 }
 
@@ -73,7 +89,7 @@ void EffectGuard::report(double time, const scope::Velocity& velocity) {
 
 // (pan, tilt, spin [rad], insertion [m]) since the last image.
 Eigen::Vector4d EffectGuard::executed(double end, double late, const CommandHistory& commands, double delay) const {
-  if (end - last_report_ <= kReportLife) return reports_.displacement(last_.time, end, late);
+  if (reports(end)) return reports_.displacement(last_.time, end, late);
   return commands.displacement(last_.time, end, delay + late);
 }
 
@@ -91,9 +107,10 @@ EffectGuard::Features EffectGuard::predicted(const EffectExplanation& explanatio
   return explanation.reach * change;
 }
 
-void EffectGuard::start(const EffectObservation& image) {
+void EffectGuard::start(const EffectObservation& image, bool other) {
   started_ = true;
   last_ = image;
+  if (other) budget_.interrupt();
   for (Track& track : tracks_) {
     track.moved.setZero();
     track.velocity.setZero();
@@ -124,27 +141,51 @@ void EffectGuard::advance(double dt) {
 
 Effect EffectGuard::observe(const EffectObservation& image, const CommandHistory& commands, double delay) {
   if (!config_.enabled || !isFinite(image.error)) return effect_;
+  const double newest = waiting_.empty() ? last_.time : waiting_.back().time;
+  if (!(started_ || !waiting_.empty()) || image.time != newest) waiting_.push_back(image);
+  while (!waiting_.empty()) {
+    const EffectObservation first = waiting_.front();
+    // Back in time, or still without a report: what the robot did until then is not known.
+    const bool in_vain = !(image.time - first.time >= 0.0 && image.time - first.time < kPatience);
+    if (!in_vain && reports(first.time) && last_report_ < first.time) break;
+    waiting_.pop_front();
+    if (in_vain) {
+      start(first, true);
+    } else {
+      judge(first, commands, delay);
+    }
+  }
+  return effect_;
+}
+
+// The robot is one that says what it does.
+bool EffectGuard::reports(double time) const {
+  return time - last_report_ <= kReports;
+}
+
+void EffectGuard::judge(const EffectObservation& image, const CommandHistory& commands, double delay) {
   const double dt = image.time - last_.time;
-  if (started_ && dt == 0.0) return effect_;
-  if (!started_ || !(dt > 0.0 && dt <= kGap) || image.error.m_star != last_.error.m_star) {
-    start(image);
-    return effect_;
+  const bool other_region = image.error.m_star != last_.error.m_star;
+  const bool other_optics = !image.scope.camera_R_shaft.isApprox(last_.scope.camera_R_shaft, kSameOptics);
+  if (!started_ || !(dt > 0.0 && dt <= kGap) || other_region || other_optics) {
+    start(image, true);
+    return;
   }
   for (Track& track : tracks_) {
     track.moved += predicted(track.explanation, executed(image.time, track.explanation.late, commands, delay));
   }
   advance(dt);
-  if (!compare(image)) {
-    start(image);
-    return effect_;
+  const double off = compare(image, commands.displacement(image.time, image.time + kSpan, delay));
+  if (!(off < kJump)) {
+    start(image, !(off < kOther));
+    return;
   }
   last_ = image;
   judge();
-  return effect_;
 }
 
-// False where the image is like none of what was expected.
-bool EffectGuard::compare(const EffectObservation& image) {
+// How far the image is from the nearest of what was expected, square over variance.
+double EffectGuard::compare(const EffectObservation& image, const Eigen::Vector4d& pending) {
   const double quality = std::min(kWorst, std::max(1.0, image.corner_error / kCornerError));  // 1 for NaN
   Features variance, place_gain, velocity_gain;
   for (int k = 0; k < 4; ++k) {
@@ -162,15 +203,20 @@ bool EffectGuard::compare(const EffectObservation& image) {
     innovations.push_back(innovation);
     nearest = std::min(nearest, innovation.cwiseAbs2().cwiseQuotient(variance).maxCoeff());
   }
-  if (!(nearest < kJump)) return false;
+  if (!(nearest < kJump)) return nearest;
   calm(image.time - last_.time, innovations, variance);
+  std::vector<double> likelihoods(tracks_.size(), 0.0);
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     const Features squares = innovations[i].cwiseAbs2().cwiseQuotient(variance.cwiseProduct(unrest_));
-    for (int k = 0; k < 4; ++k) tracks_[i].log_likelihood -= 0.5 * squares[k] / (1.0 + squares[k] / kBound);
+    for (int k = 0; k < 4; ++k) likelihoods[i] -= 0.5 * squares[k] / (1.0 + squares[k] / kBound);
+    tracks_[i].log_likelihood += likelihoods[i];
     tracks_[i].place += place_gain.cwiseProduct(innovations[i]);
     tracks_[i].velocity += velocity_gain.cwiseProduct(innovations[i]);
   }
-  return true;
+  const Eigen::Matrix3d& optics = image.scope.camera_R_shaft;
+  const double turned = std::atan2(optics(1, 0) - optics(0, 1), optics(0, 0) + optics(1, 1));
+  budget_.see(image.time - last_.time, likelihoods, pending, turned, image.breath_known);
+  return nearest;
 }
 
 // What no explanation is free of is the tissue's own unrest.
@@ -202,8 +248,8 @@ void EffectGuard::begin(Track& fault, const Track& good) const {
 void EffectGuard::judge() {
   const Track* good = nullptr;
   for (const Track& track : tracks_) {
-    if (track.explanation.fault.empty() && (good == nullptr || track.log_likelihood > good->log_likelihood))
-      good = &track;
+    const bool is_good = track.explanation.fault.empty() && track.explanation.reach > kLeastReach;
+    if (is_good && (good == nullptr || track.log_likelihood > good->log_likelihood)) good = &track;
   }
   const Track* fault = nullptr;
   for (Track& track : tracks_) {
@@ -226,6 +272,7 @@ void EffectGuard::decide(const std::string& fault) {
     doubted_since_ = last_.time;
     doubted_before_ = true;
     confirmed_ = false;
+    budget_.interrupt();
   } else if (effect_ == Effect::kDoubted) {
     const bool stands = last_.time - doubted_since_ >= config_.standing_time;
     if (stands && evidence_ >= config_.certain) effect_ = Effect::kWrong;

@@ -145,7 +145,7 @@ TEST_F(SimulateServo, SummaryHasALinePerRun) {
     EXPECT_LE(number(rows, k, "max_commanded_lateral_speed"), 1e-9);
     EXPECT_LE(number(rows, k, "max_lateral_speed"), 1e-9);
     EXPECT_LE(number(rows, k, "max_lateral_offset"), 1e-9);
-    EXPECT_EQ(rows[k].at(rows[k].size() - 6), "SERVO");
+    EXPECT_EQ(rows[k].at(rows[k].size() - 7), "SERVO");
     EXPECT_EQ(number(rows, k, "stopped"), -1.0);
     EXPECT_EQ(number(rows, k, "holds"), 0.0);
   }

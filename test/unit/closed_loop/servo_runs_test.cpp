@@ -198,6 +198,7 @@ TEST(SummariseRun, TellsWhereTheScopeWentAndWhatStoppedIt) {
   samples[2].moved << 0.0, 0.0, -0.02, -0.004;
   for (const std::size_t k : {3u, 5u, 6u}) samples[k].state = servo::ControllerState::kHold;
   samples[5].evidence = 7.0;
+  samples[5].unconfirmed = 0.6;
   for (const std::size_t k : {7u, 8u, 9u}) samples[k].state = servo::ControllerState::kFault;
   samples[8].evidence = 50.0;  // nobody is engaged any more
   const RunSummary run = summarised(samples);
@@ -206,6 +207,7 @@ TEST(SummariseRun, TellsWhereTheScopeWentAndWhatStoppedIt) {
   EXPECT_EQ(run.holds, 2);
   EXPECT_EQ(run.stopped, samples[7].t);
   EXPECT_EQ(run.evidence, 7.0);
+  EXPECT_EQ(run.unconfirmed, 0.6);
 }
 
 TEST(SummariseRun, CountsTheWayFromWhenThePictureFroze) {
@@ -239,14 +241,15 @@ TEST(WriteRuns, AColumnForEachFigure) {
   run.turned = 22.0;
   run.inserted = 23.0;
   run.evidence = 24.0;
+  run.unconfirmed = 25.0;
   std::ostringstream stream;
   writeRuns({run}, stream);
   EXPECT_EQ(stream.str(),
             "seed,start_pan,start_tilt,start_spin,start_insertion,refused_starts,settled,settled_centre,settled_scale,"
             "settled_orientation,left_image,centre_rms,scale_rms,orientation_rms,moving_share,reversals,"
             "max_commanded_lateral_speed,max_lateral_speed,max_lateral_offset,final_state,stopped,holds,"
-            "turned,inserted,evidence\n"
-            "2,3,4,5,6,7,8,9,10,11,1,12,13,14,15,16,17,18,19,HOLD,20,21,22,23,24\n");
+            "turned,inserted,evidence,unconfirmed\n"
+            "2,3,4,5,6,7,8,9,10,11,1,12,13,14,15,16,17,18,19,HOLD,20,21,22,23,24,25\n");
 }
 
 TEST(PrintRuns, NamesTheSeedsThatDidNotSettle) {

@@ -83,6 +83,7 @@ std::vector<Field> fields() {
       {"effect/release", [](ControllerConfig& c, double v) { c.effect.release = v; }},
       {"effect/certain", [](ControllerConfig& c, double v) { c.effect.certain = v; }},
       {"effect/standing_time", [](ControllerConfig& c, double v) { c.effect.standing_time = v; }},
+      {"effect/unconfirmed_turn", [](ControllerConfig& c, double v) { c.effect.unconfirmed_turn = v; }},
       {"effect/unconfirmed_insertion", [](ControllerConfig& c, double v) { c.effect.unconfirmed_insertion = v; }},
       {"oscillation/half_period", [](ControllerConfig& c, double v) { c.oscillation.half_period = v; }},
       {"oscillation/centre", [](ControllerConfig& c, double v) { c.oscillation.centre = v; }},

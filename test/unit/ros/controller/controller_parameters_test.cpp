@@ -90,6 +90,7 @@ std::vector<double> numbers(const ControllerNodeConfig& config) {
                           c.effect.release,
                           c.effect.certain,
                           c.effect.standing_time,
+                          c.effect.unconfirmed_turn,
                           c.effect.unconfirmed_insertion,
                           c.range.min_depth,
                           c.range.max_depth,
@@ -272,7 +273,7 @@ TEST(ControllerParameters, EveryNumberOfTheFileHasAFieldOfItsOwn) {
       }
     }
   }
-  EXPECT_EQ(changed, 104);
+  EXPECT_EQ(changed, 105);
 }
 
 TEST(ControllerParameters, NothingSetGivesTheDefaults) {

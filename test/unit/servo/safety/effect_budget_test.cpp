@@ -1,0 +1,127 @@
+#include "laparoscope_servo/servo/effect_budget.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "servo/safety/effect_explanations.h"
+
+namespace laparoscope_servo::servo {
+namespace {
+
+constexpr double kDt = 0.04;  // s
+
+class Seen {
+ public:
+  // An image that speaks against the faults that `against` names, by `ratio`.
+  void see(const std::function<bool(const EffectExplanation&)>& against, double ratio = 5.0, double dt = kDt,
+           const Eigen::Vector4d& pending = Eigen::Vector4d::Zero()) {
+    std::vector<double> likelihoods;
+    for (const EffectExplanation& e : effectExplanations()) {
+      likelihoods.push_back(!e.fault.empty() && against(e) ? -ratio : 0.0);
+    }
+    budget.see(dt, likelihoods, pending, 0.0, breath_known);
+  }
+
+  EffectConfig config;
+  EffectBudget budget{config};
+  bool breath_known = false;
+};
+
+bool all(const EffectExplanation&) {
+  return true;
+}
+bool none(const EffectExplanation&) {
+  return false;
+}
+
+TEST(EffectBudget, MotionIsSpentUntilTheImagesSpeakAgainstEveryFault) {
+  Seen seen;
+  seen.see(none);
+  EXPECT_EQ(seen.budget.spent(), 0.0);
+  seen.budget.command({0.5 * seen.config.unconfirmed_turn, 0.0, 0.0, 0.0}, true);
+  EXPECT_NEAR(seen.budget.spent(), 0.5, 1e-9);
+  seen.budget.command({0.0, 0.0, 0.0, -0.8 * seen.config.unconfirmed_insertion}, true);
+  EXPECT_NEAR(seen.budget.spent(), 0.8, 1e-9);
+  seen.see(all);
+  EXPECT_EQ(seen.budget.spent(), 0.0);
+  seen.budget.command({0.5, 0.0, 0.0, 0.1}, true);
+  EXPECT_EQ(seen.budget.spent(), 0.0) << "nothing is open";
+}
+
+TEST(EffectBudget, AFaultIsSpentByTheMotionThatGoesWrongUnderIt) {
+  const Eigen::Vector4d pan(0.02, 0.0, 0.0, 0.0), tilt(0.0, 0.02, 0.0, 0.0), spin(0.0, 0.0, 0.02, 0.0);
+  const auto spentBy = [](const std::string& fault, const Eigen::Vector4d& motion) {
+    Seen seen;
+    seen.see([&](const EffectExplanation& e) { return e.fault != fault; });
+    seen.budget.command(motion, true);
+    return seen.budget.spent() * seen.config.unconfirmed_turn;
+  };
+  EXPECT_NEAR(spentBy("rolled by 90 degrees", pan), 0.02, 1e-9);
+  EXPECT_NEAR(spentBy("rolled by 90 degrees", tilt), 0.02, 1e-9);
+  EXPECT_NEAR(spentBy("rolled by 90 degrees", spin), 0.0, 1e-9);
+  EXPECT_NEAR(spentBy("mirrored, left for right", pan), 0.02, 1e-9);
+  EXPECT_NEAR(spentBy("mirrored, left for right", tilt), 0.0, 1e-9);
+  EXPECT_NEAR(spentBy("mirrored, up for down", pan), 0.0, 1e-9);
+  EXPECT_NEAR(spentBy("mirrored, up for down", tilt), 0.02, 1e-9);
+  EXPECT_NEAR(spentBy("frozen, or another camera's", tilt), 0.02, 1e-9);
+  EXPECT_NEAR(spentBy("frozen, or another camera's", spin), 0.02, 1e-9);
+  EXPECT_NEAR(spentBy("moved by an arm whose pan is reversed", pan), 0.0, 1e-9) << "one axis alone shows too little";
+}
+
+TEST(EffectBudget, AnInterruptionOpensEveryFaultAndForgivesNothing) {
+  Seen seen;
+  seen.see(none);
+  seen.budget.command({0.03, 0.0, 0.0, 0.0}, true);
+  const double spent = seen.budget.spent();
+  seen.budget.interrupt();
+  EXPECT_EQ(seen.budget.spent(), spent);
+  seen.see(all);
+  // What it was told and has not done counts from the image on.
+  seen.budget.command({0.02, 0.0, 0.0, 0.0}, true);
+  seen.see(all, 5.0, kDt, {0.02, 0.0, 0.0, 0.0});
+  seen.budget.interrupt();
+  EXPECT_NEAR(seen.budget.spent(), 0.02 / seen.config.unconfirmed_turn, 1e-9);
+  seen.budget.restart();
+  EXPECT_EQ(seen.budget.spent(), 0.0) << "somebody has engaged";
+}
+
+TEST(EffectBudget, WhatNothingSpeaksAgainstAnyMoreIsOpenedAgain) {
+  Seen seen;
+  seen.see(all, 100.0);
+  seen.budget.command({0.1, 0.0, 0.0, 0.0}, true);
+  for (int k = 0; k < 20; ++k) seen.see(none, 0.0, 1.0);
+  seen.budget.command({0.01, 0.0, 0.0, 0.0}, true);
+  EXPECT_EQ(seen.budget.spent(), 0.0) << "20 s";
+  for (int k = 0; k < 5; ++k) seen.see(none, 0.0, 1.0);
+  seen.budget.command({0.01, 0.0, 0.0, 0.0}, true);
+  EXPECT_NEAR(seen.budget.spent(), 0.01 / seen.config.unconfirmed_turn, 1e-9) << "25 s: from where it was opened";
+}
+
+TEST(EffectBudget, SomebodysOwnMotionIsNotSpent) {
+  Seen seen;
+  seen.see(none);
+  seen.budget.command({0.01, 0.0, 0.0, 0.0}, true);
+  seen.budget.command({0.3, 0.2, 0.1, 0.01}, false);
+  EXPECT_NEAR(seen.budget.spent(), 0.01 / seen.config.unconfirmed_turn, 1e-9);
+}
+
+TEST(EffectBudget, AFrozenPictureIsNotOpenWhileABreathIsFollowed) {
+  Seen seen;
+  seen.breath_known = true;
+  seen.see([](const EffectExplanation& e) { return !e.frozen(); });
+  seen.budget.command({0.03, 0.0, 0.0, 0.0}, true);
+  EXPECT_EQ(seen.budget.spent(), 0.0);
+}
+
+TEST(EffectBudget, SpinAndInsertionWaitForPanAndTilt) {
+  Seen seen;
+  seen.see([](const EffectExplanation& e) { return e.picture.isIdentity(); });  // a frozen one is not open
+  seen.budget.command({0.0, 0.0, 0.5 * seen.config.unconfirmed_turn, 0.75 * seen.config.unconfirmed_insertion}, true);
+  EXPECT_NEAR(seen.budget.aside(), 0.75, 1e-9);
+  seen.see(all);
+  EXPECT_EQ(seen.budget.aside(), 0.0);
+}
+
+}  // namespace
+}  // namespace laparoscope_servo::servo
