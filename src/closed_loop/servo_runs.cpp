@@ -183,9 +183,9 @@ void writeRuns(const std::vector<RunSummary>& runs, std::ostream& stream) {
            << r.drawn.refused << ',' << r.settled << ',' << r.settled_centre << ',' << r.settled_scale << ','
            << r.settled_orientation << ',' << (r.left_image ? 1 : 0) << ',' << r.centre_rms << ',' << r.scale_rms << ','
            << r.orientation_rms << ',' << r.moving_share << ',' << r.reversals << ',' << r.max_commanded_lateral_speed
-           << ',' << r.max_lateral_speed << ',' << r.max_lateral_offset << ',' << name(r.final_state) << ',' << r.stopped
-           << ',' << r.holds << ',' << r.turned << ',' << r.inserted << ',' << r.evidence << ',' << r.unconfirmed
-           << '\n';
+           << ',' << r.max_lateral_speed << ',' << r.max_lateral_offset << ',' << name(r.final_state) << ','
+           << r.stopped << ',' << r.holds << ',' << r.turned << ',' << r.inserted << ',' << r.evidence << ','
+           << r.unconfirmed << '\n';
   }
 }
 

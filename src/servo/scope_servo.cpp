@@ -188,8 +188,8 @@ scope::Velocity ScopeServo::command(const ServoInput& input, const ServoLimits& 
   scope::Velocity centring = scaled(wanted.centring, gain), aside;
   std::swap(centring.spin, aside.spin);
   std::swap(centring.insertion, aside.insertion);
-  scope::Velocity velocity = limiter_.apply({scaled(follow, limits.scale), scaled(wanted.turning, gain), centring, aside},
-                                          input.period, limits.scale);
+  scope::Velocity velocity = limiter_.apply(
+      {scaled(follow, limits.scale), scaled(wanted.turning, gain), centring, aside}, input.period, limits.scale);
   velocity.insertion = std::clamp(velocity.insertion, -limits.insertion, limits.insertion);
   velocity.spin = std::clamp(velocity.spin, -limits.spin, limits.spin);
   if (!limits.insertion_allowed) velocity.insertion = std::min(0.0, velocity.insertion);
