@@ -16,6 +16,7 @@ int main(int argc, char** argv) {
   const ros::NodeHandle private_node("~");
   ParameterReader reader(parametersOf(private_node), private_node.getNamespace());
   const DemoConfig config = demoConfig(reader);
+  reader.refuseUnknownOfNode();
   if (!reader.errors().empty()) {
     ROS_FATAL("%s", reader.report().c_str());
     return EXIT_FAILURE;

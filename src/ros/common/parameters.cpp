@@ -3,7 +3,9 @@
 #include <ros/node_handle.h>
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <sstream>
 #include <stdexcept>
 
@@ -68,6 +70,31 @@ XmlRpcValue fromYaml(const YAML::Node& node) {
     value = fromScalar(node);
   }
   return value;
+}
+
+// Insertions, deletions and replacements that make one of the other (Levenshtein).
+std::size_t editDistance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+// image_transport's plugins keep theirs in <topic>/<plugin>/, and which of them to load beside that.
+bool isOfImageTransport(const XmlRpcValue& group) {
+  if (group.getType() != XmlRpcValue::TypeStruct) return false;
+  for (const char* name : {"compressed", "compressedDepth", "theora", "zstd", "disable_pub_plugins"}) {
+    if (group.hasMember(name)) return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -223,6 +250,43 @@ void ParameterReader::require(const std::string& path, const std::string& what) 
   if (!has(path)) errors_.push_back(full(path) + " is not set, expected " + what);
 }
 
+std::string ParameterReader::suggestion(const std::string& path) const {
+  std::string nearest;
+  std::size_t least = path.size();
+  for (const std::string& known : read_) {
+    const std::size_t distance = editDistance(path, known);
+    if (distance >= least) continue;
+    least = distance;
+    nearest = known;
+  }
+  // A slip of the finger or two, or the right name in the wrong group.
+  const auto name = [](const std::string& whole) { return whole.substr(whole.rfind('/') + 1); };
+  if (least > 2 && name(nearest) != name(path)) {
+    nearest.clear();
+    for (const std::string& known : read_) {
+      if (name(known) == name(path)) nearest = known;
+    }
+  }
+  return nearest.empty() ? "" : "; is " + full(nearest) + " meant?";
+}
+
+void ParameterReader::refuseUnknownOfNode() {
+  if (!tree_.valid()) return;
+  for (const auto& member : tree_) {
+    if (member.first == "diagnostic_period" || isOfImageTransport(member.second)) continue;
+    if (member.second.getType() == XmlRpcValue::TypeStruct) {
+      refuseUnknown(member.first);
+    } else if (read_.count(member.first) + said_.count(member.first) == 0) {
+      refuse(member.first);
+    }
+  }
+}
+
+void ParameterReader::refuse(const std::string& path) {
+  errors_.push_back(full(path) + " is no parameter of this program" + suggestion(path));
+  said_.insert(path);  // once, also when a larger group is asked about later
+}
+
 void ParameterReader::refuseUnknown(const std::string& group) {
   const XmlRpcValue* value = find(group);
   if (value == nullptr || value->getType() != XmlRpcValue::TypeStruct) return;
@@ -230,9 +294,8 @@ void ParameterReader::refuseUnknown(const std::string& group) {
     const std::string path = group.empty() ? member.first : group + "/" + member.first;
     if (member.second.getType() == XmlRpcValue::TypeStruct) {
       refuseUnknown(path);
-    } else if (read_.count(path) == 0) {
-      errors_.push_back(full(path) + " is no parameter of this program");
-      read_.insert(path);  // said once, also when a larger group is asked about later
+    } else if (read_.count(path) + said_.count(path) == 0) {
+      refuse(path);
     }
   }
 }

@@ -41,9 +41,12 @@ class ParameterReader {
   bool has(const std::string& path) const;
   // Adds an error when the parameter is absent.
   void require(const std::string& path, const std::string& what);
-  // Adds an error for each parameter under `group` that nobody has read: a typing error in a file must not go
-  // unnoticed. An empty `group` stands for the root.
+  // Adds an error for each parameter under `group` that nobody has read, with the nearest name that was: a typing error
+  // in a file must not go unnoticed. An empty `group` stands for the root.
   void refuseUnknown(const std::string& group);
+  // The same for all that a node has in its namespace, but for what libraries read there: diagnostic_updater's period,
+  // and what image_transport's plugins keep under the names of topics.
+  void refuseUnknownOfNode();
   void addError(const std::string& error) { errors_.push_back(error); }
   void addErrors(const std::vector<std::string>& errors) {
     errors_.insert(errors_.end(), errors.begin(), errors.end());
@@ -54,9 +57,12 @@ class ParameterReader {
   std::string report() const;
 
  private:
+  // "; is X meant?" of the name that was read and is most like it, or nothing.
+  std::string suggestion(const std::string& path) const;
   const XmlRpc::XmlRpcValue* find(const std::string& path) const;
   // The value at `path`, marked as read; null when absent.
   const XmlRpc::XmlRpcValue* take(const std::string& path);
+  void refuse(const std::string& path);
   void wrongType(const std::string& path, const XmlRpc::XmlRpcValue& value, const std::string& expected);
   std::string full(const std::string& path) const { return name_ + "/" + path; }
   bool number(const XmlRpc::XmlRpcValue& value, double& result) const;
@@ -64,6 +70,7 @@ class ParameterReader {
   XmlRpc::XmlRpcValue tree_;
   std::string name_;
   std::set<std::string> read_;
+  std::set<std::string> said_;  // of the unknown ones
   std::vector<std::string> errors_;
 };
 

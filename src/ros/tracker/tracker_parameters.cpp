@@ -172,6 +172,7 @@ TrackerParameters readTrackerParameters(const XmlRpc::XmlRpcValue& tree, const s
   }
   parameters.image_kind = rectify ? ImageKind::kToRectify : rectified ? ImageKind::kRectified : ImageKind::kRaw;
   reader.read("select_timeout", parameters.select_timeout, 0.1, 60.0);
+  reader.refuseUnknownOfNode();
   if (reader.errors().empty()) reader.addErrors(tracking::validate(parameters.tracking));
   errors.insert(errors.end(), reader.errors().begin(), reader.errors().end());
   return parameters;

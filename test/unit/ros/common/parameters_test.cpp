@@ -195,6 +195,31 @@ TEST(ParameterReader, RefusesWhatNobodyReads) {
   EXPECT_TRUE(empty.errors().empty());
 }
 
+TEST(ParameterReader, NamesWhatAMisspeltParameterIsMostLike) {
+  ParameterReader reader(tree("{limits: {velocty: 1.0}, velocity: 2.0, colour_of_the_cart: red}"), "/node");
+  double value = 0.0;
+  reader.read("limits/velocity", value, 0.0, 9.0);
+  reader.read("limits/acceleration", value, 0.0, 9.0);
+  reader.refuseUnknown("");
+  EXPECT_EQ(
+      reader.errors(),
+      (std::vector<std::string>{"/node/colour_of_the_cart is no parameter of this program",
+                                "/node/limits/velocty is no parameter of this program; is /node/limits/velocity meant?",
+                                "/node/velocity is no parameter of this program; is /node/limits/velocity meant?"}));
+}
+
+TEST(ParameterReader, LeavesToLibrariesWhatIsTheirsInTheNamespaceOfANode) {
+  ParameterReader reader(tree("{diagnostic_period: 0.5, overlay: {compressed: {format: png, jpeg_quality: 80}}, "
+                              "rte: 5, group: {}, overly: {wrong: 1}}"),
+                         "/node");
+  double value = 0.0;
+  reader.read("rate", value, 0.0, 9.0);
+  reader.refuseUnknownOfNode();
+  EXPECT_EQ(reader.errors(),
+            (std::vector<std::string>{"/node/overly/wrong is no parameter of this program",
+                                      "/node/rte is no parameter of this program; is /node/rate meant?"}));
+}
+
 TEST(ParameterReader, AValueInPlaceOfAGroupHidesNothingElse) {
   ParameterReader reader(tree("{group: 5}"), "/node");
   double value = 1.0;
