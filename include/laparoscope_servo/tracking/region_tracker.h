@@ -77,7 +77,7 @@ class RegionTracker {
   // the tracker then goes on as if the image had not come. `motion`: where something else than the images, a robot,
   // says that the tissue has gone: takes pixels of the last image in which the state was TRACKING to pixels of this
   // one, any scale. It gives a place to start from, beside which only what remains is expected to go on; one that is no
-  // homography, or that leads nowhere, does no harm. Asks for no memory while it tracks, but for a view that it stores
+  // homography, or that leads nowhere, does no harm. Does not allocate while tracking, but for a view that it stores
   // now and then. The result is the tracker's own: it lasts until the next call of select(), track() or reset(), or
   // until the tracker is moved from.
   const TrackResult& track(const cv::Mat& image, double stamp,
