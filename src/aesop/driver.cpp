@@ -111,7 +111,12 @@ void Driver::receive(const std::uint8_t* data, std::size_t size, double now) {
   if (tap_ != nullptr && size > 0) record(WireEvent::kReceived, now, Bytes(data, data + size));
   session_.receive(data, size, now);
   const Link& link = session_.link();
-  if (!link.isUp()) delay_.lost();
+  // It may have been lost and found within this read.
+  if (!link.isUp() || link.statistics().sessions != link_sessions_) {
+    link_sessions_ = link.statistics().sessions;
+    delay_.lost();
+    monitor_.reset();
+  }
   if (link.statistics().received == statuses_) return;
   statuses_ = link.statistics().received;
   if (link.isUp()) delay_.received(*link.status(), now);

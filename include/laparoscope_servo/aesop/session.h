@@ -71,6 +71,7 @@ class Session {
   void askForDisable();
   void watch(double now);
   void take(const Status& status);
+  Bytes identify(double now);
   Bytes request(bool move, const std::array<double, kDrivenJoints>& speed, double now);
   Message next(bool move, const std::array<double, kDrivenJoints>& speed);
 

@@ -136,11 +136,10 @@ void Session::askForDisable() {
 }
 
 void Session::receive(const std::uint8_t* data, std::size_t size, double now) {
-  const bool was_up = link_.isUp();
-  for (const Status& status : link_.receive(data, size, now)) take(status);
-  if (was_up && !link_.isUp()) drop(link_.reason());
-  // The identification has disabled the controller; the numbers go on while nobody answers, for hours perhaps.
-  if (!was_up && link_.isUp()) disable_sequence_ = link_.sequence();
+  for (const LinkEvent& event : link_.receive(data, size, now)) {
+    if (const auto* status = std::get_if<Status>(&event)) take(*status);
+    if (const auto* lost = std::get_if<LinkLost>(&event)) drop(lost->reason);
+  }
 }
 
 void Session::take(const Status& status) {
@@ -198,7 +197,7 @@ Message Session::next(bool move, const std::array<double, kDrivenJoints>& speed)
 
 Bytes Session::transmit(const std::array<double, kDrivenJoints>& speed, double now) {
   watch(now);
-  if (!link_.isUp()) return link_.identify(now);
+  if (!link_.isUp()) return identify(now);
   if (!link_.status()) return link_.due(now) ? link_.send(Poll(), now) : Bytes();
   const bool sane = std::all_of(speed.begin(), speed.end(), [](double v) { return std::abs(v) <= kLargestNumber; });
   const bool zero = std::all_of(speed.begin(), speed.end(), [](double v) { return v == 0.0; });
@@ -214,6 +213,14 @@ Bytes Session::transmit(const std::array<double, kDrivenJoints>& speed, double n
     refusal_ = std::string("the wire format cannot carry it: ") + error.what();
     return request(false, speed, now);
   }
+}
+
+// An Identify disables the controller: it is a Disable, too. Their numbers go on while nobody answers, for hours
+// perhaps, until that of the Disable looks as if it were still to come.
+Bytes Session::identify(double now) {
+  Bytes bytes = link_.identify(now);
+  if (!bytes.empty()) disable_sequence_ = link_.sequence();
+  return bytes;
 }
 
 Bytes Session::request(bool move, const std::array<double, kDrivenJoints>& speed, double now) {

@@ -200,6 +200,36 @@ TEST_F(SessionTest, aRestartedControllerIsNotEnabledAgain) {
   EXPECT_TRUE(sends<Identify>(kMove));
 }
 
+// Its identity may come with the same bytes: the answer to an Identify that the line has held back or doubled.
+TEST_F(SessionTest, aRestartWithinOneReadEndsTheEnable) {
+  for (const bool moving : {false, true}) {
+    controller_.status = FakeController().status;
+    controller_.status.echo = session_.link().sequence();
+    controller_.status.time = 50.0;
+    session_.closed("a test");
+    connect();
+    enable();
+    ASSERT_TRUE(sends<Velocity>(kMove));
+    controller_.status.time = 0.0;
+    controller_.status.moving = moving;
+    Bytes read = controller_.say();
+    for (const Bytes& more : {controller_.identity(), controller_.say()}) {
+      read.insert(read.end(), more.begin(), more.end());
+    }
+    session_.receive(read.data(), read.size(), now_);
+    ASSERT_TRUE(session_.link().isUp());
+    EXPECT_EQ(mode(), OperatingMode::kDisabled);
+    EXPECT_TRUE(session_.stopped());
+    EXPECT_NE(session_.state().reason.find("restarted"), std::string::npos) << session_.state().reason;
+    for (int k = 0; k < 5; ++k) EXPECT_TRUE(sends<Disable>(kMove)) << "it still says ENABLED";
+    controller_.status.state = RobotState::kDisabled;
+    controller_.status.moving = false;
+    EXPECT_TRUE(sends<Disable>(kMove));
+    for (int k = 0; k < 5; ++k) EXPECT_TRUE(sends<Poll>(kMove));
+    EXPECT_EQ(mode(), OperatingMode::kDisabled);
+  }
+}
+
 TEST_F(SessionTest, anArmThatIsNotHomedIsNotEnabled) {
   controller_.status.homed = false;
   connect();
