@@ -230,6 +230,36 @@ TEST_F(SessionTest, aRestartWithinOneReadEndsTheEnable) {
   }
 }
 
+// Some other fault is another reason, also where its words begin those of the one before.
+TEST_F(SessionTest, theReasonIsTheFaultThatThereIs) {
+  connect();
+  controller_.status.state = RobotState::kFault;
+  controller_.status.faults = kFaultEmergencyStop | kFaultMotor;
+  exchange(kStand);
+  EXPECT_EQ(session_.state().reason, "fault: " + describeFaults(kFaultEmergencyStop | kFaultMotor));
+  controller_.status.faults = kFaultEmergencyStop;
+  exchange(kStand);
+  EXPECT_EQ(session_.state().reason, "fault: " + describeFaults(kFaultEmergencyStop));
+  controller_.status.state = RobotState::kDisabled;
+  controller_.status.faults = 0;
+  exchange(kStand);
+  EXPECT_EQ(session_.state().reason, "the fault has gone by itself");
+}
+
+// What somebody gives as a reason has no meaning but for who reads it.
+TEST_F(SessionTest, wordsDecideNothing) {
+  connect();
+  enable();
+  EXPECT_EQ(session_.stop(now_, "the controller does not confirm the disable"), "");
+  EXPECT_FALSE(session_.isUnconfirmed());
+  controller_.status.state = RobotState::kDisabled;
+  exchange(kStand);
+  EXPECT_EQ(session_.state().reason, "the controller does not confirm the disable");
+  EXPECT_EQ(session_.stop(now_, "fault: /node"), "");
+  exchange(kStand);
+  EXPECT_EQ(session_.state().reason, "fault: /node");
+}
+
 TEST_F(SessionTest, anArmThatIsNotHomedIsNotEnabled) {
   controller_.status.homed = false;
   connect();
