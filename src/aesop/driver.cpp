@@ -2,7 +2,8 @@
 
 #include <cmath>
 #include <sstream>
-#include <stdexcept>
+
+#include "laparoscope_servo/validation/error_report.h"
 
 namespace laparoscope_servo::aesop {
 
@@ -13,9 +14,7 @@ void append(const std::string& group, const std::vector<std::string>& errors, st
 }
 
 const DriverConfig& checked(const DriverConfig& config) {
-  std::string text;
-  for (const std::string& error : validate(config)) text += (text.empty() ? "" : "; ") + error;
-  if (!text.empty()) throw std::invalid_argument("driver: " + text);
+  validation::throwErrors("driver", validate(config));
   return config;
 }
 
