@@ -2,7 +2,8 @@
 
 #include <cmath>
 #include <sstream>
-#include <stdexcept>
+
+#include "laparoscope_servo/validation/error_report.h"
 
 namespace laparoscope_servo::aesop {
 
@@ -13,9 +14,7 @@ void append(const std::string& group, const std::vector<std::string>& errors, st
 }
 
 const DriverConfig& checked(const DriverConfig& config) {
-  std::string text;
-  for (const std::string& error : validate(config)) text += (text.empty() ? "" : "; ") + error;
-  if (!text.empty()) throw std::invalid_argument("driver: " + text);
+  validation::throwErrors("driver", validate(config));
   return config;
 }
 
@@ -111,7 +110,12 @@ void Driver::receive(const std::uint8_t* data, std::size_t size, double now) {
   if (tap_ != nullptr && size > 0) record(WireEvent::kReceived, now, Bytes(data, data + size));
   session_.receive(data, size, now);
   const Link& link = session_.link();
-  if (!link.isUp()) delay_.lost();
+  // It may have been lost and found within this read.
+  if (!link.isUp() || link.statistics().sessions != link_sessions_) {
+    link_sessions_ = link.statistics().sessions;
+    delay_.lost();
+    monitor_.reset();
+  }
   if (link.statistics().received == statuses_) return;
   statuses_ = link.statistics().received;
   if (link.isUp()) delay_.received(*link.status(), now);

@@ -1,7 +1,8 @@
 #include "laparoscope_servo/aesop/motion_delay.h"
 
-#include <algorithm>
 #include <cmath>
+
+#include "laparoscope_servo/robust/median.h"
 
 namespace laparoscope_servo::aesop {
 
@@ -74,9 +75,7 @@ void MotionDelay::add(Samples& samples, double value) {
 std::optional<double> MotionDelay::median(const Samples& samples) {
   if (samples.empty()) return std::nullopt;
   Samples sorted = samples;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  return *middle;
+  return robust::median(sorted);
 }
 
 }  // namespace laparoscope_servo::aesop

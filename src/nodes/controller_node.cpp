@@ -1,8 +1,9 @@
 // Node `controller`: see ros/controller/controller_node.h.
 #include "ros/controller/controller_node.h"
 
-#include <ros/callback_queue.h>
 #include <ros/ros.h>
+
+#include <exception>
 
 #include "ros/common/network_exposure.h"
 #include "ros/common/stop_request.h"
@@ -10,9 +11,9 @@
 
 using namespace laparoscope_servo;
 
-int main(int argc, char** argv) {
-  const UnblockedOutput output;
-  ros::init(argc, argv, "controller", ros::init_options::NoSigintHandler);
+namespace {
+
+int run() {
   ros::NodeHandle node;
   ros::NodeHandle private_node("~");
   catchStopRequests();
@@ -27,13 +28,23 @@ int main(int argc, char** argv) {
   resolveNames(config, node);
   ControllerNode controller(node, private_node, config);
   warnOfExposure();
-  while (ros::ok() && !stopRequested() && !controller.mustEnd()) {
-    ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.05));
-  }
-  controller.stop();
+  const int status = controller.run(stopRequested);
   ros::WallDuration(0.05).sleep();  // publishing is asynchronous: the zeros have to leave before the connections close
-  const int status = controller.mustEnd() ? 1 : 0;
   limitFarewell(status);
+  return status;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const UnblockedOutput output;
+  ros::init(argc, argv, "controller", ros::init_options::NoSigintHandler);
+  int status = 1;
+  try {
+    status = run();
+  } catch (const std::exception& error) {
+    ROS_FATAL_STREAM(error.what());
+  }
   ros::shutdown();
   return status;
 }

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
+
+#include "laparoscope_servo/validation/error_report.h"
 
 #include "laparoscope_servo/servo/dead_zone.h"
 
@@ -11,9 +12,7 @@ namespace laparoscope_servo::servo {
 namespace {
 
 ControllerConfig checked(const ControllerConfig& config) {
-  std::string text;
-  for (const std::string& error : validate(config)) text += (text.empty() ? "" : "; ") + error;
-  if (!text.empty()) throw std::invalid_argument("controller: " + text);
+  validation::throwErrors("controller", validate(config));
   return config;
 }
 

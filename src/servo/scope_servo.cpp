@@ -157,22 +157,29 @@ scope::Velocity ScopeServo::command(const ServoInput& input, const ServoLimits& 
   if (!has_image_ || std::abs(input.image_time - image_time_) > kSameImage) observe(input);
   TaskError error = error_;
   scope::Velocity follow;
-  if (config_.predictor.enabled && to_target_.allFinite() && !target_.empty()) {
-    const double executed_at = input.time + delay() + 0.5 * input.period;
-    const Eigen::Vector4d then = displacement_ + history_.displacement(image_time_, executed_at, delay());
-    const TargetPrediction breath = breathing_.predict(executed_at);
-    const TargetPrediction target = target_.predict(executed_at);
-    const Eigen::Matrix4d inverse = jacobian_.inverse();
-    error = moved(error, to_target_ - (inverse * (target.place + breath.place) - then), input.scope,
-                  config_.features.desired_depth);
-    // A loop that has swung may have been driven by what it took for the target's motion, and was its own. A breath is
-    // not.
-    Features velocity = breath.velocity;
-    if (!(gainFactor() < 1.0)) velocity += target.velocity;
-    if (config_.predictor.feed_forward) follow = following(velocity);
-  } else if (config_.predictor.enabled) {  // how far it is to the target is not known, but what is under way is
-    error = moved(error, history_.displacement(image_time_, input.time + delay(), delay()), input.scope,
-                  config_.features.desired_depth);
+  if (config_.predictor.enabled) {
+    // The command is executed from `input.time + delay` on, for a period T, and is constant meanwhile. The laws are
+    // made for a velocity that changes with the error all the time: v(t) = -K e(t). Its mean over the period is its
+    // value in the middle, but for an error of order T^2; at the beginning it would be T / 2 too early. Up to there
+    // the scope goes on by the last command, which differs from this one by order T. For a single gain K: from
+    // v_k = -K (e_k + T / 2 v_k-1) and e_k+1 = e_k + T v_k, a period leaves 1 - KT + (KT)^2 / 2 of the error, and
+    // exp(-KT) would be left to second order; without the T / 2, it is 1 - KT. This holds for what the scope still
+    // does and for the target's motion alike.
+    const double middle = input.time + delay() + 0.5 * input.period;
+    const Eigen::Vector4d under_way = history_.displacement(image_time_, middle, delay());
+    Eigen::Vector4d displacement = under_way;  // where it is not known how far it is to the target: as if that stood
+    if (to_target_.allFinite() && !target_.empty()) {
+      const TargetPrediction breath = breathing_.predict(middle);
+      const TargetPrediction target = target_.predict(middle);
+      const Eigen::Matrix4d inverse = jacobian_.inverse();
+      displacement = to_target_ - (inverse * (target.place + breath.place) - (displacement_ + under_way));
+      // A loop that has swung may have been driven by what it took for the target's motion, and was its own. A breath
+      // is not.
+      Features velocity = breath.velocity;
+      if (!(gainFactor() < 1.0)) velocity += target.velocity;
+      if (config_.predictor.feed_forward) follow = following(velocity);
+    }
+    error = moved(error, displacement, input.scope, config_.features.desired_depth);
   }
   if (!follow.vector().allFinite()) return follow;
   // Half a turn away both ways are as long: the one that was begun is gone on with.

@@ -79,7 +79,8 @@ class Driver {
   CommandGuard guard_;
   Session session_;
   MotionDelay delay_;
-  std::uint64_t statuses_ = 0;  // received when the last one was looked at
+  std::uint64_t statuses_ = 0;       // received when the last one was looked at
+  std::uint64_t link_sessions_ = 0;  // the same of the link's
   MotionMonitor monitor_;
   std::array<double, kDrivenJoints> speed_{};  // of the driven joints, as commanded last
   JointMotion last_motion_;

@@ -7,6 +7,8 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <variant>
+#include <vector>
 
 #include "laparoscope_servo/aesop/codec.h"
 #include "laparoscope_servo/aesop/round_trips.h"
@@ -30,6 +32,13 @@ struct LinkStatistics {
   std::uint64_t sessions = 0;  // times that the link came up
 };
 
+// What has come with some bytes. The link may be lost and come up again within one read.
+struct LinkUp {};
+struct LinkLost {
+  std::string reason;
+};
+using LinkEvent = std::variant<LinkUp, LinkLost, Status>;
+
 class Link {
  public:
   // `driven`: bit k - 1 for each driven joint k, as the configuration has it; the controller has to agree.
@@ -37,8 +46,8 @@ class Link {
 
   void opened(double now);
   void closed(const std::string& reason);
-  // Statuses that have come with these bytes, oldest first.
-  std::vector<Status> receive(const std::uint8_t* data, std::size_t size, double now);
+  // What has happened by these bytes, oldest first; only statuses of this session.
+  std::vector<LinkEvent> receive(const std::uint8_t* data, std::size_t size, double now);
   // Loses the link when no status has come for too long. To be called before every sending.
   void watch(double now);
   // The request that (re)begins the session, when one is due; to be sent while the link is not up.

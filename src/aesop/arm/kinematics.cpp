@@ -3,7 +3,8 @@
 #include <Eigen/LU>
 #include <cmath>
 #include <sstream>
-#include <stdexcept>
+
+#include "laparoscope_servo/validation/error_report.h"
 
 namespace laparoscope_servo::aesop {
 
@@ -27,9 +28,7 @@ Eigen::Isometry3d linkTransform(const DhJoint& joint, double position) {
 }  // namespace
 
 Kinematics::Kinematics(const KinematicsConfig& config) : config_(config) {
-  std::string text;
-  for (const std::string& error : validate(config)) text += (text.empty() ? "" : "; ") + error;
-  if (!text.empty()) throw std::invalid_argument("kinematics: " + text);
+  validation::throwErrors("kinematics", validate(config));
   for (int k = 0; k < kJoints; ++k) {
     const JointRole role = config.joints[static_cast<std::size_t>(k)].role;
     if (role == JointRole::kDriven) driven_.push_back(k);

@@ -53,20 +53,22 @@ void Link::begin(const std::string& reason, double now) {
   next_ = now;
 }
 
-std::vector<Status> Link::receive(const std::uint8_t* data, std::size_t size, double now) {
-  std::vector<Status> statuses;
-  if (state_ == LinkState::kClosed) return statuses;
+std::vector<LinkEvent> Link::receive(const std::uint8_t* data, std::size_t size, double now) {
+  std::vector<LinkEvent> events;
+  if (state_ == LinkState::kClosed) return events;
   const std::uint64_t versions = codec_->statistics().other_version;
   for (const Frame& frame : codec_->push(data, size)) {
     if (const auto* identity = std::get_if<Identity>(&frame.message)) {
+      const bool was_up = isUp();
       take(*identity, now);
+      if (!was_up && isUp()) events.push_back(LinkUp());
       last_number_ = frame.sequence;
     } else if (const auto* status = std::get_if<Status>(&frame.message)) {
       countLosses(frame.sequence);
       // One from before this session tells nothing about it.
       if (!isUp()) continue;
       take(*status, now);
-      if (isUp()) statuses.push_back(*status);
+      events.push_back(isUp() ? LinkEvent(*status) : LinkLost{reason_});
     }
   }
   statistics_.decoder = codec_->statistics();
@@ -74,7 +76,7 @@ std::vector<Status> Link::receive(const std::uint8_t* data, std::size_t size, do
     reason_ = "the controller speaks version " + std::to_string(statistics_.decoder.version_heard) +
               " of the protocol, this driver " + codec_->name() + "; one of them has to be exchanged";
   }
-  return statuses;
+  return events;
 }
 
 void Link::take(const Identity& identity, double now) {

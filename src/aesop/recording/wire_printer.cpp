@@ -5,7 +5,8 @@
 #include <iomanip>
 #include <sstream>
 
-#include "laparoscope_servo/aesop/session.h"
+#include "laparoscope_servo/aesop/operating_state.h"
+#include "laparoscope_servo/robust/median.h"
 
 namespace laparoscope_servo::aesop {
 
@@ -92,12 +93,6 @@ double seconds(std::int64_t time) {
   return static_cast<double>(time) * 1e-9;
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 }  // namespace
 
 std::string describe(const Message& message) {
@@ -169,8 +164,9 @@ void WirePrinter::printSummary(std::ostream& out) const {
   line("to the controller: ", to_controller_);
   line("from it: ", to_host_);
   if (round_trips_.empty()) return;
-  out << "round trips " << round_trips_.size() << ", median " << median(round_trips_) << " s, longest "
-      << *std::max_element(round_trips_.begin(), round_trips_.end()) << " s\n";
+  std::vector<double> trips = round_trips_;
+  out << "round trips " << trips.size() << ", median " << robust::median(trips) << " s, longest "
+      << *std::max_element(trips.begin(), trips.end()) << " s\n";
 }
 
 }  // namespace laparoscope_servo::aesop

@@ -233,7 +233,10 @@ void AesopNode::publishStatus() {
   const aesop::Link& link = driver_.session().link();
   if (!link.status() || link.statistics().received == published_) return;
   published_ = link.statistics().received;
-  const ros::Time stamp = ros::Time::now();
+  const double now = steadyNow();
+  const std::optional<ros::Time> taken = status_stamp_.take(link.statusAge(now), now, ros::Time::now());
+  if (!taken) return;
+  const ros::Time& stamp = *taken;
   const aesop::Status& status = *link.status();
   const std::string& prefix = parameters_.frame_prefix;
   joint_publisher_.publish(jointState(status, stamp));

@@ -20,6 +20,7 @@
 #include "ros/aesop/aesop_diagnostics.h"
 #include "ros/aesop/aesop_parameters.h"
 #include "ros/aesop/calibration_services.h"
+#include "ros/aesop/status_stamp.h"
 #include "ros/common/external_stops.h"
 #include "ros/common/input_owner.h"
 #include "ros/common/said_lines.h"
@@ -95,6 +96,7 @@ class AesopNode {
   SaidLines stranger_lines_;
   StateReport state_report_;
   ExternalStops stops_;
+  StatusStamp status_stamp_;
   std::uint64_t published_ = 0;  // statuses received when the last one was published
   aesop::OperatingState last_state_;
   bool state_published_ = false;

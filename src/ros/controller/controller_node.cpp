@@ -2,9 +2,11 @@
 
 #include <laparoscope_servo/ControllerState.h>
 #include <laparoscope_servo/ScopeVelocity.h>
+#include <ros/callback_queue.h>
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 
 #include "ros/common/clocks.h"
 #include "ros/controller/controller_conversions.h"
@@ -45,9 +47,27 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
                                               [this](const ros::SteadyTimerEvent&) { diagnostics_.force_update(); });
 }
 
-void ControllerNode::stop() {
-  controller_.disengage("the controller ends");
-  publish(controller_.update(input()));
+int ControllerNode::run(const std::function<bool()>& stop) {
+  try {
+    while (ros::ok() && !stop() && !stops_.mustEnd()) {
+      ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.05));
+      service_errors_.rethrow();
+    }
+    controller_.disengage("the controller ends");
+    publish(controller_.update(input()));
+  } catch (const std::exception& error) {
+    fail(error.what());
+    return 1;
+  }
+  return stops_.mustEnd() ? 1 : 0;
+}
+
+// Without the controller, which may be what has failed.
+void ControllerNode::fail(const std::string& what) {
+  servo::ControllerOutput output;
+  output.state = servo::ControllerState::kFault;
+  output.reason = "the controller has failed and ends: " + what;
+  publish(output);
 }
 
 // A fault stays, it is for somebody to look at.

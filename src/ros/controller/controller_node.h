@@ -13,10 +13,12 @@
 #include <ros/ros.h>
 #include <std_srvs/SetBool.h>
 
+#include <functional>
 #include <string>
 
 #include "laparoscope_servo/servo/controller.h"
 #include "ros/common/external_stops.h"
+#include "ros/common/service_errors.h"
 #include "ros/controller/controller_inputs.h"
 #include "ros/controller/controller_parameters.h"
 #include "ros/controller/scope_pose.h"
@@ -28,15 +30,17 @@ class ControllerNode {
   // Throws std::invalid_argument when the configuration is not valid.
   ControllerNode(ros::NodeHandle node, ros::NodeHandle private_node, const ControllerNodeConfig& config);
 
-  // Disengages and publishes zeros. For the end of the process: call it while publishers are still open.
-  void stop();
-  // The ROS master is not that of the start any more: the node has to end, for nobody finds it.
-  bool mustEnd() const { return stops_.mustEnd(); }
+  // Calls all callbacks until `stop` says so, and leaves the arm with a command of zero, also when one of them throws:
+  // then the state is FAULT. Returns the exit status of the process; publishers are still open.
+  int run(const std::function<bool()>& stop);
 
  private:
+  void fail(const std::string& what);
   void onStop(const std::string& sender);
   bool onSelectTask(SelectTask::Request& request, SelectTask::Response& response);
   bool onEngage(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
+  void engage(bool on, std_srvs::SetBool::Response& response);
+  void selectTask(const std::string& task, SelectTask::Response& response);
   void onTick();
   void checkTime();
   // Ends what is engaged when something outside of ROS, or the end of its master, stops the arm.
@@ -50,6 +54,7 @@ class ControllerNode {
   ControllerNodeConfig config_;
   servo::Controller controller_;
   ExternalStops stops_;
+  ServiceErrors service_errors_;
   ScopePose scope_pose_;
   ros::Time last_now_;
   std::string clock_jump_;  // since the last step, in words

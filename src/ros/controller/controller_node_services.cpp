@@ -6,8 +6,18 @@
 namespace laparoscope_servo {
 
 bool ControllerNode::onEngage(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response) {
+  service_errors_.guard(response, [&] { engage(request.data, response); });
+  return true;
+}
+
+bool ControllerNode::onSelectTask(SelectTask::Request& request, SelectTask::Response& response) {
+  service_errors_.guard(response, [&] { selectTask(request.task, response); });
+  return true;
+}
+
+void ControllerNode::engage(bool on, std_srvs::SetBool::Response& response) {
   checkTime();
-  if (!request.data) {
+  if (!on) {
     controller_.disengage("not engaged");
     response.success = true;
     response.message = "disengaged";
@@ -22,21 +32,19 @@ bool ControllerNode::onEngage(std_srvs::SetBool::Request& request, std_srvs::Set
     response.message = problem.empty() ? "engaged" : "not engaged: " + problem;
   }
   onTick();
-  return true;
 }
 
-bool ControllerNode::onSelectTask(SelectTask::Request& request, SelectTask::Response& response) {
+void ControllerNode::selectTask(const std::string& task, SelectTask::Response& response) {
   checkTime();
-  response.success = request.task == SelectTask::Request::HOLD_VIEW || request.task == SelectTask::Request::MANUAL;
+  response.success = task == SelectTask::Request::HOLD_VIEW || task == SelectTask::Request::MANUAL;
   if (!response.success) {
     response.message =
-        "no task '" + request.task + "', expected HOLD_VIEW or MANUAL; " + taskName(controller_.task()) + " goes on";
-    return true;
+        "no task '" + task + "', expected HOLD_VIEW or MANUAL; " + taskName(controller_.task()) + " goes on";
+    return;
   }
-  controller_.select(request.task == SelectTask::Request::MANUAL ? servo::Task::kManual : servo::Task::kHoldView);
+  controller_.select(task == SelectTask::Request::MANUAL ? servo::Task::kManual : servo::Task::kHoldView);
   onTick();
-  response.message = request.task + ", " + toMessage(last_output_).state + ": " + last_output_.reason;
-  return true;
+  response.message = task + ", " + toMessage(last_output_).state + ": " + last_output_.reason;
 }
 
 }  // namespace laparoscope_servo

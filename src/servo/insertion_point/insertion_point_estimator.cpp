@@ -3,7 +3,9 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
+
+#include "laparoscope_servo/robust/median.h"
+#include "laparoscope_servo/validation/error_report.h"
 
 namespace laparoscope_servo::servo {
 
@@ -13,18 +15,11 @@ constexpr double kTukey = 4.6851;
 constexpr double kRayleighMedian = 1.17741;  // of a distance in the plane, whose components have unit variance
 
 void throwUnlessValid(const InsertionPointConfig& config, const std::optional<InsertionPointPrior>& prior) {
-  std::string text;
-  for (const std::string& error : validate(config)) text += (text.empty() ? "" : "; ") + error;
+  std::vector<std::string> errors = validate(config);
   if (prior && !(prior->point.allFinite() && prior->stddev > 0.0 && std::isfinite(prior->stddev))) {
-    text += (text.empty() ? "" : "; ") + std::string("prior: expected a finite point and a positive finite stddev");
+    errors.push_back("prior: expected a finite point and a positive finite stddev");
   }
-  if (!text.empty()) throw std::invalid_argument("insertion point: " + text);
-}
-
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  validation::throwErrors("insertion point", errors);
 }
 
 double distanceFromLine(const Eigen::Vector3d& point, const Shaft& line) {
@@ -111,7 +106,7 @@ double InsertionPointEstimator::measureSamples() {
                       config_.drift * config_.drift * (time_ - sample.time);
     scratch_.push_back(sample.distance / std::sqrt(sample.variance));
   }
-  return std::max(1.0, median(scratch_) / kRayleighMedian);
+  return std::max(1.0, robust::median(scratch_) / kRayleighMedian);
 }
 
 void InsertionPointEstimator::solve(double scale) {
@@ -174,7 +169,7 @@ void InsertionPointEstimator::updateResidual(const Sample& sample) {
   if (!estimate_.valid) return;
   scratch_.clear();
   for (const Sample& one : recent_) scratch_.push_back(distanceFromLine(estimate_.point, one.shaft));
-  residual_ = median(scratch_) * std::sqrt(2.0) / kRayleighMedian;
+  residual_ = robust::median(scratch_) * std::sqrt(2.0) / kRayleighMedian;
   if (recent_.size() < size) return;
 
   const double keep = 1.0 - config_.residual_hysteresis;

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
-#include <stdexcept>
 
+#include "laparoscope_servo/validation/error_report.h"
 #include "laparoscope_servo/validation/range_checker.h"
 
 namespace laparoscope_servo::servo {
@@ -15,9 +15,7 @@ namespace {
 using Eigen3d = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>;  // eigenvalues ascending
 
 const InsertionPointFitConfig& checked(const InsertionPointFitConfig& config) {
-  std::string text;
-  for (const std::string& error : validate(config)) text += (text.empty() ? "" : "; ") + error;
-  if (!text.empty()) throw std::invalid_argument("insertion point fit: " + text);
+  validation::throwErrors("insertion point fit", validate(config));
   return config;
 }
 

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <string>
+
+#include "laparoscope_servo/validation/error_report.h"
 
 namespace laparoscope_servo::servo {
 
@@ -12,16 +13,10 @@ namespace {
 constexpr double kGrid = 0.005;      // s
 constexpr double kCorrelated = 5.0;  // reports in a row whose errors count for one
 
-void throwUnlessValid(const DelayConfig& config) {
-  std::string text;
-  for (const std::string& error : validate(config)) text += (text.empty() ? "" : "; ") + error;
-  if (!text.empty()) throw std::invalid_argument("delay: " + text);
-}
-
 }  // namespace
 
 DelayEstimator::DelayEstimator(const DelayConfig& config) : config_(config) {
-  throwUnlessValid(config);
+  validation::throwErrors("delay", validate(config));
   reset(true);
 }
 

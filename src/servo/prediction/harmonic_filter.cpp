@@ -5,6 +5,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "laparoscope_servo/validation/error_report.h"
+
 namespace laparoscope_servo::servo {
 
 namespace {
@@ -22,12 +24,11 @@ constexpr double kSmallPart = 0.3;
 constexpr double kShortMemory = 1.0;  // s
 
 HarmonicFilterConfig checked(const HarmonicFilterConfig& config, int channels) {
-  std::string text;
-  for (const std::string& error : validate(config)) text += (text.empty() ? "" : "; ") + error;
+  std::vector<std::string> errors = validate(config);
   if (channels < 1 || channels > kMaxChannels) {
-    text += (text.empty() ? "" : "; ") + std::string("channels = ") + std::to_string(channels) + ", expected 1 to 4";
+    errors.push_back("channels = " + std::to_string(channels) + ", expected 1 to 4");
   }
-  if (!text.empty()) throw std::invalid_argument("harmonic filter: " + text);
+  validation::throwErrors("harmonic filter", errors);
   return config;
 }
 

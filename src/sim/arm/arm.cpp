@@ -5,6 +5,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "laparoscope_servo/validation/error_report.h"
 #include "laparoscope_servo/validation/range_checker.h"
 
 namespace laparoscope_servo::sim {
@@ -40,9 +41,7 @@ std::vector<std::string> validate(const ArmConfig& config) {
 }
 
 Arm::Arm(const aesop::Kinematics& kinematics, const ArmConfig& config) : kinematics_(kinematics), config_(config) {
-  std::string text;
-  for (const std::string& error : validate(config)) text += (text.empty() ? "" : "; ") + error;
-  if (!text.empty()) throw std::invalid_argument("emulated arm: " + text);
+  validation::throwErrors("emulated arm", validate(config));
   const aesop::WristSolution wrist = kinematics_.solveWrist(config.start, config.insertion_point);
   if (!wrist.ok) throw std::invalid_argument("emulated arm: start: " + wrist.reason);
   const std::string error = kinematics_.error(wrist.q);

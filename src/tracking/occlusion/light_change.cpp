@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "laparoscope_servo/robust/median.h"
 #include "tracking/occlusion/colour_gate.h"
 
 namespace laparoscope_servo::tracking {
@@ -42,9 +43,7 @@ void LightChange::collect(const image::ColourPatch& patch, int area, std::vector
 float LightChange::median(const std::vector<Pixel>& pixels, float Pixel::*channel) {
   channel_.clear();
   for (const Pixel& pixel : pixels) channel_.push_back(pixel.*channel);
-  const auto middle = channel_.begin() + static_cast<std::ptrdiff_t>(channel_.size() / 2);
-  std::nth_element(channel_.begin(), middle, channel_.end());
-  return *middle;
+  return robust::median(channel_);
 }
 
 void LightChange::fill(const std::vector<Pixel>& pixels, float gain, std::vector<float>& histogram) const {

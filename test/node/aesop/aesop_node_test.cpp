@@ -41,6 +41,30 @@ TEST(AesopNode, publishesJointsPoseAndFrames) {
   EXPECT_NEAR(ahead.rotation.w, 1.0, 1e-9);
 }
 
+// Not when it is published: the line holds every byte back, and what has come is as old as that.
+TEST(AesopNode, stampsAreOfWhenTheArmWasSo) {
+  AesopBench bench;
+  ASSERT_TRUE(bench.waitFor([&] { return bench.isUp(); }));
+  tf2_ros::Buffer buffer;
+  const tf2_ros::TransformListener listener(buffer);
+  constexpr double kHeldBack = 0.1;  // s
+  bench.truth().fault("delay", kHeldBack);
+  const auto next = [&] {
+    bench.joints_.reset();
+    bench.twist_.reset();
+    return bench.waitFor([&] { return bench.joints_ && bench.twist_; });
+  };
+  for (int k = 0; k < 20; ++k) ASSERT_TRUE(next());  // what was under way before
+  for (int k = 0; k < 10; ++k) {
+    ASSERT_TRUE(next());
+    const double now = ros::Time::now().toSec();
+    EXPECT_GE(now - bench.joints_->header.stamp.toSec(), kHeldBack);
+    EXPECT_GE(now - bench.twist_->header.stamp.toSec(), kHeldBack);
+    const auto tf = buffer.lookupTransform("aesop_base", "end_effector", ros::Time(0));
+    EXPECT_GE(ros::Time::now().toSec() - tf.header.stamp.toSec(), kHeldBack);
+  }
+}
+
 TEST(AesopNode, startsDisabledAndFollowsCommandsOnceEnabled) {
   AesopBench bench;
   EXPECT_TRUE(bench.stateIs("DISABLED"));

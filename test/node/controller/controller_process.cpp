@@ -1,23 +1,26 @@
 // The controller as a process: how it starts, with parameters good and bad, and how it ends.
 #include <signal.h>
+#include <std_msgs/Empty.h>
 #include <sys/wait.h>
 #include <tf2_ros/static_transform_broadcaster.h>
 #include <unistd.h>
 
 #include <cstdio>
+#include <stdexcept>
 
 #include "fake_cart.h"
+#include "ros/controller/controller_node.h"
 
 namespace laparoscope_servo {
 namespace {
 
-// `rosrun laparoscope_servo controller ARGUMENTS`, which replaces itself by the node.
+// `rosrun laparoscope_servo controller ARGUMENTS`, which replaces itself by the node, or another program.
 class Process {
  public:
-  explicit Process(const std::vector<std::string>& arguments) {
-    std::vector<std::string> words{"rosrun", "laparoscope_servo", "controller",
-                                   "_owners/task_error:=controller_process",
-                                   "_owners/operating_state:=controller_process"};
+  explicit Process(const std::vector<std::string>& arguments,
+                   std::vector<std::string> words = {"rosrun", "laparoscope_servo", "controller"}) {
+    words.insert(words.end(),
+                 {"_owners/task_error:=controller_process", "_owners/operating_state:=controller_process"});
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char*> argv;
     for (std::string& word : words) argv.push_back(&word[0]);
@@ -87,6 +90,19 @@ TEST(ControllerProcess, StartsWithoutFurtherParameters) {
   EXPECT_TRUE(cart.engageWhenReady());
 }
 
+// Sent before the process ended, handled here a moment later.
+bool endsWithZero(FakeCart& cart) {
+  bool zero = false;
+  waitFor(
+      [&] {
+        const std::vector<ScopeVelocity> commands = cart.takeCommands();
+        if (!commands.empty()) zero = isZero(commands.back());
+        return zero;
+      },
+      1.0);
+  return zero;
+}
+
 class Ending : public ::testing::TestWithParam<int> {};
 
 TEST_P(Ending, LastCommandIsZero) {
@@ -102,19 +118,27 @@ TEST_P(Ending, LastCommandIsZero) {
     process.signal(GetParam());
   }
   EXPECT_EQ(process.wait(), 0);
-  // Sent before the process ended, handled here a moment later.
-  bool zero = false;
-  waitFor(
-      [&] {
-        const std::vector<ScopeVelocity> commands = cart.takeCommands();
-        if (!commands.empty()) zero = isZero(commands.back());
-        return zero;
-      },
-      1.0);
-  EXPECT_TRUE(zero);
+  EXPECT_TRUE(endsWithZero(cart));
 }
 
 INSTANTIATE_TEST_SUITE_P(ByEachWay, Ending, ::testing::Values(SIGINT, SIGTERM, 0 /* rosnode kill */));
+
+TEST(ControllerProcess, AnExceptionSendsZeroAndEnds) {
+  Process process({"__name:=throwing", "servo_command:=throwing/servo_command", "_owners/tf:=controller_process"},
+                  {"/proc/self/exe", "throwing_node"});
+  FakeCart cart("/throwing", "/throwing/servo_command");
+  ASSERT_TRUE(cart.waitForController());
+  ASSERT_TRUE(cart.engageWhenReady());
+  ros::NodeHandle node;
+  ros::Publisher trigger = node.advertise<std_msgs::Empty>("throw", 1);
+  ASSERT_TRUE(waitFor([&] { return trigger.getNumSubscribers() > 0; }));
+  ASSERT_TRUE(waitFor([&] { return cart.moves(); }));
+  trigger.publish(std_msgs::Empty());
+  EXPECT_EQ(process.wait(), 1);
+  EXPECT_TRUE(endsWithZero(cart));
+  EXPECT_TRUE(cart.waitForState(ControllerState::FAULT));
+  EXPECT_NE(cart.state().reason.find("a fault in the program"), std::string::npos) << cart.state().reason;
+}
 
 // A machine that stood still, a debugger: nobody knows what the arm has done in between.
 TEST(ControllerProcess, APauseOfTheProcessIsAFault) {
@@ -135,6 +159,23 @@ TEST(ControllerProcess, APauseOfTheProcessIsAFault) {
   cart.engage(false, success);
   EXPECT_TRUE(cart.engageWhenReady());
   EXPECT_TRUE(waitFor([&] { return cart.moves(); }));
+}
+
+void fail(const std_msgs::Empty::ConstPtr&) {
+  throw std::runtime_error("a fault in the program");
+}
+
+// The controller with a fault in it.
+int runThrowingNode() {
+  ros::NodeHandle node, private_node("~");
+  const ros::Subscriber subscriber = node.subscribe<std_msgs::Empty>("throw", 1, &fail);
+  ParameterReader reader(parametersOf(private_node), private_node.getNamespace());
+  ControllerNodeConfig config = controllerNodeConfig(reader);
+  resolveNames(config, node);
+  ControllerNode controller(node, private_node, config);
+  const int status = controller.run([] { return false; });
+  ros::WallDuration(0.2).sleep();  // for what was published to leave
+  return status;
 }
 
 TEST(ControllerProcess, NamesAFrameThatDoesNotExist) {
@@ -179,6 +220,10 @@ TEST(ControllerProcess, RefusesAStaticDepth) {
 }  // namespace laparoscope_servo
 
 int main(int argc, char** argv) {
+  if (argc > 1 && std::string(argv[1]) == "throwing_node") {
+    ros::init(argc, argv, "controller", ros::init_options::NoSigintHandler);
+    return laparoscope_servo::runThrowingNode();
+  }
   testing::InitGoogleTest(&argc, argv);
   ros::init(argc, argv, "controller_process");
   ros::NodeHandle node;  // keeps ROS up between the tests

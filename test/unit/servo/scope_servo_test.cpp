@@ -4,7 +4,9 @@
 
 #include <cmath>
 
+#include "laparoscope_servo/servo/paper_law.h"
 #include "scope_loop.h"
+#include "servo/task/scope_displacement.h"
 
 namespace laparoscope_servo::servo {
 namespace {
@@ -206,6 +208,38 @@ TEST(ScopeServo, AnotherRegionStartsFromRest) {
   input.error.m_star.x() = 0.25;
   const double limit = 0.02 * Limits().acceleration.pan + DeadZoneConfig().width.pan;
   EXPECT_LE(std::abs(servo.command(input, ServoLimits()).pan), limit * (1.0 + 1e-9));
+}
+
+// Near the edge of the view the way to the target is not found, but the scope's own motion counts as it does elsewhere:
+// to the middle of the period in which the command is executed.
+TEST(ScopeServo, KnowsWhatIsUnderWayWhereTheTargetIsNotPredicted) {
+  ControllerConfig config = withoutDeadZone();
+  config.law = LawKind::kPaper;
+  config.predictor.measure_delay = false;
+  config.limits.velocity = config.limits.acceleration = {1e4, 1e4, 1e4, 1e4};
+  const double period = 0.1;
+  ScopeServo servo{config};
+  const scope::Velocity driven{0.2, 0.1, 0.3, 0.0};
+  ServoInput input;
+  input.period = period;
+  input.scope = straight();
+  for (int k = 0; k < 10; ++k) {
+    input.time = period * k;
+    ASSERT_EQ(servo.drive(input, driven).vector(), driven.vector());
+  }
+  input.time = input.image_time = period * 10;
+  input.error.x = 20.0;
+  input.error.e_v = {20.0, 0.0, 0.0};
+  ASSERT_FALSE(displacementToTarget(input.error, input.scope, config.features.desired_depth).allFinite());
+  const Eigen::Vector4d under_way = (config.predictor.delay + 0.5 * period) * driven.vector();
+  const Eigen::Vector4d expected =
+      PaperLaw(config.gains)
+          .velocity(moved(input.error, under_way, input.scope, config.features.desired_depth), input.scope)
+          .sum()
+          .vector();
+  const Eigen::Vector4d command = servo.command(input, ServoLimits()).vector();
+  EXPECT_TRUE(command.head<3>().isApprox(expected.head<3>(), 1e-9))
+      << command.transpose() << ", not " << expected.transpose();
 }
 
 TEST(ScopeServo, WhatIsNotFiniteComesOutSo) {

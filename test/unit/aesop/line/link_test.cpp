@@ -10,7 +10,11 @@ namespace laparoscope_servo::aesop {
 namespace {
 
 std::vector<Status> receive(Link& link, const Bytes& bytes, double now) {
-  return link.receive(bytes.data(), bytes.size(), now);
+  std::vector<Status> statuses;
+  for (const LinkEvent& event : link.receive(bytes.data(), bytes.size(), now)) {
+    if (const auto* status = std::get_if<Status>(&event)) statuses.push_back(*status);
+  }
+  return statuses;
 }
 
 class LinkTest : public ::testing::Test {
@@ -134,6 +138,23 @@ TEST_F(LinkTest, restartOfTheControllerBeginsANewSession) {
   EXPECT_TRUE(receive(link_, controller_.say(), 0.2).empty());
   EXPECT_FALSE(link_.isUp());
   EXPECT_NE(link_.reason().find("restarted"), std::string::npos);
+}
+
+TEST_F(LinkTest, aLossWithinOneReadIsTold) {
+  bringUp(0.0);
+  controller_.status.time = 100.0;
+  Bytes read = controller_.say();
+  controller_.status.time = 1.0;
+  for (const Bytes& more : {controller_.say(), controller_.identity(), controller_.say()}) {
+    read.insert(read.end(), more.begin(), more.end());
+  }
+  const std::vector<LinkEvent> events = link_.receive(read.data(), read.size(), 0.2);
+  ASSERT_EQ(events.size(), 4u);
+  EXPECT_TRUE(std::holds_alternative<Status>(events[0]));
+  ASSERT_TRUE(std::holds_alternative<LinkLost>(events[1]));
+  EXPECT_NE(std::get<LinkLost>(events[1]).reason.find("restarted"), std::string::npos);
+  EXPECT_TRUE(std::holds_alternative<LinkUp>(events[2]));
+  EXPECT_TRUE(std::holds_alternative<Status>(events[3]));
 }
 
 TEST_F(LinkTest, wrapOfItsClockIsNoRestart) {

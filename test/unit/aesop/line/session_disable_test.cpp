@@ -51,6 +51,30 @@ TEST_F(SessionTest, disableIsRepeatedUntilTheArmStands) {
   EXPECT_TRUE(sends<Enable>(kMove));
 }
 
+// It has disabled itself while it moved, is to be enabled as soon as it stands, and says that it is enabled before.
+TEST_F(SessionTest, whatWasNotAskedForYetIsNotConfirmed) {
+  connect();
+  enable();
+  ASSERT_TRUE(sends<Velocity>(kMove));
+  session_.giveUp("a test");
+  controller_.status.state = RobotState::kDisabled;
+  controller_.status.moving = true;
+  EXPECT_TRUE(sends<Disable>(kMove));
+  ASSERT_EQ(session_.enable(now_), "");
+  controller_.status.state = RobotState::kEnabled;
+  for (int k = 0; k < 5; ++k) {
+    EXPECT_TRUE(sends<Disable>(kMove));
+    EXPECT_EQ(mode(), OperatingMode::kDisabled);
+  }
+  controller_.status.state = RobotState::kDisabled;
+  controller_.status.moving = false;
+  EXPECT_TRUE(sends<Disable>(kMove));
+  EXPECT_TRUE(sends<Enable>(kMove, false));
+  controller_.status.state = RobotState::kEnabled;
+  EXPECT_TRUE(sends<Enable>(kMove));
+  EXPECT_TRUE(sends<Velocity>(kMove));
+}
+
 TEST_F(SessionTest, aDisableIsNotConfirmedByWhatWasSaidBefore) {
   connect();
   enable();

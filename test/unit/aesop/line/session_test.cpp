@@ -200,6 +200,66 @@ TEST_F(SessionTest, aRestartedControllerIsNotEnabledAgain) {
   EXPECT_TRUE(sends<Identify>(kMove));
 }
 
+// Its identity may come with the same bytes: the answer to an Identify that the line has held back or doubled.
+TEST_F(SessionTest, aRestartWithinOneReadEndsTheEnable) {
+  for (const bool moving : {false, true}) {
+    controller_.status = FakeController().status;
+    controller_.status.echo = session_.link().sequence();
+    controller_.status.time = 50.0;
+    session_.closed("a test");
+    connect();
+    enable();
+    ASSERT_TRUE(sends<Velocity>(kMove));
+    controller_.status.time = 0.0;
+    controller_.status.moving = moving;
+    Bytes read = controller_.say();
+    for (const Bytes& more : {controller_.identity(), controller_.say()}) {
+      read.insert(read.end(), more.begin(), more.end());
+    }
+    session_.receive(read.data(), read.size(), now_);
+    ASSERT_TRUE(session_.link().isUp());
+    EXPECT_EQ(mode(), OperatingMode::kDisabled);
+    EXPECT_TRUE(session_.stopped());
+    EXPECT_NE(session_.state().reason.find("restarted"), std::string::npos) << session_.state().reason;
+    for (int k = 0; k < 5; ++k) EXPECT_TRUE(sends<Disable>(kMove)) << "it still says ENABLED";
+    controller_.status.state = RobotState::kDisabled;
+    controller_.status.moving = false;
+    EXPECT_TRUE(sends<Disable>(kMove));
+    for (int k = 0; k < 5; ++k) EXPECT_TRUE(sends<Poll>(kMove));
+    EXPECT_EQ(mode(), OperatingMode::kDisabled);
+  }
+}
+
+// Some other fault is another reason, also where its words begin those of the one before.
+TEST_F(SessionTest, theReasonIsTheFaultThatThereIs) {
+  connect();
+  controller_.status.state = RobotState::kFault;
+  controller_.status.faults = kFaultEmergencyStop | kFaultMotor;
+  exchange(kStand);
+  EXPECT_EQ(session_.state().reason, "fault: " + describeFaults(kFaultEmergencyStop | kFaultMotor));
+  controller_.status.faults = kFaultEmergencyStop;
+  exchange(kStand);
+  EXPECT_EQ(session_.state().reason, "fault: " + describeFaults(kFaultEmergencyStop));
+  controller_.status.state = RobotState::kDisabled;
+  controller_.status.faults = 0;
+  exchange(kStand);
+  EXPECT_EQ(session_.state().reason, "the fault has gone by itself");
+}
+
+// What somebody gives as a reason has no meaning but for who reads it.
+TEST_F(SessionTest, wordsDecideNothing) {
+  connect();
+  enable();
+  EXPECT_EQ(session_.stop(now_, "the controller does not confirm the disable"), "");
+  EXPECT_FALSE(session_.isUnconfirmed());
+  controller_.status.state = RobotState::kDisabled;
+  exchange(kStand);
+  EXPECT_EQ(session_.state().reason, "the controller does not confirm the disable");
+  EXPECT_EQ(session_.stop(now_, "fault: /node"), "");
+  exchange(kStand);
+  EXPECT_EQ(session_.state().reason, "fault: /node");
+}
+
 TEST_F(SessionTest, anArmThatIsNotHomedIsNotEnabled) {
   controller_.status.homed = false;
   connect();
