@@ -144,9 +144,8 @@ struct Reached {
   const double time = 10.0;
 };
 
-inline std::string name(State state) {
-  static const char* const names[] = {"IDLE", "ARMED", "SERVO", "HOLD", "LOST", "FAULT"};
-  return names[static_cast<unsigned>(state)];
+inline std::string nameOf(State state) {
+  return servo::name(state);
 }
 
 // Facts at random, mostly good; some stay bad for a while.

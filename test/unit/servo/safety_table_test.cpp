@@ -57,7 +57,7 @@ TEST(SafetyMachine, EachFactLeadsFromEachStateWhereItShould) {
   for (const Line& line : behaviour()) {
     for (const Fact& fact : line.facts) {
       for (const State from : kSafetyStates) {
-        SCOPED_TRACE(fact.name + " in " + name(from) + ", request " + std::to_string(static_cast<int>(line.request)));
+        SCOPED_TRACE(fact.name + " in " + nameOf(from) + ", request " + std::to_string(static_cast<int>(line.request)));
         // Idle, a machine knows no time to compare with: a pause is no jump.
         if (fact.name == "time 1000000000.000000" && !isEngaged(from)) continue;
         if (fact.name == "time -1.000000" && !isEngaged(from)) continue;
@@ -67,7 +67,7 @@ TEST(SafetyMachine, EachFactLeadsFromEachStateWhereItShould) {
           facts.request = line.request;
         });
         const State to = line.to[static_cast<unsigned>(from)];
-        EXPECT_EQ(name(output.state), name(to));
+        EXPECT_EQ(nameOf(output.state), nameOf(to));
         EXPECT_EQ(output.state, reached.machine.state());
         EXPECT_FALSE(output.reason.empty());
         EXPECT_EQ(output.reset_history, to != State::kServo);
@@ -137,7 +137,7 @@ TEST(SafetyMachine, EachRowOfTheTableIsTaken) {
       if (!row.contains(from)) continue;
       Reached reached(from);
       const SafetyOutput output = reached.step(fact.apply);
-      EXPECT_EQ(name(output.state), name(row.to)) << fact.words << " in " << name(from);
+      EXPECT_EQ(nameOf(output.state), nameOf(row.to)) << fact.words << " in " << nameOf(from);
       EXPECT_NE(output.reason.find(fact.words), std::string::npos) << output.reason;
       const bool needs_somebody = row.to == State::kFault || row.to == State::kLost;
       EXPECT_EQ(output.reason.find("engage again") != std::string::npos, needs_somebody) << output.reason;
@@ -169,7 +169,7 @@ TEST(SafetyMachine, TheMoreSevereConditionDecides) {
           second.apply(facts);
           first.apply(facts);
         });
-        EXPECT_EQ(name(output.state), name(table[i].to)) << first.words << " and " << second.words;
+        EXPECT_EQ(nameOf(output.state), nameOf(table[i].to)) << first.words << " and " << second.words;
         EXPECT_NE(output.reason.find(first.words), std::string::npos) << output.reason << ", not " << second.words;
         ++pairs;
       }
@@ -215,7 +215,7 @@ TEST(SafetyMachine, WhateverComesItMovesOnlyWhenItMay) {
     const bool was_engaged = isEngaged(before);
     const SafetyOutput output = machine.step(facts);
     const State now = output.state;
-    SCOPED_TRACE(name(before) + " to " + name(now) + ": " + output.reason);
+    SCOPED_TRACE(nameOf(before) + " to " + nameOf(now) + ": " + output.reason);
     ASSERT_FALSE(output.reason.empty());
     ASSERT_EQ(output.reset_history, now != State::kServo);
     if (now == State::kServo) {

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "laparoscope_servo/aesop/scope_motion.h"
+#include "laparoscope_servo/geometry/se3.h"
 #include "unit/aesop/nominal_pose.h"
 
 namespace laparoscope_servo::aesop {

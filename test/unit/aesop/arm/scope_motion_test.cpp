@@ -6,6 +6,8 @@
 #include <limits>
 #include <random>
 
+#include "laparoscope_servo/geometry/se3.h"
+#include "laparoscope_servo/scope/insertion_point.h"
 #include "unit/aesop/nominal_pose.h"
 
 namespace laparoscope_servo::aesop {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <random>
 
+#include "laparoscope_servo/geometry/se3.h"
+#include "laparoscope_servo/scope/insertion_point.h"
 #include "laparoscope_servo/sim/arm.h"
 
 namespace laparoscope_servo::sim {
@@ -25,7 +27,7 @@ class Drive {
   }
 
   // One exchange on the link; the velocities on the wire are in millionths, and so are the positions that come back.
-  void step(const ScopeVelocity& velocity) {
+  void step(const scope::Velocity& velocity) {
     const JointVector q = (arm_.position() * 1e6).array().round() / 1e6;
     motion = aesop::jointMotion(kinematics, aesop::MotionConfig(), q, believed, velocity);
     std::array<double, aesop::kDrivenJoints> speed{};
@@ -70,7 +72,7 @@ class Drive {
 void driveAtRandom(Drive& drive, unsigned seed, double seconds) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  ScopeVelocity velocity;
+  scope::Velocity velocity;
   double until = 0.0;
   for (double t = 0.0; t < seconds; t += kPeriod) {
     if (t >= until) {
@@ -122,10 +124,10 @@ TEST(ArmDrive, AWrongInsertionPointScalesPanAndPushesNothing) {
 TEST(ArmDrive, TheDelayCarriesNoJointToItsLimit) {
   const double c = 1.0 / std::sqrt(2.0);
   int bounds = 0;
-  for (const ScopeVelocity& v :
-       {ScopeVelocity{0, 0, 0, 0.03}, ScopeVelocity{0, 0, 0, -0.03}, ScopeVelocity{0.15, 0, 0, 0},
-        ScopeVelocity{-0.15, 0, 0, 0}, ScopeVelocity{0, 0.15, 0, 0}, ScopeVelocity{0, -0.15, 0, 0},
-        ScopeVelocity{0.15 * c, 0.15 * c, 0, 0}, ScopeVelocity{0, 0, 0.3, 0}, ScopeVelocity{0.05, 0, 0, -0.02}}) {
+  for (const scope::Velocity& v :
+       {scope::Velocity{0, 0, 0, 0.03}, scope::Velocity{0, 0, 0, -0.03}, scope::Velocity{0.15, 0, 0, 0},
+        scope::Velocity{-0.15, 0, 0, 0}, scope::Velocity{0, 0.15, 0, 0}, scope::Velocity{0, -0.15, 0, 0},
+        scope::Velocity{0.15 * c, 0.15 * c, 0, 0}, scope::Velocity{0, 0, 0.3, 0}, scope::Velocity{0.05, 0, 0, -0.02}}) {
     aesop::KinematicsConfig config;
     config.joints[0].minimum = 0.2;
     config.joints[0].maximum = 0.3;
