@@ -15,10 +15,11 @@ function(laparoscope_servo_sources library)
   target_sources(${PROJECT_NAME}_${library} PRIVATE ${ARGN})
 endfunction()
 
-# laparoscope_servo_executable(NAME SOURCE...): rosrun laparoscope_servo NAME
+# laparoscope_servo_executable(NAME SOURCE...): rosrun laparoscope_servo NAME; keeps to the loopback address (src/loopback)
 function(laparoscope_servo_executable name)
   set(target ${PROJECT_NAME}_${name})
-  add_executable(${target} ${ARGN})
+  add_executable(${target} ${ARGN} $<TARGET_OBJECTS:${PROJECT_NAME}_xmlrpc_bind>)
+  set_property(GLOBAL APPEND PROPERTY LAPAROSCOPE_SERVO_PROGRAMS ${target})
   set_target_properties(${target} PROPERTIES OUTPUT_NAME ${name} PREFIX "")
   target_link_libraries(${target} ${PROJECT_NAME}_ros)
   add_dependencies(${target} ${PROJECT_NAME}_generate_messages_cpp ${catkin_EXPORTED_TARGETS})

@@ -48,10 +48,12 @@ if [ -z "${ROS_IP:-}${ROS_HOSTNAME:-}" ]; then
 fi
 unset -f _laparoscope_servo_is_here
 
-# ROS_IP alone is not enough: see src/loopback. The library heeds it, too, and changes nothing for other addresses.
-_laparoscope_servo_library="$CATKIN_ENV_HOOK_WORKSPACE/lib/liblaparoscope_servo_loopback.so"
-case "$_laparoscope_servo_library:${LD_PRELOAD:-}" in
-  *' '*:* | *:*"$_laparoscope_servo_library"*) ;; # a space would end its name; it is there already
-  *) [ ! -f "$_laparoscope_servo_library" ] || export LD_PRELOAD="$_laparoscope_servo_library${LD_PRELOAD:+:$LD_PRELOAD}" ;;
+# ROS_IP alone is not enough for roscpp: see src/loopback. Programs of this package have it built in; rosout, which roslaunch
+# starts beside the master, is given it by a roscore.xml, unless somebody has one of his own.
+_laparoscope_servo_core="$CATKIN_ENV_HOOK_WORKSPACE/share/laparoscope_servo/loopback"
+case "${ROS_ETC_DIR:-/etc/ros}" in
+  */etc/ros | */share/laparoscope_servo/loopback)
+    [ ! -f "$_laparoscope_servo_core/roscore.xml" ] || export ROS_ETC_DIR="$_laparoscope_servo_core"
+    ;;
 esac
-unset _laparoscope_servo_library
+unset _laparoscope_servo_core

@@ -1,8 +1,7 @@
 // roscpp binds its XML-RPC server to every address of the machine, whatever ROS_IP says: everybody on the network could
-// end a node, or hand it another publisher. Loaded in front of libxmlrpcpp (LD_PRELOAD, see env-hooks/), this binds it
-// as rospy does: to the loopback address when ROS_IP or ROS_HOSTNAME name that one.
-//
-// It is loaded into every process of a shell, so it needs no library but that of C.
+// end a node, or hand it another publisher. Found before the definition in libxmlrpcpp, this binds it as rospy does: to
+// the loopback address when ROS_IP or ROS_HOSTNAME name that one. It is a part of every program of this package; into
+// programs of others it is preloaded (LD_PRELOAD), so it needs no library but that of C.
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <xmlrpcpp/XmlRpcSocket.h>

@@ -110,8 +110,8 @@ std::string exposureWarning(const std::string& master) {
   if (list.empty() || spreadOverMachines(master)) return "";
   return "this node listens to other machines (" + list +
          "), and whoever reaches it can command it; source setup.bash of this workspace, which keeps it to this one, "
-         "or "
-         "set ROS_IP to the address of the network that it is for";
+         "preload liblaparoscope_servo_loopback.so into a nodelet manager of another package, or set ROS_IP to the "
+         "address of the network that it is for";
 }
 
 void warnOfExposure() {

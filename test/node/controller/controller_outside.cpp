@@ -89,7 +89,8 @@ TEST_F(ControllerOutside, aTerminalThatNobodyReadsHoldsNothingUp) {
   for (const int end : ends) ::close(end);
 }
 
-// Without the library that keeps roscpp to the loopback address it listens everywhere, whatever ROS_IP says.
+// As in a shell that has not sourced this workspace: nobody has told it which address to listen on, so it listens on
+// all.
 TEST_F(ControllerOutside, whoListensToOtherMachinesUnaskedSaysSo) {
   const test_support::TemporaryFolder folder;
   const auto said = [&] {
@@ -98,7 +99,7 @@ TEST_F(ControllerOutside, whoListensToOtherMachinesUnaskedSaysSo) {
     return text.str();
   };
   controller_ = std::make_unique<ChildProcess>(
-      "/usr/bin/env", std::vector<std::string>{"-u", "LD_PRELOAD", "ROS_IP=127.0.0.1", CONTROLLER},
+      "/usr/bin/env", std::vector<std::string>{"-u", "ROS_HOSTNAME", "-u", "ROS_IP", CONTROLLER},
       folder.file("output"));
   EXPECT_TRUE(waitFor([&] { return said().find("listens to other machines") != std::string::npos; }, 30.0)) << said();
 }

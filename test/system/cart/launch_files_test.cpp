@@ -105,6 +105,25 @@ TEST(LaunchFiles, EveryNodeForgetsTheParametersOfTheRunBefore) {
   EXPECT_GE(files, 5);
 }
 
+// roscpp by itself listens on every address; programs of this package have in them what this library gives to others.
+TEST(LaunchFiles, EveryNodeOfAnotherPackageIsKeptToTheLoopbackAddress) {
+  int others = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(LAPAROSCOPE_SERVO_LAUNCH)) {
+    std::ifstream file(entry.path());
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    for (std::size_t at = text.find("<node "); at != std::string::npos; at = text.find("<node ", at + 1)) {
+      const std::string tag = text.substr(at, text.find('>', at) - at);
+      if (tag.find("pkg=\"laparoscope_servo\"") != std::string::npos) continue;
+      const std::string node = text.substr(at, text.find("</node>", at) - at);
+      EXPECT_NE(node.find("name=\"LD_PRELOAD\" value=\"liblaparoscope_servo_loopback.so $(optenv LD_PRELOAD)\"/>"),
+                std::string::npos)
+          << entry.path() << ": " << node;
+      ++others;
+    }
+  }
+  EXPECT_EQ(others, 3) << "rviz twice, and what loads the nodelet";
+}
+
 TEST(LaunchFiles, EveryArgumentIsDocumented) {
   for (const char* launch : {"calibrate", "cart", "demo", "replay", "tracker"}) {
     const std::string text = outputOf("roslaunch --ros-args laparoscope_servo " + std::string(launch) + ".launch");

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstring>
 
+#include "support/command_output.h"
 #include "support/temporary_folder.h"
 #include "system/aesop/child_process.h"
 #include "system/network/open_sockets.h"
@@ -104,38 +105,71 @@ TEST(EnvironmentHook, thisMachineInAnySpellingIsThisMachine) {
   }
 }
 
-TEST(EnvironmentHook, preloadsItsLibraryOnceAndKeepsOthers) {
-  const std::string library = DEVEL_PREFIX "/lib/liblaparoscope_servo_loopback.so";
-  EXPECT_EQ(afterTheHook("", "LD_PRELOAD"), library);
-  EXPECT_EQ(afterTheHook("LD_PRELOAD=libm.so.6", "LD_PRELOAD"), library + ":libm.so.6");
+TEST(EnvironmentHook, preloadsNothingIntoTheShell) {
+  EXPECT_EQ(afterTheHook("", "LD_PRELOAD"), "");
+  EXPECT_EQ(afterTheHook("LD_PRELOAD=libm.so.6", "LD_PRELOAD"), "libm.so.6");
+}
+
+// roslaunch reads there what it starts beside the master.
+TEST(EnvironmentHook, rosoutIsGivenTheLibraryUnlessSomebodyHasARoscoreOfHisOwn) {
+  const std::string own = DEVEL_PREFIX "/share/laparoscope_servo/loopback";
+  for (const std::string usual :
+       {"", "ROS_ETC_DIR=/etc/ros", "ROS_ETC_DIR=/usr//etc/ros", "ROS_ETC_DIR=/opt/ros/noetic/etc/ros",
+        "ROS_ETC_DIR=/x/share/laparoscope_servo/loopback"}) {
+    EXPECT_EQ(afterTheHook(usual, "ROS_ETC_DIR"), own) << usual;
+  }
+  EXPECT_EQ(afterTheHook("ROS_ETC_DIR=/srv/ros", "ROS_ETC_DIR"), "/srv/ros");
+  std::stringstream roscore;
+  roscore << std::ifstream(own + "/roscore.xml").rdbuf();
+  EXPECT_NE(roscore.str().find("liblaparoscope_servo_loopback.so"), std::string::npos);
+}
+
+// The linker takes the first definition, and the program's own goes before that of any library.
+TEST(Programs, haveABindOfTheirOwn) {
+  std::istringstream programs(PROGRAMS);
+  int count = 0;
+  for (std::string program; std::getline(programs, program, ':'); ++count) {
+    const test_support::CommandOutput symbols = test_support::outputOf("nm -D --defined-only '" + program + "'");
+    EXPECT_EQ(symbols.status, 0) << symbols.text;
+    EXPECT_NE(symbols.text.find(" T _ZN6XmlRpc12XmlRpcSocket4bindEii"), std::string::npos) << program;
+  }
+  EXPECT_GE(count, 10);
 }
 
 class Launch {
  public:
   explicit Launch(const std::string& command)
       : port_(Socket(SOCK_STREAM, "127.0.0.1").port()),
-        shell_(
-            "/usr/bin/env",
-            {"-u", "ROS_IP", "-u", "ROS_HOSTNAME", "-u", "ROS_NAMESPACE", "-u", "LD_PRELOAD", "PATH=/usr/bin:/bin",
-             "ROS_HOME=" + folder_.path() + "/ros", "ROS_MASTER_URI=http://localhost:" + std::to_string(port_), "bash",
-             "-c", "source '" DEVEL_PREFIX "/setup.bash' && exec " + command + " port:=" + folder_.path() + "/arm"},
-            folder_.path() + "/log") {}
+        shell_("/usr/bin/env",
+               {"-u", "ROS_IP", "-u", "ROS_HOSTNAME", "-u", "ROS_NAMESPACE", "-u", "LD_PRELOAD", "PATH=/usr/bin:/bin",
+                "ROS_HOME=" + folder_.path() + "/ros", "ROS_MASTER_URI=http://localhost:" + std::to_string(port_),
+                "bash", "-c", "source '" DEVEL_PREFIX "/setup.bash' && exec " + command},
+               folder_.path() + "/log") {}
   ~Launch() {
     shell_.kill(SIGINT);
     shell_.exitStatus(30.0);
   }
   std::vector<OpenSocket> sockets() const { return openSockets(shell_.pid()); }
-  // Waits until each of these programs listens, twice: for messages and for XML-RPC.
-  bool listens(const std::vector<std::string>& programs) {
+  // Waits until each of these programs has so many sockets of TCP that listen: two a process, for messages and for
+  // XML-RPC.
+  bool listens(const std::map<std::string, int>& programs) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
     while (std::chrono::steady_clock::now() < end && shell_.isRunning()) {
       std::map<std::string, int> count;
       for (const OpenSocket& socket : sockets()) count[socket.process] += socket.protocol == "tcp" ? 1 : 0;
-      if (std::all_of(programs.begin(), programs.end(), [&](const auto& name) { return count[name] >= 2; }))
-        return true;
+      const auto enough = [&](const auto& program) { return count[program.first] >= program.second; };
+      if (std::all_of(programs.begin(), programs.end(), enough)) return true;
       std::this_thread::sleep_for(std::chrono::milliseconds(100));
     }
     return false;
+  }
+  void expectNothingBeyondLoopback() {
+    for (int k = 0; k < 20 && !testing::Test::HasFailure(); ++k) {
+      for (const OpenSocket& socket : sockets()) {
+        EXPECT_TRUE(socket.loopback) << socket.process << " listens by " << socket.protocol << " on " << socket.address;
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
   }
   std::string log() const {
     std::ostringstream text;
@@ -150,16 +184,26 @@ class Launch {
 };
 
 TEST(Loopback, nothingOfTheDemoListensBeyondIt) {
-  Launch demo("roslaunch laparoscope_servo demo.launch rviz:=false");
+  const test_support::TemporaryFolder folder;
+  Launch demo("roslaunch laparoscope_servo demo.launch rviz:=false port:=" + folder.path() + "/arm");
   // Names as the kernel cuts them. rosout is not this package's.
-  ASSERT_TRUE(demo.listens({"aesop", "controller", "tracker", "simulated_camer", "rosout"})) << demo.log();
-  for (int k = 0; k < 20; ++k) {
-    for (const OpenSocket& socket : demo.sockets()) {
-      EXPECT_TRUE(socket.loopback) << socket.process << " listens by " << socket.protocol << " on " << socket.address;
-    }
-    if (testing::Test::HasFailure()) break;
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  }
+  ASSERT_TRUE(demo.listens({{"aesop", 2}, {"controller", 2}, {"tracker", 2}, {"simulated_camer", 2}, {"rosout", 2}}))
+      << demo.log();
+  demo.expectNothingBeyondLoopback();
+}
+
+// doc/network.md has the line that gives the library to a manager; tracker.launch has it for what loads the nodelet.
+TEST(Loopback, norDoesANodeletManagerThatIsGivenTheLibrary) {
+  const test_support::TemporaryFolder folder;
+  std::ofstream(folder.file("manager.launch")) << R"(<launch>
+  <node pkg="nodelet" type="nodelet" name="manager" args="manager">
+    <env name="LD_PRELOAD" value="liblaparoscope_servo_loopback.so"/>
+  </node>
+  <include file="$(find laparoscope_servo)/launch/tracker.launch"><arg name="manager" value="manager"/></include>
+</launch>)";
+  Launch managed("roslaunch " + folder.file("manager.launch"));
+  ASSERT_TRUE(managed.listens({{"nodelet", 4}, {"rosout", 2}})) << managed.log();
+  managed.expectNothingBeyondLoopback();
 }
 
 }  // namespace
