@@ -25,8 +25,6 @@
 
 namespace laparoscope_servo {
 
-using steadyNow;
-
 inline bool isZero(const ScopeVelocity& c) {
   return c.pan == 0.0 && c.tilt == 0.0 && c.spin == 0.0 && c.insertion == 0.0;
 }

@@ -24,8 +24,6 @@
 
 namespace laparoscope_servo::test {
 
-using steadyNow;
-
 class AesopBench {
  public:
   // Starts the emulator, and the node unless `with_node` is false. The node is named `aesop`, its parameters are those
