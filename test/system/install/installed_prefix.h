@@ -38,6 +38,8 @@ class InstalledPrefix {
   // For bash -c: nothing of the environment of this test comes along.
   std::vector<std::string> shell(const std::string& command, int port) const {
     return {"-i",
+            "-C",
+            folder_.path(),
             "HOME=" + folder_.path(),
             "PATH=/usr/bin:/bin",
             "ROS_HOME=" + folder_.path() + "/ros",
