@@ -66,7 +66,7 @@ double textureOf(const cv::Mat& image, const cv::Rect& tile) {
 
 }  // namespace
 
-Repeats RepeatWatch::see(const cv::Mat& image, const cv::Rect& region, const Used& used) {
+Repeats RepeatWatch::see(const cv::Mat& image, const cv::Rect& region) {
   if (image.size() != size_ || image.type() != type_) {
     clear();
     size_ = image.size();
@@ -82,7 +82,7 @@ Repeats RepeatWatch::see(const cv::Mat& image, const cv::Rect& region, const Use
   counts_.region = !in_image.empty() && (repeats(tiles) || bandRepeats(tiles)) ? counts_.region + 1 : 0;
   counts_.region = std::max(counts_.region, counts_.whole);
   countTiles(nearby(tiles));
-  counts_.part = in_image.empty() ? counts_.whole : std::max(counts_.whole, partRepeats(image, tiles, used));
+  counts_.part = in_image.empty() ? counts_.whole : std::max(counts_.whole, partRepeats(image, tiles));
   known_ = std::min(known_ + 1, kMemory);
   return counts_;
 }
@@ -180,7 +180,7 @@ void RepeatWatch::forgetOutside(const cv::Rect& tiles) {
   }
 }
 
-int RepeatWatch::partRepeats(const cv::Mat& image, const cv::Rect& tiles, const Used& used) const {
+int RepeatWatch::partRepeats(const cv::Mat& image, const cv::Rect& tiles) const {
   struct Tile {
     int repeats;
     cv::Rect pixels;
@@ -191,7 +191,6 @@ int RepeatWatch::partRepeats(const cv::Mat& image, const cv::Rect& tiles, const 
     for (int x = tiles.x; x < tiles.br().x; ++x) {
       const History& history = history_[static_cast<std::size_t>(y) * tiles_.width + x];
       if (history.fresh < kLive) continue;
-      if (used && !used(kTile * cv::Point2d(x + 0.5, y + 0.5))) continue;
       const int repeats = std::max(history.repeats[0], history.repeats[1]);
       live.push_back({repeats, cv::Rect(x * kTile, y * kTile, kTile, kTile)});
       any = any || repeats > 0;

@@ -8,7 +8,6 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <opencv2/core.hpp>
 #include <vector>
 
@@ -36,12 +35,8 @@ class RepeatWatch {
   static constexpr int kMargin = 8;      // tiles about the region that are counted, at least
   static constexpr int kLive = 4;        // pictures in a row that were new: no clock, whose digits change by the second
 
-  // Whether what lies at a place [px] of the region is looked at by who follows it, and not left out as covered.
-  using Used = std::function<bool(const cv::Point2d&)>;
-
-  // The next picture, of 8 bit, and the region of interest in it [px]; an empty one: none, as if it were new. What is
-  // not `used` is not counted in a part: an instrument that rests in a compressed film repeats, and moves nobody.
-  Repeats see(const cv::Mat& image, const cv::Rect& region, const Used& used = {});
+  // The next picture, of 8 bit, and the region of interest in it [px]; an empty one: none, as if it were new.
+  Repeats see(const cv::Mat& image, const cv::Rect& region);
   void clear();
 
  private:
@@ -57,7 +52,7 @@ class RepeatWatch {
   cv::Rect nearby(const cv::Rect& tiles) const;
   void countTiles(const cv::Rect& tiles);
   void forgetOutside(const cv::Rect& tiles);
-  int partRepeats(const cv::Mat& image, const cv::Rect& tiles, const Used& used) const;
+  int partRepeats(const cv::Mat& image, const cv::Rect& tiles) const;
 
   cv::Size size_;
   int type_ = -1;

@@ -40,7 +40,7 @@ class FrozenFeed {
   double stamp_ = 0.0;
   double speed_ = 0.0;  // px an image, over the last new ones
   bool moving_ = false;
-  bool part_moved_ = false;  // further than what can look the same, while a part of it does
+  int part_limit_ = 0;  // pictures in which a part may repeat, by how far the region moved meanwhile
   enum class Frozen { kNot, kWhole, kRegion, kPart } frozen_ = Frozen::kNot;
   int fresh_ = 0;  // new pictures in a row since
   std::string reason_;

@@ -106,7 +106,6 @@ class TrackerSession {
   void passGate(const Processed& processed, double& period);
   void lookForReference(const std::string& why);
   geometry::Quadrilateral onSensor(geometry::Quadrilateral corners) const;
-  image::RepeatWatch::Used usedBy(const tracking::TrackResult& result) const;
   void watchPicture(Processed& processed);
   std::string turnedTooFast(const tracking::TrackResult& result) const;
   tracking::TrackResult track(Processed& processed, const std::optional<geometry::Rectangle>& request,

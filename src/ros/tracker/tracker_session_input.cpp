@@ -85,22 +85,6 @@ geometry::Quadrilateral TrackerSession::onSensor(geometry::Quadrilateral corners
   return corners;
 }
 
-// Of the image's pixels, those in areas that drove the estimate; all of them where there is none.
-image::RepeatWatch::Used TrackerSession::usedBy(const tracking::TrackResult& result) const {
-  if (result.state != tracking::State::kTracking || result.areas.occluded.empty()) return {};
-  const Eigen::Matrix3d reference_T_image = result.g.inverse();
-  return [this, &result, reference_T_image](const cv::Point2d& pixel) {
-    Eigen::Vector2d seen(pixel.x, pixel.y);
-    if (lens_) seen = lens_->toRectified(seen).value_or(seen);
-    const Eigen::Vector2d p = geometry::apply(reference_T_image, seen);
-    const double column = std::floor((p.x() - result.roi.x) / result.roi.width * result.areas.columns);
-    const double row = std::floor((p.y() - result.roi.y) / result.roi.height * result.areas.rows);
-    if (!(column >= 0.0 && column < result.areas.columns && row >= 0.0 && row < result.areas.rows)) return false;
-    return !result.areas.occluded[static_cast<std::size_t>(row) * static_cast<std::size_t>(result.areas.columns) +
-                                  static_cast<std::size_t>(column)];
-  };
-}
-
 // What the tracker found in a picture that shows nothing new is not believed, though it is no reason to lose the
 // region.
 void TrackerSession::watchPicture(Processed& processed) {
@@ -116,7 +100,7 @@ void TrackerSession::watchPicture(Processed& processed) {
     box_ = boxOf(onSensor(*corners));
   }
   if (result.state == State::kIdle) box_ = {};
-  processed.repeats = repeats_.see(processed.image, box_, usedBy(result));
+  processed.repeats = repeats_.see(processed.image, box_);
   if (corners) motion.of_part = path_.farthest(*corners, processed.repeats.part);
   path_.add(corners);
   feed_.see(processed.repeats, time_, motion);

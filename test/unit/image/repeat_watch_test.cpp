@@ -178,23 +178,6 @@ TEST_F(PartTest, CountsNothingThatIsSmallOrBesideTheRegion) {
   EXPECT_EQ(parts(6, rectangle(cv::Rect(0, 0, 200, 48))), 0) << "above";
 }
 
-TEST_F(PartTest, CountsNothingThatIsNotUsed) {
-  const cv::Rect still(70, 40, 48, 70);
-  const auto parts_used = [&](const RepeatWatch::Used& used) {
-    RepeatWatch watch;
-    for (int k = 0; k <= RepeatWatch::kLive; ++k) watch.see(noise(), kRegion, used);
-    const cv::Mat last = noise();
-    watch.see(last, kRegion, used);
-    cv::Mat next = noise();
-    last(still).copyTo(next(still));
-    return watch.see(next, kRegion, used).part;
-  };
-  const auto beside = [&](const cv::Point2d& p) { return !still.contains(cv::Point(p)); };
-  EXPECT_EQ(parts_used({}), 1);
-  EXPECT_EQ(parts_used(beside), 0) << "what repeats is covered";
-  EXPECT_EQ(parts_used([&](const cv::Point2d& p) { return !beside(p); }), 1) << "all that is used repeats";
-}
-
 TEST_F(PartTest, CountsNoFlatPartNorWhatIsBurntIn) {
   const auto flat = [](cv::Mat& next, const cv::Mat&) { next(cv::Rect(0, 64, 200, 86)).setTo(255); };
   EXPECT_EQ(parts(6, flat), 0) << "saturated";
