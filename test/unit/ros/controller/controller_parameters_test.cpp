@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "laparoscope_servo/closed_loop/servo_simulation.h"
+#include "ros/simulation/servo_simulation_config.h"
 
 namespace laparoscope_servo {
 namespace {
@@ -134,7 +135,7 @@ std::vector<double> numbers(const ControllerNodeConfig& config) {
   return all;
 }
 
-std::vector<double> numbers(const SimulationConfig& c) {
+std::vector<double> numbers(const closed_loop::SimulationConfig& c) {
   std::vector<double> all{c.frame_rate,
                           c.image_delay,
                           c.corner_noise,
@@ -231,11 +232,11 @@ TEST(ControllerParameters, FileEqualsTheDefaults) {
 TEST(ControllerParameters, FileOfTheSimulationEqualsTheDefaults) {
   const XmlRpc::XmlRpcValue tree = parametersFromYaml(kConfig + "/simulate_servo.yaml");
   ParameterReader reader(tree, "");
-  const SimulationConfig config = simulationConfig(reader);
+  const closed_loop::SimulationConfig config = simulationConfig(reader);
   reader.refuseUnknown("");
   EXPECT_EQ(reader.report(), "");
-  EXPECT_EQ(numbers(config), numbers(SimulationConfig()));
-  EXPECT_EQ(config.robot.dead_zone_kind, SimulationConfig().robot.dead_zone_kind);
+  EXPECT_EQ(numbers(config), numbers(closed_loop::SimulationConfig()));
+  EXPECT_EQ(config.robot.dead_zone_kind, closed_loop::SimulationConfig().robot.dead_zone_kind);
   EXPECT_EQ(leaves(tree), numbers(config).size() - 3 - 4 * 2 + 3);  // lists are one leaf; and two words, four signs
 }
 
