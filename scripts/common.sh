@@ -14,6 +14,15 @@ fail() {
   exit 1
 }
 
+# make_workspace ARGUMENTS: catkin_make here. A shell that has sourced this very workspace must not become part of what is
+# configured: an installed package would then name the folder that it was built in.
+make_workspace() {
+  local path=":${CMAKE_PREFIX_PATH:-}:"
+  path="${path//:$workspace\/devel:/:}"
+  path="${path#:}"
+  CMAKE_PREFIX_PATH="${path%:}" catkin_make -C "$workspace" "$@"
+}
+
 # Sources a setup.bash, which was not written for `set -u`.
 source_ros() {
   set +u

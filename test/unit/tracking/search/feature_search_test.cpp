@@ -145,6 +145,9 @@ TEST_F(FeatureSearchTest, ViewsTakeTurnsAndAreDescribedWhenAsked) {
 }
 
 TEST_F(FeatureSearchTest, AViewFindsWhatTheReferenceDoesNot) {
+  TrackerConfig config;
+  config.quality.max_area_ratio = 10.0;
+  search_ = FeatureSearch(config);
   const Eigen::Matrix3d close = motion(2.6, 0.0, 0.0, {240.0, 180.0});
   const Eigen::Matrix3d now = motion(2.5, 0.3, 0.0, {230.0, 190.0});
   EXPECT_TRUE(find(seen(now, 2)).empty());

@@ -148,6 +148,7 @@ TEST_F(RegionSearchTest, KeepsClearAndNewViewsThatItThenFinds) {
       (Eigen::Matrix3d() << 2.6, 0.0, -307.0, 0.0, 2.6, -243.0, 0.0, 0.0, 1.0).finished());
   truth_ = geometry::normaliseDeterminant(shift(25.0, 12.0) * close);
   config_.search.correlation = false;
+  config_.quality.max_area_ratio = 10.0;
   const cv::Mat now = seen();
   const auto findsAfterKeeping = [&](double visible_fraction, double zncc) {
     Setup s = setup();
