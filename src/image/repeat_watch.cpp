@@ -114,6 +114,11 @@ void RepeatWatch::take(const cv::Mat& image, Prints& prints) const {
   }
 }
 
+const RepeatWatch::Prints& RepeatWatch::printsOf(int back) const {
+  const int places = static_cast<int>(ring_.size());
+  return ring_[static_cast<std::size_t>((newest_ - back + places) % places)];
+}
+
 // Black bars beside a picture repeat for ever.
 bool RepeatWatch::hasBeenLive(const cv::Rect& tiles) const {
   for (int y = tiles.y; y < tiles.br().y; ++y) {
@@ -151,15 +156,13 @@ cv::Rect RepeatWatch::nearby(const cv::Rect& tiles) const {
 void RepeatWatch::countTiles(const cv::Rect& tiles) {
   if (tiles != watched_) forgetOutside(tiles);
   watched_ = tiles;
-  const auto places = static_cast<int>(ring_.size());
-  const Prints& now = ring_[static_cast<std::size_t>(newest_)];
+  const Prints& now = printsOf(0);
   const auto count = [&](std::size_t tile) {
     History& history = history_[tile];
     for (std::size_t field = 0; field < 2; ++field) {
       bool seen = false;
       for (int back = 1; back <= known_ && !seen; ++back) {
-        const Prints& then = ring_[static_cast<std::size_t>((newest_ - back + places) % places)];
-        seen = then[tile].field[field] == now[tile].field[field];
+        seen = printsOf(back)[tile].field[field] == now[tile].field[field];
       }
       history.repeats[field] = seen ? history.repeats[field] + 1 : 0;
     }
@@ -206,10 +209,9 @@ int RepeatWatch::partRepeats(const cv::Mat& image, const cv::Rect& tiles) const 
 }
 
 bool RepeatWatch::repeats(const cv::Rect& tiles) const {
-  const Prints& now = ring_[static_cast<std::size_t>(newest_)];
-  const int places = static_cast<int>(ring_.size());
+  const Prints& now = printsOf(0);
   for (int back = 1; back <= known_; ++back) {
-    const Prints& then = ring_[static_cast<std::size_t>((newest_ - back + places) % places)];
+    const Prints& then = printsOf(back);
     bool same[2] = {true, size_.height > 1};
     for (int y = tiles.y; y < tiles.br().y && (same[0] || same[1]); ++y) {
       for (int x = tiles.x; x < tiles.br().x; ++x) {

@@ -13,10 +13,7 @@ double CornerPath::farthest(const geometry::Quadrilateral& corners, int images) 
   double most = 0.0;
   const std::size_t count = std::min(corners_.size(), static_cast<std::size_t>(std::max(0, images)));
   for (std::size_t image = 0; image < count; ++image) {
-    if (!corners_[image]) continue;
-    for (std::size_t k = 0; k < corners.size(); ++k) {
-      most = std::max(most, (corners[k] - (*corners_[image])[k]).norm());
-    }
+    if (corners_[image]) most = std::max(most, geometry::largestDistance(corners, *corners_[image]));
   }
   return most;
 }

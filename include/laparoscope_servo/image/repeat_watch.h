@@ -46,6 +46,8 @@ class RepeatWatch {
   using Prints = std::vector<Print>;  // row by row of tiles
 
   void take(const cv::Mat& image, Prints& prints) const;
+  // Of the picture `back` before the newest, 0 to known_.
+  const Prints& printsOf(int back) const;
   bool repeats(const cv::Rect& tiles) const;
   bool hasBeenLive(const cv::Rect& tiles) const;
   bool bandRepeats(const cv::Rect& tiles) const;
