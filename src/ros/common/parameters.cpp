@@ -1,13 +1,9 @@
 #include "ros/common/parameters.h"
 
-#include <ros/node_handle.h>
-#include <yaml-cpp/yaml.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <sstream>
-#include <stdexcept>
 
 namespace laparoscope_servo {
 
@@ -44,32 +40,6 @@ std::string text(const XmlRpcValue& value) {
     value.write(stream);
   }
   return stream.str();
-}
-
-// Scalars as rosparam reads them (YAML 1.1 core): a quoted scalar is a string whatever it looks like.
-XmlRpcValue fromScalar(const YAML::Node& node) {
-  if (node.Tag() == "!") return XmlRpcValue(node.Scalar());
-  int integer = 0;
-  double number = 0.0;
-  bool boolean = false;
-  if (YAML::convert<int>::decode(node, integer)) return XmlRpcValue(integer);
-  if (YAML::convert<double>::decode(node, number)) return XmlRpcValue(number);
-  if (YAML::convert<bool>::decode(node, boolean)) return XmlRpcValue(boolean);
-  return XmlRpcValue(node.Scalar());
-}
-
-XmlRpcValue fromYaml(const YAML::Node& node) {
-  XmlRpcValue value;
-  if (node.IsMap()) {
-    value.begin();  // a struct even when the map is empty
-    for (const auto& entry : node) value[entry.first.as<std::string>()] = fromYaml(entry.second);
-  } else if (node.IsSequence()) {
-    value.setSize(static_cast<int>(node.size()));
-    for (std::size_t k = 0; k < node.size(); ++k) value[static_cast<int>(k)] = fromYaml(node[k]);
-  } else if (node.IsScalar()) {
-    value = fromScalar(node);
-  }
-  return value;
 }
 
 // Insertions, deletions and replacements that make one of the other (Levenshtein).
@@ -272,19 +242,11 @@ std::string ParameterReader::suggestion(const std::string& path) const {
 
 void ParameterReader::refuseUnknownOfNode() {
   if (!tree_.valid()) return;
+  settled_.insert("diagnostic_period");
   for (const auto& member : tree_) {
-    if (member.first == "diagnostic_period" || isOfImageTransport(member.second)) continue;
-    if (member.second.getType() == XmlRpcValue::TypeStruct) {
-      refuseUnknown(member.first);
-    } else if (read_.count(member.first) + said_.count(member.first) == 0) {
-      refuse(member.first);
-    }
+    if (isOfImageTransport(member.second)) settled_.insert(member.first);
   }
-}
-
-void ParameterReader::refuse(const std::string& path) {
-  errors_.push_back(full(path) + " is no parameter of this program" + suggestion(path));
-  said_.insert(path);  // once, also when a larger group is asked about later
+  refuseUnknown("");
 }
 
 void ParameterReader::refuseUnknown(const std::string& group) {
@@ -292,10 +254,12 @@ void ParameterReader::refuseUnknown(const std::string& group) {
   if (value == nullptr || value->getType() != XmlRpcValue::TypeStruct) return;
   for (const auto& member : (*value)) {
     const std::string path = group.empty() ? member.first : group + "/" + member.first;
+    if (settled_.count(path) > 0) continue;
     if (member.second.getType() == XmlRpcValue::TypeStruct) {
       refuseUnknown(path);
-    } else if (read_.count(path) + said_.count(path) == 0) {
-      refuse(path);
+    } else if (read_.count(path) == 0) {
+      errors_.push_back(full(path) + " is no parameter of this program" + suggestion(path));
+      settled_.insert(path);  // said once, also when a larger group is asked about later
     }
   }
 }
@@ -306,37 +270,6 @@ std::string ParameterReader::report() const {
       std::to_string(errors_.size()) + (errors_.size() == 1 ? " error" : " errors") + " in the parameters:";
   for (const std::string& error : errors_) text += "\n  " + error;
   return text;
-}
-
-XmlRpcValue parametersOf(const ros::NodeHandle& node) {
-  XmlRpcValue tree;
-  node.getParam(node.getNamespace(), tree);
-  return tree;
-}
-
-XmlRpcValue parametersFromYaml(const std::string& file) {
-  try {
-    const YAML::Node root = YAML::LoadFile(file);
-    if (!root.IsMap() && !root.IsNull()) {
-      throw std::runtime_error("parameter file '" + file + "' holds no mapping, expected lines of 'name: value'");
-    }
-    return fromYaml(root);
-  } catch (const YAML::Exception& error) {
-    throw std::runtime_error("parameter file '" + file + "': " + error.what());
-  }
-}
-
-XmlRpcValue mergeParameters(const XmlRpcValue& base, const XmlRpcValue& overlay) {
-  if (!overlay.valid()) return base;
-  if (!base.valid() || base.getType() != XmlRpcValue::TypeStruct || overlay.getType() != XmlRpcValue::TypeStruct) {
-    return overlay;
-  }
-  XmlRpcValue result = base;
-  for (const auto& member : overlay) {
-    result[member.first] = result.hasMember(member.first) ? mergeParameters(result[member.first], member.second)
-                                                          : XmlRpcValue(member.second);
-  }
-  return result;
 }
 
 }  // namespace laparoscope_servo

@@ -62,7 +62,6 @@ class ParameterReader {
   const XmlRpc::XmlRpcValue* find(const std::string& path) const;
   // The value at `path`, marked as read; null when absent.
   const XmlRpc::XmlRpcValue* take(const std::string& path);
-  void refuse(const std::string& path);
   void wrongType(const std::string& path, const XmlRpc::XmlRpcValue& value, const std::string& expected);
   std::string full(const std::string& path) const { return name_ + "/" + path; }
   bool number(const XmlRpc::XmlRpcValue& value, double& result) const;
@@ -70,7 +69,7 @@ class ParameterReader {
   XmlRpc::XmlRpcValue tree_;
   std::string name_;
   std::set<std::string> read_;
-  std::set<std::string> said_;  // of the unknown ones
+  std::set<std::string> settled_;  // of which nothing more is to be said, a library's or refused already
   std::vector<std::string> errors_;
 };
 

@@ -74,7 +74,6 @@ void readTracking(ParameterReader& reader, tracking::TrackerConfig& config) {
   reader.read("tracking/velocity_damping", config.velocity_damping, 0.0, 1.0);
   reader.read("tracking/min_roi_side", config.min_roi_side, 8, 1000);
   reader.read("tracking/min_texture", config.min_texture, 0.01, 10.0);
-  reader.refuseUnknown("tracking");
 }
 
 void readInput(ParameterReader& reader, tracking::InputConfig& config) {
@@ -86,7 +85,6 @@ void readInput(ParameterReader& reader, tracking::InputConfig& config) {
   reader.read("input/loop_step", config.loop_step, 0.1, 1e6);
   reader.read("input/max_gap", config.max_gap, 0.1, 1e6);
   reader.read("input/max_ahead", config.max_ahead, 0.0, 10.0);
-  reader.refuseUnknown("input");
 }
 
 void readImage(ParameterReader& reader, const std::string& name, ImageFormat& format) {
@@ -95,7 +93,6 @@ void readImage(ParameterReader& reader, const std::string& name, ImageFormat& fo
     reader.addError(name + "/image/bit_depth is " + std::to_string(format.bit_depth) + ", expected 0, or 8 to 16");
   }
   readEnum(reader, "image/yuv_range", {"limited", "full"}, format.yuv_range);
-  reader.refuseUnknown("image");
 }
 
 // A string "x,y,width,height" (empty: none), or a group of four numbers.
@@ -121,7 +118,6 @@ void readRoi(ParameterReader& reader, const std::string& name, std::optional<geo
   reader.read("roi/y", rectangle.y, 0.0, kMaxPixel);
   reader.read("roi/width", rectangle.width, 1.0, kMaxPixel);
   reader.read("roi/height", rectangle.height, 1.0, kMaxPixel);
-  reader.refuseUnknown("roi");
   roi = rectangle;
 }
 
@@ -131,7 +127,6 @@ void readRobotMotion(ParameterReader& reader, const std::string& name, RobotMoti
   reader.read("robot_motion/frame_prefix", config.frame_prefix);
   reader.read("robot_motion/owner", config.owner);
   reader.read("robot_motion/depth", config.depth, 0.005, 1.0);
-  reader.refuseUnknown("robot_motion");
   if (config.fixed_frame.empty() || config.fixed_frame[0] == '/') {
     reader.addError(name + "/robot_motion/fixed_frame is '" + config.fixed_frame +
                     "', expected the name of a tf frame, without a leading slash");
@@ -148,7 +143,6 @@ void readViews(ParameterReader& reader, tracking::ViewConfig& config) {
   reader.read("views/min_visible_fraction", config.min_visible_fraction, 0.0, 1.0);
   reader.read("views/arrival_centre", config.arrival_centre, 0.1, 10000.0);
   reader.read("views/arrival_scale", config.arrival_scale, 0.001, 1.0);
-  reader.refuseUnknown("views");
 }
 
 }  // namespace
