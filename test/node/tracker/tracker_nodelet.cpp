@@ -57,12 +57,13 @@ class TrackerNodelet : public testing::Test {
   }
 
   // Images until one is not refused.
-  HomographyConstPtr trackUntilAnswered(const cv::Mat& image) {
+  static HomographyConstPtr trackUntilAnswered(CameraBench& camera, const cv::Mat& image,
+                                               const std::function<ros::Time()>& next_stamp = nextStamp) {
     HomographyConstPtr answer;
     waitFor([&] {
-      const ros::Time stamp = nextStamp();
-      left().send(image, stamp);
-      return waitFor([&] { return (answer = left().homographies.at(stamp)) != nullptr; }, 0.3);
+      const ros::Time stamp = next_stamp();
+      camera.send(image, stamp);
+      return waitFor([&] { return (answer = camera.homographies.at(stamp)) != nullptr; }, 0.3);
     });
     return answer;
   }
@@ -177,11 +178,11 @@ TEST_F(TrackerNodelet, RefusesAnOddSizeAndForgetsTheRoiWhenItLasts) {
   left().send(other, nextStamp());
   EXPECT_EQ(left().track(image_, nextStamp())->state, Homography::TRACKING);
   for (int k = 0; k < 2; ++k) left().send(other, nextStamp());
-  const HomographyConstPtr homography = trackUntilAnswered(other);
+  const HomographyConstPtr homography = trackUntilAnswered(left(), other);
   ASSERT_TRUE(homography);
   EXPECT_EQ(homography->state, Homography::IDLE);
   EXPECT_TRUE(selectWhileRunning(other, {40.0, 30.0, 60.0, 60.0}).success);
-  ASSERT_TRUE(trackUntilAnswered(image_)) << "the size of the other tests";
+  ASSERT_TRUE(trackUntilAnswered(left(), image_)) << "the size of the other tests";
 }
 
 TEST_F(TrackerNodelet, HasATaskErrorOnlyWithUsableIntrinsics) {
@@ -325,12 +326,10 @@ TEST_F(TrackerNodelet, SelectsTheParametersRoiByItselfAndFindsItAgainInALoop) {
   const HomographyConstPtr second = right().track(image_, ros::Time(2001, 0));
   ASSERT_TRUE(second);
   EXPECT_EQ(second->reference_stamp, ros::Time(2000, 7));
-  HomographyConstPtr looped;
   ros::Time stamp(1500, 3);
+  HomographyConstPtr looped;
   EXPECT_TRUE(waitFor([&] {
-    stamp += ros::Duration(0.04);
-    right().send(image_, stamp);
-    waitFor([&] { return (looped = right().homographies.at(stamp)) != nullptr; }, 0.3);
+    looped = trackUntilAnswered(right(), image_, [&] { return stamp += ros::Duration(0.04); });
     return looped && looped->state == Homography::TRACKING;
   }));
   EXPECT_EQ(looped->reference_stamp, ros::Time(2000, 7)) << "it is the same region";
@@ -340,13 +339,7 @@ TEST_F(TrackerNodelet, TwoInOneManagerDoNotMeet) {
   ASSERT_TRUE(right().ready());
   // One image confirms a pause; a queue of one may lose it.
   ros::Time stamp(3000, 0);
-  ASSERT_TRUE(waitFor([&] {
-    HomographyConstPtr answer;
-    stamp += ros::Duration(0.04);
-    right().send(image_, stamp);
-    waitFor([&] { return (answer = right().homographies.at(stamp)) != nullptr; }, 0.3);
-    return answer != nullptr;
-  }));
+  ASSERT_TRUE(trackUntilAnswered(right(), image_, [&] { return stamp += ros::Duration(0.04); }));
   EXPECT_EQ(left().track(image_, nextStamp())->state, Homography::IDLE);
   const HomographyConstPtr next = right().track(image_, stamp + ros::Duration(0.04));
   ASSERT_TRUE(next);

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "image_source_fixture.h"
 #include "support/test_video.h"
+#include "unit/ros/image_source_fixture.h"
 
 namespace laparoscope_servo {
 namespace {

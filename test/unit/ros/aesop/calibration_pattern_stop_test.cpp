@@ -1,7 +1,7 @@
 // What ends the pattern of a calibration: the arm stands, and the insertion point stays what it was.
 #include <cmath>
 
-#include "calibration_loop.h"
+#include "unit/ros/calibration_loop.h"
 
 namespace laparoscope_servo {
 namespace {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "laparoscope_servo/servo/safety_machine.h"
-#include "safety_facts.h"
+#include "unit/servo/safety_facts.h"
 
 namespace laparoscope_servo::servo {
 namespace {
