@@ -266,6 +266,7 @@ const TrackResult& RegionTracker::Implementation::report(const Attempt& attempt)
   result.zncc = attempt.evidence.zncc;
   result.iterations = attempt.evidence.esm.iterations;
   result.corner_error = attempt.evidence.esm.corner_error;
+  result.centre_error = attempt.evidence.esm.centre_error;
   result.sigma = attempt.evidence.esm.sigma;
   result.motion_used = carried_ && attempt.doubt.empty();
   result.gain = attempt.evidence.esm.state.gain;

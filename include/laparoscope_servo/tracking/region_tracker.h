@@ -41,6 +41,7 @@ struct TrackResult {
   double zncc = 0.0;                                // -1 to 1, over those pixels, the mean of each area taken out
   int iterations = 0;                               // of ESM, all levels
   double corner_error = 0.0;  // px, standard deviation expected of the worst corner, by residuals and motion
+  double centre_error = 0.0;  // px, the same of the ROI's centre, which may be known where the corners are not
   double sigma = 0.0;         // grey levels, robust standard deviation of the residual
   double gain = 1.0;          // gain * image + bias has the light of the reference
   double bias = 0.0;          // grey levels

@@ -13,10 +13,18 @@ std::string exact(double value) {
   return text;
 }
 
+// As RFC 4180 has it: a comma or a quote in the text ends no field.
+std::string quoted(const std::string& text) {
+  std::string result = "\"";
+  for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return result + '"';
+}
+
 }  // namespace
 
 void writeCsvHeader(std::ostream& stream) {
-  stream << "frame,stamp,state,g00,g01,g02,g10,g11,g12,g20,g21,g22,visible_fraction,zncc,iterations,processing_time\n";
+  stream << "frame,stamp,state,g00,g01,g02,g10,g11,g12,g20,g21,g22,visible_fraction,zncc,iterations,processing_time"
+            ",corner_error,centre_error,gain,bias,reason\n";
 }
 
 void writeCsvRow(std::ostream& stream, std::size_t frame, const Processed& processed) {
@@ -26,7 +34,8 @@ void writeCsvRow(std::ostream& stream, std::size_t frame, const Processed& proce
     for (int column = 0; column < 3; ++column) stream << ',' << exact(result.g(row, column));
   }
   stream << ',' << exact(result.visible_fraction) << ',' << exact(result.zncc) << ',' << result.iterations << ','
-         << exact(processed.processing_time) << '\n';
+         << exact(processed.processing_time) << ',' << exact(result.corner_error) << ',' << exact(result.centre_error)
+         << ',' << exact(result.gain) << ',' << exact(result.bias) << ',' << quoted(result.reason) << '\n';
 }
 
 }  // namespace laparoscope_servo

@@ -65,6 +65,7 @@ Homography homographyMessage(const Processed& processed) {
   message.visible_fraction = result.visible_fraction;
   message.zncc = result.zncc;
   message.corner_error = result.corner_error;
+  message.centre_error = result.centre_error;
   message.iterations = static_cast<std::uint16_t>(
       std::clamp(result.iterations, 0, static_cast<int>(std::numeric_limits<std::uint16_t>::max())));
   return message;

@@ -185,6 +185,7 @@ void TrackerDiagnostics::fill(double now, diagnostic_updater::DiagnosticStatusWr
   status.addf("visible fraction", "%.3f", result_.visible_fraction);
   status.addf("zncc", "%.3f", result_.zncc);
   status.addf("corner error [px]", "%.3f", result_.corner_error);
+  status.addf("centre error [px]", "%.3f", result_.centre_error);
   status.add("ROI [px]", result_.state == State::kIdle ? "none" : roiText(result_.roi));
   status.add("intrinsics", has_camera_ ? "from camera_info" : camera_error_.empty() ? "unknown" : camera_error_);
   status.add("lens distortion", rectifies_            ? "corrected by the tracker"

@@ -11,12 +11,20 @@ namespace {
 
 constexpr double kSingular = 1e-12;  // conditioning of equations that determine nothing
 
-// The derivative of a corner's image, in normalised template units, at the identity: the rows of J for unit gradients.
-Eigen::Matrix<double, 2, 8> cornerJacobian(const Eigen::Vector2d& p) {
+// The derivative of a point's image, in normalised template units, at the identity: the rows of J for unit gradients.
+Eigen::Matrix<double, 2, 8> pointJacobian(const Eigen::Vector2d& p) {
   Eigen::Matrix<double, 2, 8> j;
   j.row(0) = esmJacobianRow(1.0, 0.0, p.x(), p.y());
   j.row(1) = esmJacobianRow(0.0, 1.0, p.x(), p.y());
   return j;
+}
+
+// px in the image, standard deviation of the image of a point of the ROI.
+double pointError(const Eigen::Matrix3d& g, const geometry::Rectangle& roi, const Eigen::Vector2d& point,
+                  const Matrix8d& covariance) {
+  const Eigen::Matrix<double, 2, 8> j =
+      halfSize(roi) * geometry::derivative(g, point) * pointJacobian(geometry::apply(templateFromPixels(roi), point));
+  return std::sqrt((j * covariance * j.transpose()).trace());
 }
 
 }  // namespace
@@ -62,14 +70,13 @@ std::optional<Matrix8d> covarianceOfNoise(const Matrix10d& matrix, double varian
 }
 
 double cornerError(const Eigen::Matrix3d& g, const geometry::Rectangle& roi, const Matrix8d& covariance) {
-  const Eigen::Matrix3d n = templateFromPixels(roi);
   double worst = 0.0;
-  for (const Eigen::Vector2d& corner : roi.corners()) {
-    const Eigen::Matrix<double, 2, 8> j =
-        halfSize(roi) * geometry::derivative(g, corner) * cornerJacobian(geometry::apply(n, corner));
-    worst = std::max(worst, (j * covariance * j.transpose()).trace());
-  }
-  return std::sqrt(worst);
+  for (const Eigen::Vector2d& corner : roi.corners()) worst = std::max(worst, pointError(g, roi, corner, covariance));
+  return worst;
+}
+
+double centreError(const Eigen::Matrix3d& g, const geometry::Rectangle& roi, const Matrix8d& covariance) {
+  return pointError(g, roi, {roi.x + 0.5 * (roi.width - 1.0), roi.y + 0.5 * (roi.height - 1.0)}, covariance);
 }
 
 }  // namespace laparoscope_servo::tracking

@@ -25,5 +25,7 @@ std::optional<Matrix8d> covarianceOfNoise(const Matrix10d& matrix, double varian
 
 // px in the image, standard deviation of the worst of the ROI's corners as `g` shows it, for that covariance of x.
 double cornerError(const Eigen::Matrix3d& g, const geometry::Rectangle& roi, const Matrix8d& covariance);
+// The same of the ROI's centre.
+double centreError(const Eigen::Matrix3d& g, const geometry::Rectangle& roi, const Matrix8d& covariance);
 
 }  // namespace laparoscope_servo::tracking

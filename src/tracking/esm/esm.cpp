@@ -164,6 +164,7 @@ void Esm::judge(const MotionPrior* prior, EsmResult& result) const {
   if (!found.covariance) return;
   result.covariance = *found.covariance;
   result.corner_error = cornerError(result.state.g, roi_, result.covariance);
+  result.centre_error = centreError(result.state.g, roi_, result.covariance);
 }
 
 double Esm::referenceCornerError(double sigma) {
@@ -265,7 +266,7 @@ EsmResult Esm::align(const image::RegionPyramid& current, const EsmState& start,
                      int coarsest) {
   EsmResult result;
   result.state = start;
-  result.corner_error = std::numeric_limits<double>::infinity();
+  result.corner_error = result.centre_error = std::numeric_limits<double>::infinity();
   deviation_.setZero();
   if (prior != nullptr && prior->predicted != start.g) {
     deviation_ = geometry::sl3Log(geometry::normaliseDeterminant(n_ * prior->predicted.inverse() * start.g * n_inv_));

@@ -52,6 +52,7 @@ struct EsmResult {
   double noise = 0.0;
   double corner_error =
       0.0;  // px in the image, standard deviation of the worst corner, prior included; infinite if unknown
+  double centre_error = 0.0;  // the same of the ROI's centre
 };
 
 // What is known of the motion before the image is seen: the deviation x of G from `predicted`, G = predicted N^-1

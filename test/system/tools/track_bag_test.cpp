@@ -62,7 +62,8 @@ TEST_F(TrackBag, WritesTheTableAndEndsWithZero) {
   const std::string table = content(out_.file("out.csv"));
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 5);
   EXPECT_EQ(table.substr(0, table.find('\n')),
-            "frame,stamp,state,g00,g01,g02,g10,g11,g12,g20,g21,g22,visible_fraction,zncc,iterations,processing_time");
+            "frame,stamp,state,g00,g01,g02,g10,g11,g12,g20,g21,g22,visible_fraction,zncc,iterations,processing_time"
+            ",corner_error,centre_error,gain,bias,reason");
   EXPECT_TRUE(says("4 images: TRACKING")) << stderr_;
   EXPECT_EQ(stdout_, "");
   EXPECT_EQ(stderr_.find('\r'), std::string::npos) << "no progress line in a log";

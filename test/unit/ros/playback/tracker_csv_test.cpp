@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -22,7 +23,8 @@ TEST(TrackerCsv, HasTheColumnsThatOthersRelyOn) {
   std::ostringstream stream;
   writeCsvHeader(stream);
   EXPECT_EQ(stream.str(),
-            "frame,stamp,state,g00,g01,g02,g10,g11,g12,g20,g21,g22,visible_fraction,zncc,iterations,processing_time\n");
+            "frame,stamp,state,g00,g01,g02,g10,g11,g12,g20,g21,g22,visible_fraction,zncc,iterations,processing_time"
+            ",corner_error,centre_error,gain,bias,reason\n");
 }
 
 TEST(TrackerCsv, ReadsBackAsTheSameNumbers) {
@@ -34,11 +36,16 @@ TEST(TrackerCsv, ReadsBackAsTheSameNumbers) {
   processed.result.zncc = -1.0 / 7.0;
   processed.result.iterations = 17;
   processed.processing_time = 1e-3 / 3.0;
+  processed.result.corner_error = std::numeric_limits<double>::infinity();
+  processed.result.centre_error = 2.0 / 3.0;
+  processed.result.gain = 1.1;
+  processed.result.bias = -3.0 / 7.0;
+  processed.result.reason = "found";
   std::ostringstream stream;
   writeCsvRow(stream, 42, processed);
   ASSERT_EQ(stream.str().back(), '\n');
   const std::vector<std::string> row = fields(stream.str());
-  ASSERT_EQ(row.size(), 16u);
+  ASSERT_EQ(row.size(), 21u);
   const auto number = [&row](std::size_t column) { return std::strtod(row[column].c_str(), nullptr); };
   EXPECT_EQ(row[0], "42");
   EXPECT_EQ(number(1), processed.header.stamp.toSec());
@@ -48,6 +55,20 @@ TEST(TrackerCsv, ReadsBackAsTheSameNumbers) {
   EXPECT_EQ(number(13), -1.0 / 7.0);
   EXPECT_EQ(row[14], "17");
   EXPECT_EQ(number(15), 1e-3 / 3.0);
+  EXPECT_EQ(number(16), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(number(17), 2.0 / 3.0);
+  EXPECT_EQ(number(18), 1.1);
+  EXPECT_EQ(number(19), -3.0 / 7.0);
+  EXPECT_EQ(row[20], "\"found\"\n");
+}
+
+TEST(TrackerCsv, AReasonIsOneFieldWhateverIsInIt) {
+  Processed processed;
+  processed.result.reason = "correlation 0.4, expected at least 0.5 (\"why\")";
+  std::ostringstream stream;
+  writeCsvRow(stream, 0, processed);
+  EXPECT_NE(stream.str().find(",\"correlation 0.4, expected at least 0.5 (\"\"why\"\")\"\n"), std::string::npos)
+      << stream.str();
 }
 
 }  // namespace

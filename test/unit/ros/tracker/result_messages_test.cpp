@@ -31,6 +31,7 @@ Processed tracked() {
   processed.result.visible_fraction = 0.5;
   processed.result.zncc = 0.9;
   processed.result.corner_error = 0.25;
+  processed.result.centre_error = 0.125;
   processed.result.iterations = 12;
   processed.result.areas = {2, 3, {0.f, 0.1f, 0.2f, 0.3f, 0.4f, 0.5f}, {false, false, true, false, true, true}};
   processed.processing_time = 0.003;
@@ -64,6 +65,7 @@ TEST(HomographyMessage, CopiesTheHeaderAndTheRest) {
   EXPECT_EQ(message.visible_fraction, 0.5);
   EXPECT_EQ(message.zncc, 0.9);
   EXPECT_EQ(message.corner_error, 0.25);
+  EXPECT_EQ(message.centre_error, 0.125);
   EXPECT_EQ(message.iterations, 12);
   EXPECT_EQ(message.processing_time, 0.003);
   const geometry::Quadrilateral corners = geometry::apply(processed.result.g, processed.result.roi.corners());

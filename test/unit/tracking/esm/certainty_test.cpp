@@ -99,7 +99,7 @@ TEST(Certainty, WithoutEquationsThereIsThePriorOrNothing) {
 }
 
 // By drawing deviations: G' = G N^-1 exp(A(x)) N.
-TEST(CornerError, IsTheSpreadOfTheWorstCorner) {
+TEST(CornerError, IsTheSpreadOfTheWorstCornerAndThatOfTheCentreIsTheCentres) {
   std::mt19937 generator(3);
   std::normal_distribution<double> normal;
   Eigen::Matrix3d g;
@@ -107,16 +107,22 @@ TEST(CornerError, IsTheSpreadOfTheWorstCorner) {
   const Matrix8d root = 1e-3 * Matrix8d::NullaryExpr([&] { return normal(generator); });
   const Eigen::Matrix3d n = templateFromPixels(kRoi);
   const geometry::Quadrilateral corners = geometry::apply(g, kRoi.corners());
+  const Eigen::Vector2d middle(kRoi.x + 0.5 * (kRoi.width - 1.0), kRoi.y + 0.5 * (kRoi.height - 1.0));
+  const Eigen::Vector2d centre = geometry::apply(g, middle);
   double squares[4] = {};
+  double of_centre = 0.0;
   constexpr int kDraws = 4000;
   for (int k = 0; k < kDraws; ++k) {
     const geometry::Vector8d x = root * geometry::Vector8d::NullaryExpr([&] { return normal(generator); });
-    const geometry::Quadrilateral moved =
-        geometry::apply(Eigen::Matrix3d(g * n.inverse() * geometry::sl3Exp(x) * n), kRoi.corners());
+    const Eigen::Matrix3d deviated = g * n.inverse() * geometry::sl3Exp(x) * n;
+    const geometry::Quadrilateral moved = geometry::apply(deviated, kRoi.corners());
+    of_centre += (geometry::apply(deviated, middle) - centre).squaredNorm();
     for (int corner = 0; corner < 4; ++corner) squares[corner] += (moved[corner] - corners[corner]).squaredNorm();
   }
   const double spread = std::sqrt(*std::max_element(squares, squares + 4) / kDraws);
   EXPECT_NEAR(cornerError(g, kRoi, root * root.transpose()), spread, 0.05 * spread);
+  const double of_middle = std::sqrt(of_centre / kDraws);
+  EXPECT_NEAR(centreError(g, kRoi, root * root.transpose()), of_middle, 0.05 * of_middle);
 }
 
 }  // namespace
