@@ -64,12 +64,12 @@ void place(const float* __restrict u, const float* __restrict v, ByteFrame frame
 
 LAPAROSCOPE_SERVO_CLONES
 int markBright(const unsigned char* __restrict b, const unsigned char* __restrict g, const unsigned char* __restrict r,
-               int count, int threshold, unsigned char* __restrict mask) {
+               int count, const std::array<int, 3>& thresholds, unsigned char* __restrict mask) {
+  const int blue = thresholds[0], green = thresholds[1], red = thresholds[2];
   int any = 0;
 #pragma omp simd reduction(| : any)
   for (int i = 0; i < count; ++i) {
-    const int bright =
-        static_cast<int>(b[i] >= threshold) | static_cast<int>(g[i] >= threshold) | static_cast<int>(r[i] >= threshold);
+    const int bright = static_cast<int>(b[i] >= blue) | static_cast<int>(g[i] >= green) | static_cast<int>(r[i] >= red);
     mask[i] = static_cast<unsigned char>(-bright);
     any |= bright;
   }
@@ -83,8 +83,8 @@ void add(const unsigned char* __restrict from, int count, unsigned char* __restr
 }
 
 // Marks what is bright and grows it along the row. False when nothing is.
-bool markBrightRow(const unsigned char* b, const unsigned char* g, const unsigned char* r, int width, int threshold,
-                   int grow, unsigned char* mask) {
+bool markBrightRow(const unsigned char* b, const unsigned char* g, const unsigned char* r, int width,
+                   const std::array<int, 3>& thresholds, int grow, unsigned char* mask) {
   unsigned char bright[kChunk];
   bool any = false;
   const int inner = kChunk - 2 * grow;
@@ -93,7 +93,7 @@ bool markBrightRow(const unsigned char* b, const unsigned char* g, const unsigne
     const int count = std::min(inner, width - first);
     const int begin = std::max(first - grow, 0);
     const int end = std::min(first + count + grow, width);
-    if (markBright(b + begin, g + begin, r + begin, end - begin, threshold, bright) == 0) continue;
+    if (markBright(b + begin, g + begin, r + begin, end - begin, thresholds, bright) == 0) continue;
     any = true;
     for (int shift = -grow; shift <= grow; ++shift) {
       const int low = std::max(first, begin - shift);
@@ -178,7 +178,7 @@ void warpNearest(const cv::Mat& image, const Eigen::Matrix3d& g, const Lens& len
   warpRows(image, lens.raysFromRectified() * g, &loop, size, patch);
 }
 
-void saturatedPixels(const ColourPatch& patch, int threshold, int grow, cv::Mat1b& mask) {
+void saturatedPixels(const ColourPatch& patch, const std::array<int, 3>& thresholds, int grow, cv::Mat1b& mask) {
   if (grow < 0 || grow > kMaxGrow) {
     throw std::invalid_argument("growth of " + std::to_string(grow) + " px, expected 0 to " + std::to_string(kMaxGrow));
   }
@@ -188,7 +188,7 @@ void saturatedPixels(const ColourPatch& patch, int threshold, int grow, cv::Mat1
     const unsigned char* blue = patch.blue.ptr<unsigned char>(j);
     const unsigned char* green = patch.has_colour ? patch.green.ptr<unsigned char>(j) : blue;
     const unsigned char* red = patch.has_colour ? patch.red.ptr<unsigned char>(j) : blue;
-    any |= markBrightRow(blue, green, red, mask.cols, threshold, grow, mask.ptr<unsigned char>(j));
+    any |= markBrightRow(blue, green, red, mask.cols, thresholds, grow, mask.ptr<unsigned char>(j));
   }
   if (any) growAcross(grow, mask);
 }

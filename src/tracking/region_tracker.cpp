@@ -204,6 +204,7 @@ Attempt RegionTracker::Implementation::attempt(const cv::Mat& image, double stam
   e.predicted = start.g;
   e.from_track = prior != nullptr;
   e.last_gain = last_.gain;
+  e.light_gain = aligner_.gates().lightGain();
   e.unseen = unseen_before_ + stamp - filter_.lastStamp();
   e.record = record_;
   e.esm = found.esm;

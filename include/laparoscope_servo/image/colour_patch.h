@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <opencv2/core.hpp>
 
 #include "laparoscope_servo/image/lens.h"
@@ -28,9 +29,12 @@ void warpNearest(const cv::Mat& image, const Eigen::Matrix3d& g, const cv::Size&
 void warpNearest(const cv::Mat& image, const Eigen::Matrix3d& g, const Lens& lens, const cv::Size& size,
                  ColourPatch& patch);
 
-// 255 where any channel is at least `threshold` (grey levels), grown by `grow` px (0 to 64, else std::invalid_argument)
-// in every direction; 0 elsewhere. Highlights move with the lamp rather than with the tissue, and their rims are
-// bleached.
-void saturatedPixels(const ColourPatch& patch, int threshold, int grow, cv::Mat1b& mask);
+// 255 where a channel, blue, green, red, is at least its threshold (grey levels; without colour, the least of them),
+// grown by `grow` px (0 to 64, else std::invalid_argument) in every direction; 0 elsewhere. Highlights move with the
+// lamp rather than with the tissue, and their rims are bleached.
+void saturatedPixels(const ColourPatch& patch, const std::array<int, 3>& thresholds, int grow, cv::Mat1b& mask);
+inline void saturatedPixels(const ColourPatch& patch, int threshold, int grow, cv::Mat1b& mask) {
+  saturatedPixels(patch, {threshold, threshold, threshold}, grow, mask);
+}
 
 }  // namespace laparoscope_servo::image

@@ -23,8 +23,8 @@ enum class Light {
 // What of the colours ESM tracks.
 enum class TrackedChannels {
   kLuma,
-  kStrongest,  // the mixture that varies most across the ROI
-  kColour,     // blue, green and red: three residuals a pixel, as Bourger et al. (2007) extend ESM
+  kStrongest,  // the mixture that varies most across the ROI, of colours that do not clip
+  kColour,     // blue, green and red, but what clips: three residuals a pixel, as Bourger et al. (2007) extend ESM
 };
 
 struct OcclusionConfig {
@@ -42,9 +42,9 @@ struct EsmConfig {
   int max_iterations = 50;  // 1 to 100, per level
   double min_step = 0.02;   // px, 0.0001 to 1: converged when no corner of the ROI is expected to move by more
   Light light = Light::kLocal;
-  bool robust = true;  // Tukey's weights on the residuals
-  int saturation =
-      250;  // 1 to 256 grey levels: pixels as bright as this in any channel weigh nothing; 256 turns it off
+  bool robust = true;    // Tukey's weights on the residuals
+  int saturation = 250;  // 1 to 256 grey levels: pixels as bright as this in a colour that is tracked weigh nothing;
+                         // 256 turns it off
   TrackedChannels channels = TrackedChannels::kStrongest;
 };
 

@@ -84,10 +84,11 @@ std::string doubt(const Evidence& e, const QualityConfig& q) {
     return text("expected corner error [px]", e.esm.corner_error, "at most", q.max_corner_error);
   }
   if (!e.from_track) {
-    const double change = e.esm.state.gain / e.last_gain;
+    const auto factor = [&](double gain) { return std::max(gain / e.esm.state.gain, e.esm.state.gain / gain); };
+    const double of_last = factor(e.last_gain);
+    const double change = e.light_gain > 0.0 ? std::min(of_last, factor(e.light_gain)) : of_last;
     const double allowed = kMaxGainChange + kGainChangeRate * std::max(0.0, e.unseen);
-    if (!(std::max(change, 1.0 / change) <= allowed))
-      return text("change of gain", change, "within a factor of", allowed);
+    if (!(change <= allowed)) return text("change of gain", change, "within a factor of", allowed);
   }
   const geometry::Quadrilateral predicted = geometry::apply(e.predicted, e.roi.corners());
   const double jump = geometry::largestDistance(corners, predicted);

@@ -37,7 +37,8 @@ struct Evidence {
   Eigen::Matrix3d predicted;  // G before ESM
   bool from_track = false;  // the prediction comes from the image before; false: from a search, which has to prove more
   double last_gain = 1.0;   // of the last estimate that was believed
-  double unseen = 0.0;      // s, since then
+  double light_gain = 0.0;  // that the colours show, which says as much of the gain; 0 where they tell of none
+  double unseen = 0.0;      // s, since the last estimate that was believed
   double visible_fraction = 0.0;  // 0 to 1
   double in_image = 1.0;          // 0 to 1, share of the ROI that lies in the image
   double zncc = 0.0;              // over the pixels used, the means of the areas taken out

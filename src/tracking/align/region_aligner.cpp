@@ -1,11 +1,10 @@
 #include "tracking/align/region_aligner.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <opencv2/imgproc.hpp>
 
+#include "tracking/align/channel_choice.h"
 #include "tracking/align/detail.h"
 
 namespace laparoscope_servo::tracking {
@@ -15,36 +14,6 @@ namespace {
 constexpr int kMaxStructureRounds = 3;
 constexpr double kGateShift = 2.0;  // px: masks drawn further from the estimate than this are drawn again
 constexpr double kBorder = 4.0;     // px of the coarsest level, of what smoothing takes in from beyond the ROI
-
-// The combination of the channels whose gradient is strongest for its noise: the principal axis of sum grad_c grad_d.
-// Scaled so that the weights' magnitudes sum to one, which keeps the range of grey levels.
-image::ChannelWeights strongestChannel(const cv::Mat& patch) {
-  cv::Mat3f gx, gy, smooth;
-  patch.convertTo(smooth, CV_32FC3);
-  cv::GaussianBlur(smooth, smooth, cv::Size(), 1.0);
-  cv::Sobel(smooth, gx, CV_32F, 1, 0, 1, 0.5);
-  cv::Sobel(smooth, gy, CV_32F, 0, 1, 1, 0.5);
-  Eigen::Matrix3d energy = Eigen::Matrix3d::Zero();
-  for (int j = 0; j < patch.rows; ++j) {
-    for (int i = 0; i < patch.cols; ++i) {
-      const Eigen::Vector3d x(gx(j, i)[0], gx(j, i)[1], gx(j, i)[2]);
-      const Eigen::Vector3d y(gy(j, i)[0], gy(j, i)[1], gy(j, i)[2]);
-      energy += x * x.transpose() + y * y.transpose();
-    }
-  }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(energy);
-  Eigen::Vector3d axis = solver.eigenvectors().col(2);
-  const double magnitude = axis.cwiseAbs().sum();
-  if (solver.info() != Eigen::Success || !(magnitude > 0.0)) return image::kLuma;
-  axis *= (axis.sum() < 0.0 ? -1.0 : 1.0) / magnitude;
-  return {static_cast<float>(axis[0]), static_cast<float>(axis[1]), static_cast<float>(axis[2])};
-}
-
-image::Channels chosenChannels(TrackedChannels wanted, const cv::Mat& patch) {
-  if (patch.channels() == 1 || wanted == TrackedChannels::kLuma) return image::kLuma;
-  if (wanted == TrackedChannels::kStrongest) return strongestChannel(patch);
-  return {{1.0f, 0.0f, 0.0f}, {0.0f, 1.0f, 0.0f}, {0.0f, 0.0f, 1.0f}};
-}
 
 bool usable(const EsmResult& estimate) {
   return estimate.status == EsmStatus::kConverged || estimate.status == EsmStatus::kMaxIterations;
@@ -71,12 +40,13 @@ RegionAligner::RegionAligner(const TrackerConfig& config, std::shared_ptr<const 
 
 void RegionAligner::setReference(const cv::Mat& image, const geometry::Rectangle& roi) {
   const cv::Rect box = image::seenBox(lens_.get(), roi.corners(), 0.0) & cv::Rect(cv::Point(0, 0), image.size());
-  channels_ = chosenChannels(config_.channels, image(box));
+  channels_ = chosenChannels(config_.channels, image(box), config_.saturation);
   const cv::Rect with_border = image::seenBox(lens_.get(), roi.corners(), kBorder * (1 << config_.levels));
   pyramid_.build(image, with_border, config_.levels, channels_);
   esm_.setReference(pyramid_, roi);
   sample(image, Eigen::Matrix3d::Identity());
-  gates_.setReference(patch_, cv::Size(static_cast<int>(roi.width), static_cast<int>(roi.height)));
+  gates_.setReference(patch_, cv::Size(static_cast<int>(roi.width), static_cast<int>(roi.height)),
+                      coloursIn(channels_));
   esm_.setWeights(weights());
 }
 

@@ -30,15 +30,22 @@ inline float intensity(float r, float g, float b) {
   return (r + g + b) / 3.0f + kDark;
 }
 
+inline float relit(const ChannelLight& light, float value) {
+  const float lit = light.gain * value + light.offset;
+  return lit < 0.0f ? 0.0f : (lit > 255.0f ? 255.0f : lit);
+}
+
 LAPAROSCOPE_SERVO_CLONES
 void binsOfRow(const unsigned char* __restrict b, const unsigned char* __restrict g, const unsigned char* __restrict r,
-               int count, bool normalised, float low, float scale, int last, int* __restrict bin) {
+               int count, const ColourLight& light, bool normalised, float low, float scale, int last,
+               int* __restrict bin) {
   const float by_intensity = normalised ? 1.0f : 0.0f;
+  const ChannelLight of_b = light[0], of_g = light[1], of_r = light[2];
 #pragma omp simd
   for (int i = 0; i < count; ++i) {
-    const float red = r[i];
-    const float green = g[i];
-    const float blue = b[i];
+    const float red = relit(of_r, r[i]);
+    const float green = relit(of_g, g[i]);
+    const float blue = relit(of_b, b[i]);
     const float divisor = by_intensity * intensity(red, green, blue) + (1.0f - by_intensity);
     const int k = static_cast<int>((feature(red, green, blue) / divisor - low) * scale);
     bin[i] = k < 0 ? 0 : (k > last ? last : k);
@@ -66,7 +73,7 @@ float bhattacharyyaDistance(const float* a, const float* b, int bins) {
   return std::sqrt(std::max(0.0f, 1.0f - coefficient));                  // eq. (2)
 }
 
-void ColourHistograms::compute(const image::ColourPatch& patch, const image::AreaGrid& grid) {
+void ColourHistograms::compute(const image::ColourPatch& patch, const image::AreaGrid& grid, const ColourLight& light) {
   counts_.assign(static_cast<std::size_t>(grid.count()) * bins_, 0);
   histograms_.resize(counts_.size());
   pixels_.assign(grid.count(), 0);
@@ -77,7 +84,7 @@ void ColourHistograms::compute(const image::ColourPatch& patch, const image::Are
   const float scale = static_cast<float>(bins_) / (high - low);
   for (int j = 0; j < grid.height(); ++j) {
     binsOfRow(patch.blue.ptr<unsigned char>(j), patch.green.ptr<unsigned char>(j), patch.red.ptr<unsigned char>(j),
-              grid.width(), normalised, low, scale, bins_ - 1, bin_of_.data());
+              grid.width(), light, normalised, low, scale, bins_ - 1, bin_of_.data());
     const unsigned char* valid = patch.valid.ptr<unsigned char>(j);
     for (int column = 0; column < grid.columns(); ++column) {
       const int area = grid.rowOf(j) * grid.columns() + column;

@@ -11,6 +11,7 @@
 #include "laparoscope_servo/image/area_grid.h"
 #include "laparoscope_servo/image/colour_patch.h"
 #include "laparoscope_servo/tracking/tracker_config.h"
+#include "tracking/occlusion/light_fit.h"
 
 namespace laparoscope_servo::tracking {
 
@@ -31,8 +32,9 @@ class ColourHistograms {
  public:
   ColourHistograms(ColourGate mode, int bins) : mode_(mode), bins_(bins) {}
 
-  // `patch` has colour and the grid's size; pixels with valid = 0 do not count.
-  void compute(const image::ColourPatch& patch, const image::AreaGrid& grid);
+  // `patch` has colour and the grid's size; pixels with valid = 0 do not count. What counts is how the colours would
+  // look after `light`, within 0 to 255.
+  void compute(const image::ColourPatch& patch, const image::AreaGrid& grid, const ColourLight& light = {});
 
   // The area's histogram, eq. (1), `bins` numbers that sum to 1 when pixels(area) > 0.
   const float* histogram(int area) const { return histograms_.data() + static_cast<std::size_t>(area) * bins_; }

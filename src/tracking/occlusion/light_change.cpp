@@ -16,72 +16,93 @@ constexpr float kLeastLevel = 16.0f;  // grey levels of a median; below it the r
 // The share of an area that has to clip before clipping can account for another colour: a distance (2) of 0.5, the
 // paper's threshold, takes about as much of the area in other bins.
 constexpr float kLeastClipped = 0.1f;
+// Grey levels by which lights differ that are worth a comparison: the noise of a pixel.
+constexpr float kSameLight = 2.0f;
 
 }  // namespace
 
-LightChange::LightChange(int bins, const image::AreaGrid& grid)
-    : bins_(bins), grid_(grid), histogram_(bins), relit_(bins) {
+LightChange::LightChange(const image::ColourPatch& reference, int bins, const image::AreaGrid& grid)
+    : bins_(bins),
+      grid_(grid),
+      reference_(reference.clone()),
+      fit_(grid.count()),
+      all_(grid.count(), 1),
+      histogram_(bins),
+      relit_(bins) {
+  reference_colours_.compute(reference_, grid_);
+  colours_ = reference_colours_;
   int most = 0;
   for (int area = 0; area < grid.count(); ++area) most = std::max(most, grid.pixelsIn(area));
-  for (std::vector<Pixel>* pixels : {&reference_, &current_})
-    pixels->reserve(most);  // nothing is allocated while tracking
+  for (std::vector<Colour>* pixels : {&before_, &now_}) pixels->reserve(most);  // nothing is allocated while tracking
   channel_.reserve(most);
 }
 
-void LightChange::collect(const image::ColourPatch& patch, int area, std::vector<Pixel>& pixels) const {
+std::optional<ColourLight> LightChange::propose(const std::vector<char>& use, const ColourLight* start,
+                                                double least_correlation) {
+  const std::optional<LightFit::Result> found = fit_.fit(colours_, reference_colours_, use, start);
+  if (!found || !(found->correlation >= least_correlation)) return std::nullopt;
+  if (largestDifference(found->light, known_) < kSameLight) return std::nullopt;
+  return found->light;
+}
+
+float LightChange::collect(const image::ColourPatch& patch, const ColourLight& light, int area,
+                           std::vector<Colour>& pixels) const {
   pixels.clear();
+  int clipped = 0;
   const int row = area / grid_.columns(), column = area % grid_.columns();
   for (int j = grid_.rowBegin(row); j < grid_.rowBegin(row + 1); ++j) {
     for (int i = grid_.columnBegin(column); i < grid_.columnBegin(column + 1); ++i) {
       if (!patch.valid(j, i)) continue;
-      pixels.push_back({static_cast<float>(patch.blue(j, i)), static_cast<float>(patch.green(j, i)),
-                        static_cast<float>(patch.red(j, i))});
+      const std::array<unsigned char, 3> seen = {patch.blue(j, i), patch.green(j, i), patch.red(j, i)};
+      Colour colour;
+      for (int c = 0; c < 3; ++c) colour[c] = std::max(0.0f, light[c].gain * seen[c] + light[c].offset);
+      clipped += *std::max_element(seen.begin(), seen.end()) == 255;
+      pixels.push_back(colour);
     }
   }
+  return static_cast<float>(clipped) / std::max(1.0f, static_cast<float>(pixels.size()));
 }
 
-float LightChange::median(const std::vector<Pixel>& pixels, float Pixel::*channel) {
+float LightChange::median(const std::vector<Colour>& pixels, int channel) {
   channel_.clear();
-  for (const Pixel& pixel : pixels) channel_.push_back(pixel.*channel);
+  for (const Colour& pixel : pixels) channel_.push_back(pixel[channel]);
   return robust::median(channel_);
 }
 
-void LightChange::fill(const std::vector<Pixel>& pixels, float gain, std::vector<float>& histogram) const {
+void LightChange::fill(const std::vector<Colour>& pixels, float gain, const Colour& ceiling,
+                       std::vector<float>& histogram) const {
   std::fill(histogram.begin(), histogram.end(), 0.0f);
   const float share = 1.0f / static_cast<float>(pixels.size());
-  for (const Pixel& pixel : pixels) {
-    const float feature = normalisedFeature(std::min(kWhite, gain * pixel.red), std::min(kWhite, gain * pixel.green),
-                                            std::min(kWhite, gain * pixel.blue));
-    histogram[normalisedBin(feature, bins_)] += share;  // eq. (1)
+  for (const Colour& pixel : pixels) {
+    Colour seen;
+    for (int c = 0; c < 3; ++c) seen[c] = std::min(ceiling[c], gain * pixel[c]);
+    histogram[normalisedBin(normalisedFeature(seen[2], seen[1], seen[0]), bins_)] += share;  // eq. (1)
   }
 }
 
-float LightChange::distance(const image::ColourPatch& reference, const image::ColourPatch& current, int area) {
+float LightChange::clippedDistance(const image::ColourPatch& current, const ColourLight& light, int area) {
   constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
-  if (!reference.has_colour || !current.has_colour) return kNone;
-  collect(reference, area, reference_);
-  collect(current, area, current_);
+  const float clipped =
+      std::max(collect(reference_, ColourLight(), area, before_), collect(current, light, area, now_));
   const int needed = (grid_.pixelsIn(area) + 1) / 2;
-  if (static_cast<int>(std::min(reference_.size(), current_.size())) < needed) return kNone;
+  if (static_cast<int>(std::min(before_.size(), now_.size())) < needed || clipped < kLeastClipped) return kNone;
 
   float before = kWhite, now = kWhite;
-  for (float Pixel::*channel : {&Pixel::blue, &Pixel::green, &Pixel::red}) {
-    const float a = median(reference_, channel), b = median(current_, channel);
+  for (int c = 0; c < 3; ++c) {
+    const float a = median(before_, c), b = median(now_, c);
     if (std::max(a, b) >= std::max(before, now)) continue;
     before = a;
     now = b;
   }
   if (std::min(before, now) < kLeastLevel || std::max(before, now) > kMaxGain * std::min(before, now)) return kNone;
-  const bool brighter = now >= before;
-  const std::vector<Pixel>& bright = brighter ? current_ : reference_;
-  const std::vector<Pixel>& dark = brighter ? reference_ : current_;
-  const auto clips = [](const Pixel& pixel) { return std::max({pixel.blue, pixel.green, pixel.red}) >= kWhite; };
-  if (static_cast<float>(std::count_if(bright.begin(), bright.end(), clips)) <
-      kLeastClipped * static_cast<float>(bright.size())) {
-    return kNone;
+  // The darker one as the brighter one would show it.
+  const float gain_before = std::max(1.0f, now / before), gain_now = std::max(1.0f, before / now);
+  Colour ceiling;
+  for (int c = 0; c < 3; ++c) {
+    ceiling[c] = std::min(gain_before * kWhite, gain_now * (light[c].gain * kWhite + light[c].offset));
   }
-  fill(bright, 1.0f, histogram_);
-  fill(dark, brighter ? now / before : before / now, relit_);
+  fill(before_, gain_before, ceiling, histogram_);
+  fill(now_, gain_now, ceiling, relit_);
   return bhattacharyyaDistance(histogram_.data(), relit_.data(), bins_);  // eq. (2)
 }
 

@@ -14,6 +14,16 @@ namespace {
 
 constexpr int kGrowSaturated = 2;  // px
 
+// For another light to be believed. Of the areas that can be compared, so many agree in the known one, and so many of
+// these in the other one as well:
+constexpr double kLeastAgreed = 0.1;
+constexpr double kLeastKept = 0.9;
+// and the distance is less by so much on average;
+constexpr double kLeastBetter = 0.01;
+// or so many agree in the other one, and so many times as many as in the known one.
+constexpr double kLeastFound = 0.5;
+constexpr double kManyMore = 2.0;
+
 // Pixels of an area that its histogram needs: the paper's areas have as many.
 constexpr int kSamples = 14 * 14;
 
@@ -49,7 +59,9 @@ OcclusionGates::OcclusionGates(const OcclusionConfig& config, int saturation)
       reference_(config.colour, config.bins),
       current_(config.colour, config.bins) {}
 
-void OcclusionGates::setReference(const image::ColourPatch& patch, const cv::Size& size) {
+void OcclusionGates::setReference(const image::ColourPatch& patch, const cv::Size& size,
+                                  const std::array<bool, 3>& tracked) {
+  for (int c = 0; c < 3; ++c) limits_[c] = tracked[c] ? saturation_ : 256;
   grid_ = image::AreaGrid(size.width, size.height, config_.rows, config_.columns);
   step_ = samplingStep(size, config_);
   const cv::Size sampled((size.width + step_ - 1) / step_, (size.height + step_ - 1) / step_);
@@ -62,8 +74,7 @@ void OcclusionGates::setReference(const image::ColourPatch& patch, const cv::Siz
   reference_has_colour_ = patch.has_colour && config_.colour != ColourGate::kNone;
   if (reference_has_colour_) {
     reference_.compute(patch, samples_);
-    reference_patch_ = patch.clone();
-    light_change_ = LightChange(config_.bins, samples_);
+    light_change_ = LightChange(patch, config_.bins, samples_);
   }
   markSaturated(patch, reference_saturated_);
   usable_.resize(size.width, size.height);
@@ -71,12 +82,14 @@ void OcclusionGates::setReference(const image::ColourPatch& patch, const cv::Siz
   spread(reference_saturated_, patch.valid);
   colour_used_ = reference_has_colour_;
   distances_.assign(grid_.count(), 0.0f);
+  relit_distances_ = distances_;
   colour_rejects_.assign(grid_.count(), 0);
+  agree_ = colour_rejects_;
   held_.assign(grid_.count(), 0);
 }
 
 void OcclusionGates::markSaturated(const image::ColourPatch& patch, cv::Mat1b& mask) const {
-  image::saturatedPixels(patch, saturation_, (kGrowSaturated + step_ - 1) / step_, mask);
+  image::saturatedPixels(patch, limits_, (kGrowSaturated + step_ - 1) / step_, mask);
 }
 
 // From the samples to all pixels.
@@ -105,12 +118,62 @@ void OcclusionGates::observeColour(const image::ColourPatch& patch) {
     std::fill(colour_rejects_.begin(), colour_rejects_.end(), 0);
     return;
   }
-  current_.compute(patch, samples_);
+  light_ = light_change_.known();
+  current_.compute(patch, samples_, light_);
   areaDistances(reference_, current_, samples_, config_.bins, distances_);
+  if (!rejectByColour() || config_.colour != ColourGate::kNormalised) return;
+  accountForLight(patch);
+  forgiveClipping(patch);
+}
+
+// Whether there is an area that is rejected.
+bool OcclusionGates::rejectByColour() {
+  bool any = false;
   for (int area = 0; area < grid_.count(); ++area) {
     colour_rejects_[area] = distances_[area] > static_cast<float>(config_.threshold);  // d > tau_b; false for NaN
+    any |= colour_rejects_[area] != 0;
   }
-  if (config_.colour == ColourGate::kNormalised) forgiveClipping(patch);
+  return any;
+}
+
+// Where areas have another colour, the light may: as long as it does not cost what agrees in the light that is known.
+void OcclusionGates::accountForLight(const image::ColourPatch& patch) {
+  for (int area = 0; area < grid_.count(); ++area) {
+    agree_[area] = distances_[area] <= static_cast<float>(config_.threshold);  // false for NaN
+  }
+  light_change_.look(patch);
+  for (const bool all : {false, true}) {
+    const std::optional<ColourLight> light = all ? light_change_.find() : light_change_.follow(agree_);
+    if (!light) continue;
+    current_.compute(patch, samples_, *light);
+    areaDistances(reference_, current_, samples_, config_.bins, relit_distances_);
+    if (!explains(relit_distances_, all)) continue;
+    light_ = *light;
+    distances_.swap(relit_distances_);
+    rejectByColour();
+    if (2 * std::count(colour_rejects_.begin(), colour_rejects_.end(), 0) > grid_.count()) return;
+  }
+}
+
+// Whether the areas are better explained by another light, in which they have these distances: if it keeps what agrees
+// in the known one, as no light does that explains an occluder; or, found by the pattern of all areas, if many more
+// agree than in the known one, where some do by chance.
+bool OcclusionGates::explains(const std::vector<float>& distances, bool by_all) const {
+  const float threshold = static_cast<float>(config_.threshold);
+  int comparable = 0, agreed = 0, kept = 0, agree = 0;
+  double better = 0.0;
+  for (int area = 0; area < grid_.count(); ++area) {
+    if (std::isnan(distances_[area])) continue;
+    ++comparable;
+    const bool now = distances[area] <= threshold;
+    agreed += agree_[area];
+    kept += agree_[area] && now;
+    agree += now;
+    better += std::min(distances_[area], threshold) - std::min(distances[area], threshold);
+  }
+  if (agreed >= kLeastAgreed * comparable && kept >= kLeastKept * agreed && better > kLeastBetter * comparable)
+    return true;
+  return by_all && agree >= kLeastFound * comparable && agree >= kManyMore * agreed;
 }
 
 // An area of another colour is compared again as the light that it shows would have clipped the reference, or the
@@ -118,11 +181,23 @@ void OcclusionGates::observeColour(const image::ColourPatch& patch) {
 void OcclusionGates::forgiveClipping(const image::ColourPatch& patch) {
   for (int area = 0; area < grid_.count(); ++area) {
     if (!colour_rejects_[area]) continue;
-    const float distance = light_change_.distance(reference_patch_, patch, area);
+    const float distance = light_change_.clippedDistance(patch, light_, area);
     if (!(distance <= static_cast<float>(config_.threshold))) continue;  // also where there is nothing to compare
     colour_rejects_[area] = 0;
     distances_[area] = distance;
   }
+}
+
+// Another light was true if most of the areas that it let through look like the reference.
+void OcclusionGates::learnLight(double gain, double sigma) {
+  int passed = 0, alike = 0;
+  for (int area = 0; area < grid_.count(); ++area) {
+    const float dissimilarity = statistics_.dissimilarity(area, gain, sigma);
+    if (colour_rejects_[area] || std::isnan(dissimilarity)) continue;
+    ++passed;
+    alike += dissimilarity <= kMaxDissimilarity;
+  }
+  if (2 * alike > passed) light_change_.learn(light_);
 }
 
 int OcclusionGates::observeStructure(const PatchPair* channels, int count, const image::Patch& valid, double gain,
@@ -130,6 +205,7 @@ int OcclusionGates::observeStructure(const PatchPair* channels, int count, const
   unsaturated_.resize(grid_.width(), grid_.height());
   for (int j = 0; j < grid_.height(); ++j) multiply(valid.row(j), usable_.row(j), grid_.width(), unsaturated_.row(j));
   statistics_.compute(channels, count, unsaturated_, grid_);
+  if (colour_used_) learnLight(gain, sigma);
   if (!config_.structure) return 0;
   int found = 0;
   for (int area = 0; area < grid_.count(); ++area) {
@@ -138,6 +214,11 @@ int OcclusionGates::observeStructure(const PatchPair* channels, int count, const
     held_[area] = config_.hold + 1;
   }
   return found;
+}
+
+double OcclusionGates::lightGain() const {
+  if (!colour_used_ || largestDifference(light_, ColourLight()) == 0.0f) return 0.0;
+  return (light_[0].gain + light_[1].gain + light_[2].gain) / 3.0;
 }
 
 double OcclusionGates::correlation() const {

@@ -23,12 +23,14 @@ class OcclusionGates {
  public:
   OcclusionGates(const OcclusionConfig& config, int saturation);
 
-  // The reference's ROI, `size` px, every samplingStep-th pixel of which is in the patch. Throws std::invalid_argument
+  // The reference's ROI, `size` px, every samplingStep-th pixel of which is in the patch. Of the constructor's
+  // saturation, `tracked` says for which of the channels, blue, green and red, it counts. Throws std::invalid_argument
   // when the patch is of another size, or the ROI has fewer pixels than areas in a direction.
-  void setReference(const image::ColourPatch& patch, const cv::Size& size);
+  void setReference(const image::ColourPatch& patch, const cv::Size& size,
+                    const std::array<bool, 3>& tracked = {true, true, true});
 
   // Before ESM: `patch` is the ROI, sampled likewise, as the current image shows it where it is expected, see
-  // image::warpNearest.
+  // image::warpNearest. Colours are compared in the light of the reference: see LightChange.
   void observeColour(const image::ColourPatch& patch);
 
   // After ESM: the warped image and the reference, in one channel or several, where the former is valid (1, else 0),
@@ -52,6 +54,10 @@ class OcclusionGates {
   // reference.
   const image::Patch& weights();
 
+  // Of the channels on average, the gain of the image's light against that of the reference; 0 where the colours show
+  // the same light.
+  double lightGain() const;
+
   // False when the image has no colour, or the gate is off: the colour gate then stands aside.
   bool colourUsed() const { return colour_used_; }
   bool occluded(int area) const { return colour_rejects_[area] || held_[area] > 0; }
@@ -60,24 +66,31 @@ class OcclusionGates {
 
  private:
   void markSaturated(const image::ColourPatch& patch, cv::Mat1b& mask) const;
+  bool rejectByColour();
+  bool explains(const std::vector<float>& distances, bool by_all) const;
+  void accountForLight(const image::ColourPatch& patch);
   void forgiveClipping(const image::ColourPatch& patch);
+  void learnLight(double gain, double sigma);
   void spread(const cv::Mat1b& saturated, const cv::Mat1b& valid);
 
   OcclusionConfig config_;
   int saturation_;
+  std::array<int, 3> limits_ = {256, 256, 256};  // grey levels, of each channel
   image::AreaGrid grid_;
   ColourHistograms reference_;
   ColourHistograms current_;
   LightChange light_change_;
-  image::ColourPatch reference_patch_;
+  ColourLight light_;  // of this image, as the colours show it
   bool reference_has_colour_ = false;
   bool colour_used_ = false;
   int step_ = 1;
   image::AreaGrid samples_;                    // of the patches
   cv::Mat1b reference_saturated_, saturated_;  // 255 or 0 per sample
-  image::Patch usable_;               // 1 per pixel of the ROI, or 0: saturated in image or reference, or not valid
-  std::vector<float> distances_;      // (2) per area
+  image::Patch usable_;           // 1 per pixel of the ROI, or 0: saturated in image or reference, or not valid
+  std::vector<float> distances_;  // (2) per area
+  std::vector<float> relit_distances_;
   std::vector<char> colour_rejects_;  // per area, in this image
+  std::vector<char> agree_;           // per area: not so in the light that is known
   std::vector<int> held_;             // per area: images for which the structure gate keeps it out
   StructureStatistics statistics_;
   image::Patch unsaturated_;  // 1 where the aligned image is valid and neither it nor the reference saturated

@@ -111,6 +111,16 @@ TEST(Doubt, TheLightMayChangeMoreTheLongerItHasNotBeenSeen) {
   EXPECT_EQ(doubt(e, QualityConfig()), "");
 }
 
+TEST(Doubt, WhatTheColoursShowOfTheLightCountsAsWell) {
+  Evidence e = good();
+  e.from_track = false;
+  e.esm.state.gain = 2.2 * e.last_gain;
+  e.light_gain = 2.0 * e.last_gain;
+  EXPECT_EQ(doubt(e, QualityConfig()), "");
+  e.light_gain = e.last_gain;
+  EXPECT_NE(doubt(e, QualityConfig()).find("gain"), std::string::npos);
+}
+
 TEST(Doubt, WhatIsTooBadDependsOnTheRecord) {
   Evidence e = good();
   e.zncc = 0.7;

@@ -114,6 +114,96 @@ TEST_F(OcclusionGatesTest, WhatClipsIsNoOccluder) {
   for (const float d : gates.distances()) EXPECT_LE(d, config_.threshold);
 }
 
+// Blue, green, red.
+struct LightOfAll {
+  cv::Scalar gain, offset;
+};
+const LightOfAll kLights[] = {{{0.8, 1.0, 1.2}, {}},
+                              {{1.2, 1.0, 0.8}, {}},
+                              {{0.9, 1.0, 1.1}, {}},
+                              {{0.67, 0.67, 0.67}, {73, 73, 73}},
+                              {{0.5, 0.5, 0.5}, {110, 110, 110}},
+                              {{0.6, 0.5, 0.4}, {60, 60, 60}}};
+
+cv::Mat relit(const cv::Mat& image, const LightOfAll& light) {
+  cv::Mat result;
+  image.convertTo(result, CV_32F);
+  cv::multiply(result, light.gain, result);
+  result += light.offset;
+  result.convertTo(result, CV_8U);
+  return result;
+}
+
+TEST_F(OcclusionGatesTest, WhiteBalanceAndAVeilLeaveTheDistancesWhereTheyWere) {
+  patch_ = cv::min(patch_, 200);
+  for (const LightOfAll& light : kLights) {
+    OcclusionGates gates(config_, 250);
+    gates.setReference(seen(patch_), kSize);
+    gates.observeColour(seen(relit(patch_, light)));
+    EXPECT_EQ(occludedIn(gates), 0) << light.gain << light.offset;
+    for (const float d : gates.distances()) EXPECT_LT(d, 0.4) << light.gain << light.offset;
+    EXPECT_NEAR(gates.lightGain() * cv::sum(light.gain)[0] / 3.0, 1.0, 0.25);
+  }
+}
+
+TEST_F(OcclusionGatesTest, AnOccluderOfAnotherColourKeepsItsDistance) {
+  patch_ = cv::min(patch_, 200);
+  for (const cv::Scalar& colour : {cv::Scalar(140, 140, 140), cv::Scalar(90, 150, 70), cv::Scalar(200, 200, 210)}) {
+    for (const int rows : {8, 11}) {  // of 14: 57 and 79 %
+      cv::Mat covered = patch_.clone();
+      covered.rowRange(0, 10 * rows).setTo(colour);
+      OcclusionGates gates(config_, 250);
+      gates.setReference(seen(patch_), kSize);
+      gates.observeColour(seen(covered));
+      EXPECT_EQ(occludedIn(gates), 14 * rows) << colour;
+      EXPECT_EQ(gates.lightGain(), 0.0);
+    }
+  }
+}
+
+TEST_F(OcclusionGatesTest, ALightIsKnownOnceWhatItLetThroughLooksLikeTheReference) {
+  patch_ = cv::min(patch_, 200);
+  const LightOfAll& light = kLights[0];
+  cv::Mat covered = relit(patch_, light);
+  covered.rowRange(0, 110).setTo(cv::Scalar(140, 140, 140));
+  image::Patch other = grey_;
+  cv::Mat1f turned;
+  cv::flip(grey_.view(), turned, -1);
+  turned.copyTo(other.view());
+  for (const bool alike : {true, false}) {
+    OcclusionGates gates(config_, 250);
+    gates.setReference(seen(patch_), kSize);
+    gates.observeColour(seen(relit(patch_, light)));
+    observe(gates, alike ? grey_ : other);
+    for (int image = 0; image <= config_.hold; ++image) gates.advance();
+    gates.observeColour(seen(covered));
+    int free = 0;
+    for (int area = 11 * 14; area < gates.grid().count(); ++area) free += !gates.occluded(area);
+    if (alike) {
+      EXPECT_EQ(free, 3 * 14);
+    } else {
+      EXPECT_EQ(gates.lightGain(), 0.0);
+    }
+    EXPECT_TRUE(gates.occluded(0));
+  }
+}
+
+// Red alone says nothing of a mixture of blue and green.
+TEST_F(OcclusionGatesTest, AChannelThatIsNotTrackedMayClip) {
+  cv::Mat current = patch_.clone();
+  for (int j = 0; j < 40; ++j) {
+    for (int i = 0; i < kSize.width; ++i) current.at<cv::Vec3b>(j, i)[2] = 255;
+  }
+  current.at<cv::Vec3b>(100, 100) = {255, 255, 255};
+  config_.colour = ColourGate::kNone;
+  for (const bool red : {true, false}) {
+    OcclusionGates gates(config_, 250);
+    gates.setReference(seen(patch_), kSize, {true, true, red});
+    gates.observeColour(seen(current));
+    EXPECT_EQ(cv::countNonZero(gates.weights().view() < 1.0f), 25 + (red ? 42 * kSize.width : 0));
+  }
+}
+
 TEST_F(OcclusionGatesTest, RefuseAPatchThatIsNotSampledAsTheyNeedIt) {
   OcclusionGates gates(config_, 250);
   EXPECT_THROW(gates.setReference(seen(patch_), cv::Size(450, 450)), std::invalid_argument);

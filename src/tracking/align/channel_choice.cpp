@@ -1,0 +1,143 @@
+#include "tracking/align/channel_choice.h"
+
+#include <Eigen/Core>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <vector>
+
+namespace laparoscope_servo::tracking {
+
+namespace {
+
+constexpr int kSets = 8;       // of three channels, as bits: blue 1, green 2, red 4
+constexpr int kSpoiled = 5;    // px, a square around what clips: smoothed and differentiated
+constexpr double kStop = 0.5;  // of exposure, by which the light is taken to become brighter, up to one stop
+
+// For each set of channels that clip, the energy sum grad_c grad_d of the pixels where they and no others do.
+using Energies = std::array<Eigen::Matrix3d, kSets>;
+
+struct Gradients {
+  cv::Mat3f x, y;
+};
+
+Gradients gradientsOf(const cv::Mat& patch) {
+  cv::Mat3f smooth;
+  Gradients g;
+  patch.convertTo(smooth, CV_32FC3);
+  cv::GaussianBlur(smooth, smooth, cv::Size(), 1.0);
+  cv::Sobel(smooth, g.x, CV_32F, 1, 0, 1, 0.5);
+  cv::Sobel(smooth, g.y, CV_32F, 0, 1, 1, 0.5);
+  return g;
+}
+
+cv::Mat1b clippedSets(const cv::Mat& patch, double saturation) {
+  cv::Mat1b sets = cv::Mat1b::zeros(patch.size());
+  std::vector<cv::Mat> planes;
+  cv::split(patch, planes);
+  const cv::Mat square = cv::getStructuringElement(cv::MORPH_RECT, {kSpoiled, kSpoiled});
+  for (int c = 0; c < 3; ++c) {
+    cv::Mat clipped;
+    cv::dilate(planes[c] >= saturation, clipped, square);
+    sets |= clipped & (1 << c);
+  }
+  return sets;
+}
+
+Energies energiesOf(const Gradients& g, const cv::Mat1b& clipped) {
+  Energies energies;
+  energies.fill(Eigen::Matrix3d::Zero());
+  for (int j = 0; j < clipped.rows; ++j) {
+    for (int i = 0; i < clipped.cols; ++i) {
+      const Eigen::Vector3d x(g.x(j, i)[0], g.x(j, i)[1], g.x(j, i)[2]);
+      const Eigen::Vector3d y(g.y(j, i)[0], g.y(j, i)[1], g.y(j, i)[2]);
+      energies[clipped(j, i)] += x * x.transpose() + y * y.transpose();
+    }
+  }
+  return energies;
+}
+
+// Of a set's channels, where none of them clips.
+Eigen::Matrix3d energyOf(const Energies& energies, int set) {
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (int clipped = 0; clipped < kSets; ++clipped) {
+    if ((clipped & set) == 0) sum += energies[clipped];
+  }
+  for (int c = 0; c < 3; ++c) {
+    if ((set & (1 << c)) != 0) continue;
+    sum.row(c).setZero();
+    sum.col(c).setZero();
+  }
+  return sum;
+}
+
+struct Principal {
+  double energy = 0.0;
+  Eigen::Vector3d axis = Eigen::Vector3d::Zero();
+};
+
+Principal principalOf(const Eigen::Matrix3d& energy) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(energy);
+  if (solver.info() != Eigen::Success) return {};
+  return {solver.eigenvalues()[2], solver.eigenvectors().col(2)};
+}
+
+// Scaled so that the weights' magnitudes sum to one, which keeps the range of grey levels.
+image::Channels strongestMixture(const cv::Mat& patch, int saturation) {
+  const Gradients gradients = gradientsOf(patch);
+  std::array<Eigen::Matrix3d, kSets> energy;
+  energy.fill(Eigen::Matrix3d::Zero());
+  for (double stops = 0.0; stops <= 1.0; stops += kStop) {
+    // 256: nothing clips in any light.
+    const double limit = saturation > 255 ? 256.0 : saturation / std::exp2(stops);
+    const Energies energies = energiesOf(gradients, clippedSets(patch, limit));
+    for (int set = 1; set < kSets; ++set) energy[set] += energyOf(energies, set);
+  }
+  Principal best;
+  for (int set = 1; set < kSets; ++set) {
+    Principal principal = principalOf(energy[set]);
+    if (!(principal.energy > best.energy)) continue;
+    for (int c = 0; c < 3; ++c) {
+      if ((set & (1 << c)) == 0) principal.axis[c] = 0.0;  // exactly
+    }
+    best = principal;
+  }
+  const double magnitude = best.axis.cwiseAbs().sum();
+  if (!(magnitude > 0.0)) return image::kLuma;
+  const Eigen::Vector3d w = best.axis * ((best.axis.sum() < 0.0 ? -1.0 : 1.0) / magnitude);
+  return image::ChannelWeights{static_cast<float>(w[0]), static_cast<float>(w[1]), static_cast<float>(w[2])};
+}
+
+image::Channels bestColours(const cv::Mat& patch, int saturation) {
+  const Energies energies = energiesOf(gradientsOf(patch), clippedSets(patch, saturation));
+  int best = kSets - 1;
+  for (int set = 1; set < kSets; ++set) {
+    if (energyOf(energies, set).trace() > energyOf(energies, best).trace()) best = set;
+  }
+  image::Channels channels = image::kLuma;
+  channels.count = 0;
+  for (int c = 0; c < 3; ++c) {
+    if ((best & (1 << c)) == 0) continue;
+    channels.weights[channels.count] = {0.0f, 0.0f, 0.0f};
+    channels.weights[channels.count++][c] = 1.0f;
+  }
+  return channels;
+}
+
+}  // namespace
+
+image::Channels chosenChannels(TrackedChannels wanted, const cv::Mat& patch, int saturation) {
+  if (patch.channels() == 1 || wanted == TrackedChannels::kLuma) return image::kLuma;
+  return wanted == TrackedChannels::kStrongest ? strongestMixture(patch, saturation) : bestColours(patch, saturation);
+}
+
+std::array<bool, 3> coloursIn(const image::Channels& tracked) {
+  std::array<bool, 3> used = {};
+  for (int channel = 0; channel < tracked.count; ++channel) {
+    for (int c = 0; c < 3; ++c) used[c] |= tracked.weights[channel][c] != 0.0f;
+  }
+  return used;
+}
+
+}  // namespace laparoscope_servo::tracking
