@@ -11,9 +11,10 @@ namespace laparoscope_servo::tracking {
 
 namespace {
 
-constexpr int kSets = 8;       // of three channels, as bits: blue 1, green 2, red 4
-constexpr int kSpoiled = 5;    // px, a square around what clips: smoothed and differentiated
-constexpr double kStop = 0.5;  // of exposure, by which the light is taken to become brighter, up to one stop
+constexpr int kSets = 8;           // of three channels, as bits: blue 1, green 2, red 4
+constexpr int kSpoiled = 5;        // px, a square around what clips: smoothed and differentiated
+constexpr double kBrighter = 1.5;  // the lamp, as it comes nearer
+constexpr double kNearly = 0.95;   // of the energy; the error of an estimate goes with its root
 
 // For each set of channels that clip, the energy sum grad_c grad_d of the pixels where they and no others do.
 using Energies = std::array<Eigen::Matrix3d, kSets>;
@@ -77,35 +78,41 @@ struct Principal {
   Eigen::Vector3d axis = Eigen::Vector3d::Zero();
 };
 
-Principal principalOf(const Eigen::Matrix3d& energy) {
+Principal principalOf(const Eigen::Matrix3d& energy, int set) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(energy);
-  if (solver.info() != Eigen::Success) return {};
-  return {solver.eigenvalues()[2], solver.eigenvectors().col(2)};
+  if (solver.info() != Eigen::Success || !(solver.eigenvalues()[2] > 0.0)) return {};
+  Principal principal = {solver.eigenvalues()[2], solver.eigenvectors().col(2)};
+  for (int c = 0; c < 3; ++c) {
+    if ((set & (1 << c)) == 0) principal.axis[c] = 0.0;  // exactly
+  }
+  return principal;
 }
 
-// Scaled so that the weights' magnitudes sum to one, which keeps the range of grey levels.
+// The set whose mixture holds most in brighter light, of those that hold nearly the most as the light is. Scaled so
+// that the weights' magnitudes sum to one, which keeps the range of grey levels.
 image::Channels strongestMixture(const cv::Mat& patch, int saturation) {
   const Gradients gradients = gradientsOf(patch);
-  std::array<Eigen::Matrix3d, kSets> energy;
-  energy.fill(Eigen::Matrix3d::Zero());
-  for (double stops = 0.0; stops <= 1.0; stops += kStop) {
-    // 256: nothing clips in any light.
-    const double limit = saturation > 255 ? 256.0 : saturation / std::exp2(stops);
-    const Energies energies = energiesOf(gradients, clippedSets(patch, limit));
-    for (int set = 1; set < kSets; ++set) energy[set] += energyOf(energies, set);
-  }
-  Principal best;
+  const Energies as_it_is = energiesOf(gradients, clippedSets(patch, saturation));
+  const Energies brighter = saturation > 255  // nothing clips
+                                ? as_it_is
+                                : energiesOf(gradients, clippedSets(patch, saturation / kBrighter));
+  std::array<Principal, kSets> now;
+  double most = 0.0;
   for (int set = 1; set < kSets; ++set) {
-    Principal principal = principalOf(energy[set]);
-    if (!(principal.energy > best.energy)) continue;
-    for (int c = 0; c < 3; ++c) {
-      if ((set & (1 << c)) == 0) principal.axis[c] = 0.0;  // exactly
-    }
-    best = principal;
+    now[set] = principalOf(energyOf(as_it_is, set), set);
+    most = std::max(most, now[set].energy);
   }
-  const double magnitude = best.axis.cwiseAbs().sum();
+  int best = 0;
+  double most_then = -1.0;
+  for (int set = 1; set < kSets; ++set) {
+    const double then = principalOf(energyOf(brighter, set), set).energy;
+    if (now[set].energy < kNearly * most || then < most_then) continue;
+    best = set;
+    most_then = then;
+  }
+  const double magnitude = now[best].axis.cwiseAbs().sum();
   if (!(magnitude > 0.0)) return image::kLuma;
-  const Eigen::Vector3d w = best.axis * ((best.axis.sum() < 0.0 ? -1.0 : 1.0) / magnitude);
+  const Eigen::Vector3d w = now[best].axis * ((now[best].axis.sum() < 0.0 ? -1.0 : 1.0) / magnitude);
   return image::ChannelWeights{static_cast<float>(w[0]), static_cast<float>(w[1]), static_cast<float>(w[2])};
 }
 

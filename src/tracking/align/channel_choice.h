@@ -12,8 +12,10 @@ namespace laparoscope_servo::tracking {
 // `patch`: the region in the reference, CV_8UC1 or CV_8UC3. saturation: grey levels, 1 to 256, from which a channel
 // shows nothing.
 //   kLuma       as it is
-//   kStrongest  the mixture whose gradient is strongest for its noise, from those of the channels that hold the most of
-//               it together: what clips in any of them does not count, now or under a lamp up to twice as bright
+//   kStrongest  the mixture whose gradient is strongest for its noise, of those of the channels that hold the most of
+//   it
+//               together: what clips in any of them does not count. Among what is nearly as good, that which keeps most
+//               of it when the lamp becomes brighter
 //   kColour     those of the channels that hold the most gradient together, with what clips in any of them left out
 image::Channels chosenChannels(TrackedChannels wanted, const cv::Mat& patch, int saturation);
 
