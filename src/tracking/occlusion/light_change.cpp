@@ -11,7 +11,7 @@ namespace laparoscope_servo::tracking {
 namespace {
 
 constexpr float kWhite = 255.0f;
-constexpr float kMaxGain = 2.0f;
+constexpr float kMaxGain = 2.5f;      // a lamp twice as bright, and some shading
 constexpr float kLeastLevel = 16.0f;  // grey levels of a median; below it the ratio is noise
 // The share of an area that has to clip before clipping can account for another colour: a distance (2) of 0.5, the
 // paper's threshold, takes about as much of the area in other bins.

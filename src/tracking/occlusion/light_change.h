@@ -37,8 +37,8 @@ class LightChange {
 
   // Distance (2) between the histograms of an area's normalisedFeature in both images, the current one in `light` and
   // in the area's own gain beyond it, each clipped where the other one is. That gain is the ratio of the medians of the
-  // area's least bright channel. NaN when clipping cannot account for another colour: a gain beyond 2, hardly anything
-  // that clips, too dark, or less than half of the area valid in either.
+  // area's least bright channel. NaN when clipping cannot account for another colour: a gain beyond 2.5, hardly
+  // anything that clips, too dark, or less than half of the area valid in either.
   float clippedDistance(const image::ColourPatch& current, const ColourLight& light, int area);
 
  private:

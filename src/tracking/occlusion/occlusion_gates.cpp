@@ -12,7 +12,11 @@ namespace laparoscope_servo::tracking {
 
 namespace {
 
-constexpr int kGrowSaturated = 2;  // px
+// px, for the bleached rims of highlights. Highlights are small: where much clips, that is the light, and what lies
+// beside it only has to keep its gradient.
+constexpr int kGrowSaturated = 2;
+constexpr int kGrowClipped = 1;
+constexpr double kMuch = 0.5;  // of the samples
 
 // For another light to be believed. Of the areas that can be compared, so many agree in the known one, and so many of
 // these in the other one as well:
@@ -90,6 +94,8 @@ void OcclusionGates::setReference(const image::ColourPatch& patch, const cv::Siz
 
 void OcclusionGates::markSaturated(const image::ColourPatch& patch, cv::Mat1b& mask) const {
   image::saturatedPixels(patch, limits_, (kGrowSaturated + step_ - 1) / step_, mask);
+  if (step_ > 1 || cv::countNonZero(mask) <= kMuch * static_cast<double>(mask.total())) return;
+  image::saturatedPixels(patch, limits_, kGrowClipped, mask);
 }
 
 // From the samples to all pixels.

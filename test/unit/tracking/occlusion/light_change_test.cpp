@@ -104,7 +104,7 @@ TEST_F(LightChangeTest, SaysNothingWhereClippingCannotBeTheReason) {
   const image::ColourPatch bright = tissue(240, 1.6, 1);
   EXPECT_FALSE(none(tissue(240, 1.0, 2), bright));
   EXPECT_TRUE(none(tissue(120, 1.0, 1), tissue(120, 1.4, 2)));  // nothing clips
-  EXPECT_TRUE(none(tissue(100, 1.0, 1), bright));               // a gain beyond 2
+  EXPECT_TRUE(none(tissue(100, 1.0, 1), bright));               // a gain beyond 2.5
   EXPECT_TRUE(none(tissue(20, 1.0, 1), bright));                // dark
   image::ColourPatch outside = tissue(240, 1.6, 1);
   outside.valid.setTo(0);
