@@ -28,6 +28,8 @@ constexpr double kLeastBetter = 0.01;
 constexpr double kLeastFound = 0.5;
 constexpr double kManyMore = 2.0;
 
+constexpr double kAsBefore = 0.9;  // of the areas that agreed
+
 // Pixels of an area that its histogram needs: the paper's areas have as many.
 constexpr int kSamples = 14 * 14;
 
@@ -89,6 +91,7 @@ void OcclusionGates::setReference(const image::ColourPatch& patch, const cv::Siz
   relit_distances_ = distances_;
   colour_rejects_.assign(grid_.count(), 0);
   agree_ = colour_rejects_;
+  agreed_before_ = grid_.count();
   held_.assign(grid_.count(), 0);
 }
 
@@ -143,12 +146,21 @@ bool OcclusionGates::rejectByColour() {
 }
 
 // Where areas have another colour, the light may: as long as it does not cost what agrees in the light that is known.
+// Not looked into again while about as many agree as after the last look, half of all or more.
 void OcclusionGates::accountForLight(const image::ColourPatch& patch) {
   for (int area = 0; area < grid_.count(); ++area) {
     agree_[area] = distances_[area] <= static_cast<float>(config_.threshold);  // false for NaN
   }
+  const int agreed = static_cast<int>(std::count(agree_.begin(), agree_.end(), 1));
+  const bool most = 2 * agreed >= grid_.count();
+  if (most && agreed >= kAsBefore * agreed_before_) {
+    agreed_before_ = std::max(agreed_before_, agreed);
+    return;
+  }
+  agreed_before_ = agreed;
   light_change_.look(patch);
   for (const bool all : {false, true}) {
+    if (all && most) return;
     const std::optional<ColourLight> light = all ? light_change_.find() : light_change_.follow(agree_);
     if (!light) continue;
     current_.compute(patch, samples_, *light);
@@ -157,7 +169,8 @@ void OcclusionGates::accountForLight(const image::ColourPatch& patch) {
     light_ = *light;
     distances_.swap(relit_distances_);
     rejectByColour();
-    if (2 * std::count(colour_rejects_.begin(), colour_rejects_.end(), 0) > grid_.count()) return;
+    agreed_before_ = static_cast<int>(std::count(colour_rejects_.begin(), colour_rejects_.end(), 0));
+    if (2 * agreed_before_ >= grid_.count()) return;
   }
 }
 

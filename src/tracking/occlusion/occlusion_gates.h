@@ -91,6 +91,7 @@ class OcclusionGates {
   std::vector<float> relit_distances_;
   std::vector<char> colour_rejects_;  // per area, in this image
   std::vector<char> agree_;           // per area: not so in the light that is known
+  int agreed_before_ = 0;             // areas, after the last look for another light, or more since
   std::vector<int> held_;             // per area: images for which the structure gate keeps it out
   StructureStatistics statistics_;
   image::Patch unsaturated_;  // 1 where the aligned image is valid and neither it nor the reference saturated
