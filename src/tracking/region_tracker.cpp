@@ -216,10 +216,13 @@ Attempt RegionTracker::Implementation::attempt(const cv::Mat& image, double stam
 }
 
 Attempt RegionTracker::Implementation::search(const cv::Mat& image, double stamp) {
-  RegionSearch::Found found = search_.search(
-      image, aligner_, last_, carried_, [&](const EsmState& start) { return attempt(image, stamp, start, nullptr); });
-  if (!found.where_carried) carried_.reset();
-  return std::move(found.attempt);
+  search_.begin(last_, carried_);
+  while (const std::optional<SearchPlace> place = search_.next(image, aligner_)) {
+    aligner_.startAfresh();
+    if (search_.judge(attempt(image, stamp, place->start, nullptr), aligner_)) break;
+  }
+  if (search_.suggestedBy() != Suggestion::kCarried) carried_.reset();
+  return search_.best();
 }
 
 void RegionTracker::Implementation::decide(const Attempt& best, const MotionPrior& prior, double stamp) {

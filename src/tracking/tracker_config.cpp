@@ -29,6 +29,7 @@ std::vector<std::string> validate(const TrackerConfig& c) {
   check.range("search/min_inliers", c.search.min_inliers, 4, 1000);
   check.range("search/keyframes", c.search.keyframes, 0, 64);
   check.range("search/min_detail", c.search.min_detail, 0.0, 1.0);
+  check.range("search/budget", c.search.budget, 0.001, 10.0, "s");
   check.range("velocity_damping", c.velocity_damping, 0.0, 1.0);
   check.range("min_roi_side", c.min_roi_side, 8, 1000);
   check.range("min_texture", c.min_texture, 0.01, 10.0);

@@ -14,12 +14,14 @@ namespace {
 constexpr std::size_t kLongestName = 64;  // bytes
 // s, that are taken to lie between two views: how much the light may have changed follows from it.
 constexpr double kBetweenViews = 10.0;
+constexpr double kWholeSearch = 10.0;  // s: nothing is left for an image that does not come
 
 // One image has to do: nothing moves on in it, so that confirmations would find the same again.
 TrackerConfig forOneImage(TrackerConfig config) {
   config.quality.confirmations = 1;
   config.search.features = true;
   config.search.keyframes = 0;
+  config.search.budget = kWholeSearch;
   return config;
 }
 
@@ -33,9 +35,7 @@ bool found(const View& view, const cv::Mat& image, const TrackerConfig& config, 
   RegionTracker tracker(config);
   if (lens != nullptr) tracker.setLens(*lens);
   tracker.recall(view.image, -kBetweenViews, view.roi, 0.0);
-  // By points, then by sliding the region over the image, as the tracker's search takes turns.
-  if (tracker.track(image, 0.0).state == State::kTracking) return true;
-  return config.search.correlation && tracker.track(image, 0.0).state == State::kTracking;
+  return tracker.track(image, 0.0).state == State::kTracking;
 }
 
 }  // namespace

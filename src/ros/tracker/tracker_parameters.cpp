@@ -64,6 +64,7 @@ void readSearch(ParameterReader& reader, tracking::SearchConfig& config) {
   reader.read("tracking/search/min_inliers", config.min_inliers, 4, 1000);
   reader.read("tracking/search/keyframes", config.keyframes, 0, 64);
   reader.read("tracking/search/min_detail", config.min_detail, 0.0, 1.0);
+  reader.read("tracking/search/budget", config.budget, 0.001, 10.0);
 }
 
 void readTracking(ParameterReader& reader, tracking::TrackerConfig& config) {

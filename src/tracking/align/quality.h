@@ -34,7 +34,7 @@ class TrackRecord {
 struct Evidence {
   EsmResult esm;
   geometry::Rectangle roi;    // px, in the reference
-  Eigen::Matrix3d predicted;  // G before ESM
+  Eigen::Matrix3d predicted = Eigen::Matrix3d::Identity();  // G before ESM
   bool from_track = false;  // the prediction comes from the image before; false: from a search, which has to prove more
   double last_gain = 1.0;   // of the last estimate that was believed
   double light_gain = 0.0;  // that the colours show, which says as much of the gain; 0 where they tell of none

@@ -5,23 +5,21 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core/version.hpp>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 
 #include "laparoscope_servo/geometry/sl3.h"
+#include "tracking/search/nominal_cost.h"
+#include "tracking/search/point_features.h"
 
 namespace laparoscope_servo::tracking {
 
 namespace {
 
-constexpr int kCells = 8;          // the image's features are spread over as many rows and columns of cells
-constexpr int kSurplus = 4;        // how many times the features wanted are detected, to spread them
-constexpr int kFastThreshold = 5;  // grey levels: tissue has little contrast
-constexpr float kOctaveStep = 1.2f;
-constexpr int kOctaves = 4;
-constexpr int kEdge = 16;         // px, of the downscaled image: nothing is detected nearer to its border
-constexpr int kGrowBright = 3;    // px, of the downscaled image
-constexpr double kInlier = 4.0;   // px, of the downscaled image
+constexpr double kInlier = 4.0;   // px, of the coarse image
 constexpr int kManyInliers = 30;  // from here on eight parameters are better determined than four
 constexpr int kMaxTrials = 1000;
+constexpr int kOverlap = 16;         // px, of the coarse image: what a strip sees beyond its borders
+constexpr double kStripShare = 0.5;  // of the budget, that a strip may cost
 
 #if CV_VERSION_MAJOR * 10000 + CV_VERSION_MINOR * 100 + CV_VERSION_REVISION >= 40501
 constexpr int kRobustMethod = cv::USAC_MAGSAC;
@@ -29,38 +27,8 @@ constexpr int kRobustMethod = cv::USAC_MAGSAC;
 constexpr int kRobustMethod = cv::RANSAC;
 #endif
 
-// One channel, the weights' mixture brought into the range of 8 bits: negative weights would leave it.
-cv::Mat1b oneChannel(const cv::Mat& image, const image::ChannelWeights& weights) {
-  if (image.channels() == 1) return image;
-  double low = 0.0;
-  double high = 0.0;
-  for (const float w : weights) (w < 0.0f ? low : high) += w;
-  const double range = std::max(high - low, 1e-6);
-  const cv::Matx14f mixture(static_cast<float>(weights[0] / range), static_cast<float>(weights[1] / range),
-                            static_cast<float>(weights[2] / range), static_cast<float>(-255.0 * low / range));
-  cv::Mat1b grey;
-  cv::transform(image, grey, mixture);
-  return grey;
-}
-
-// The strongest of each cell, so that an instrument does not take all of them.
-void spreadOut(std::vector<cv::KeyPoint>& points, const cv::Size& size, int count) {
-  std::vector<std::vector<cv::KeyPoint>> cells(kCells * kCells);
-  for (const cv::KeyPoint& point : points) {
-    const int row = std::clamp(static_cast<int>(point.pt.y * kCells / static_cast<float>(size.height)), 0, kCells - 1);
-    const int column =
-        std::clamp(static_cast<int>(point.pt.x * kCells / static_cast<float>(size.width)), 0, kCells - 1);
-    cells[row * kCells + column].push_back(point);
-  }
-  points.clear();
-  for (std::vector<cv::KeyPoint>& cell : cells) {
-    cv::KeyPointsFilter::retainBest(cell, std::max(1, count / (kCells * kCells)));
-    points.insert(points.end(), cell.begin(), cell.end());
-  }
-}
-
-cv::Size downscaled(const cv::Size& size, double scale) {
-  return {std::max(1, cvRound(size.width / scale)), std::max(1, cvRound(size.height / scale))};
+double costOfPoints(double pixels, int count) {
+  return pixels * nominal_cost::kPixelDetected + count * nominal_cost::kPointDescribed;
 }
 
 Eigen::Matrix3d toEigen(const cv::Mat& m) {
@@ -71,19 +39,23 @@ Eigen::Matrix3d toEigen(const cv::Mat& m) {
   return result;
 }
 
-// Raw points to rectified ones; those that the lens cannot have shown are dropped.
-void rectify(const image::Lens& lens, Features& features) {
-  int kept = 0;
-  for (std::size_t k = 0; k < features.points.size(); ++k) {
-    const auto p = lens.toRectified(Eigen::Vector2d(features.points[k].x, features.points[k].y));
-    if (!p) continue;
-    features.points[kept] = cv::Point2f(static_cast<float>(p->x()), static_cast<float>(p->y()));
-    if (kept != static_cast<int>(k))
-      features.descriptors.row(static_cast<int>(k)).copyTo(features.descriptors.row(kept));
-    ++kept;
+// Those of `more` that `keep` takes to a place are added there.
+template <typename Keep>
+void append(const Features& more, const Keep& keep, Features& features) {
+  for (std::size_t k = 0; k < more.points.size(); ++k) {
+    const std::optional<cv::Point2f> place = keep(more.points[k]);
+    if (!place) continue;
+    features.points.push_back(*place);
+    features.descriptors.push_back(more.descriptors.row(static_cast<int>(k)));
   }
-  features.points.resize(kept);
-  if (!features.descriptors.empty()) features.descriptors.resize(kept);
+}
+
+// Raw points to rectified ones; empty for those that the lens cannot have shown.
+std::optional<cv::Point2f> rectified(const image::Lens* lens, const cv::Point2f& point) {
+  if (lens == nullptr) return point;
+  const auto p = lens->toRectified(Eigen::Vector2d(point.x, point.y));
+  if (!p) return std::nullopt;
+  return cv::Point2f(static_cast<float>(p->x()), static_cast<float>(p->y()));
 }
 
 }  // namespace
@@ -92,11 +64,151 @@ FeatureSearch::FeatureSearch(const TrackerConfig& config, std::shared_ptr<const 
     : config_(config.search),
       saturation_(config.esm.saturation),
       max_area_ratio_(config.quality.max_area_ratio),
-      lens_(std::move(lens)),
-      many_(cv::ORB::create(kSurplus * config_.max_features, kOctaveStep, kOctaves, kEdge, 0, 2, cv::ORB::HARRIS_SCORE,
-                            31, kFastThreshold)),
-      few_(cv::ORB::create(config_.max_features / 2, kOctaveStep, kOctaves, kEdge, 0, 2, cv::ORB::HARRIS_SCORE, 31,
-                           kFastThreshold)) {}
+      lens_(std::move(lens)) {}
+
+void FeatureSearch::restart() {
+  turn_ = 0;
+  strip_ = strips_ = 0;
+  asked_.clear();
+}
+
+void FeatureSearch::begin(const CoarseImage& image, const image::ChannelWeights& weights, const Keyframes& keyframes) {
+  found_.clear();
+  seen_ = Features();
+  weights_ = weights;
+  asked_.clear();
+  strip_ = strips_ = 0;
+  coarse_ = image;
+  if (keyframes.count() == 0 || coarse_.grey.empty()) return;
+  const double cost = costOfPoints(static_cast<double>(coarse_.grey.total()), config_.max_features);
+  const int most = std::max(1, coarse_.grey.cols / (4 * kOverlap));
+  strips_ = std::clamp(static_cast<int>(std::ceil(cost / (kStripShare * config_.budget))), 1, most);
+  const int others = keyframes.count() - 1 - (keyframes.hasRecent() ? 1 : 0);
+  if (others > 0) asked_.push_back(1 + turn_++ % others);
+  if (keyframes.hasRecent()) asked_.push_back(keyframes.count() - 1);
+  asked_.push_back(0);
+}
+
+cv::Rect FeatureSearch::strip(int k) const {
+  const int first = coarse_.grey.cols * k / strips_;
+  const int end = coarse_.grey.cols * (k + 1) / strips_;
+  return {first, 0, end - first, coarse_.grey.rows};
+}
+
+double FeatureSearch::nextCost(const Keyframes& keyframes) const {
+  if (strip_ < strips_) {
+    const cv::Rect part = strip(strip_);
+    return costOfPoints((part.width + 2.0 * kOverlap) * part.height, config_.max_features / strips_);
+  }
+  const Keyframe& view = keyframes.at(asked_.back());
+  if (!view.described) {
+    return costOfPoints(static_cast<double>(view.crop.total()) / coarse_.scale / coarse_.scale,
+                        config_.max_features / 2);
+  }
+  const double pairs = static_cast<double>(view.features.points.size()) * static_cast<double>(seen_.points.size());
+  return pairs * nominal_cost::kPairCompared + nominal_cost::kMotionFitted;
+}
+
+void FeatureSearch::work(Keyframes& keyframes) {
+  if (strip_ < strips_) return drawStrip();
+  Keyframe& view = keyframes.at(asked_.back());
+  if (!view.described) return describe(view, keyframes.roi());
+  asked_.pop_back();
+  match(view, keyframes.roi());
+}
+
+// Each strip gives its share, so that an instrument does not take all of them.
+void FeatureSearch::drawStrip() {
+  const cv::Rect own = strip(strip_++);
+  if (own.empty()) return;
+  const cv::Rect seen = cv::Rect(own.x - kOverlap, own.y, own.width + 2 * kOverlap, own.height) &
+                        cv::Rect(cv::Point(0, 0), coarse_.grey.size());
+  cv::Mat1b wanted = cv::Mat1b::zeros(seen.size());
+  coarse_.usable(own).copyTo(wanted(own - seen.tl()));
+  const Features drawn = drawPoints(coarse_.grey(seen), wanted, config_.max_features / strips_);
+  append(
+      drawn, [&](const cv::Point2f& p) { return rectified(lens_.get(), coarse_.inImage(p + cv::Point2f(seen.tl()))); },
+      seen_);
+  if (strip_ == strips_ && static_cast<int>(seen_.points.size()) < config_.min_inliers) asked_.clear();
+}
+
+// All that a view shows but what was covered in the ROI: what lies around the ROI moves with it, and small or smooth
+// regions are found by that.
+void FeatureSearch::describe(Keyframe& view, const geometry::Rectangle& roi) {
+  Eigen::Matrix3d from_roi = Eigen::Matrix3d::Identity();
+  from_roi.topRightCorner<2, 1>() << roi.x, roi.y;
+  cv::Mat1b covered;
+  image::drawMask(view.trusted == 0, view.g * from_roi, lens_.get(), cv::Rect(view.first, view.crop.size()), covered);
+  const CoarseImage small = coarseImage(view.crop, coarse_.scale, weights_, saturation_);
+  view.described = true;
+  if (small.grey.empty()) return;
+  cv::Mat1b mask;
+  cv::resize(covered, mask, small.grey.size(), 0.0, 0.0, cv::INTER_NEAREST);
+  mask = (mask == 0) & small.usable;
+  const cv::Point2f first(view.first);
+  append(
+      drawPoints(small.grey, mask, config_.max_features / 2),
+      [&](const cv::Point2f& p) { return rectified(lens_.get(), small.inImage(p) + first); }, view.features);
+}
+
+std::vector<FeatureCandidate> FeatureSearch::found() const {
+  std::vector<FeatureCandidate> best = found_;
+  std::stable_sort(best.begin(), best.end(), [](const auto& a, const auto& b) { return a.inliers > b.inliers; });
+  return best;
+}
+
+std::vector<FeatureCandidate> FeatureSearch::find(const cv::Mat& image, const image::ChannelWeights& weights,
+                                                  Keyframes& keyframes) {
+  const int scale = coarseScale(image.size(), config_.max_pixels);
+  begin(coarseImage(image, scale, weights, saturation_), weights, keyframes);
+  while (busy()) work(keyframes);
+  return found();
+}
+
+// Nearest and second nearest of the image's points for each of the view's, and the other way.
+void FeatureSearch::match(const Keyframe& view, const geometry::Rectangle& roi) {
+  const int count = static_cast<int>(view.features.points.size());
+  if (count < config_.min_inliers) return;
+  const cv::Mat1f distance = descriptorDistances(view.features, seen_);
+  std::vector<int> back(distance.cols, -1);
+  for (int j = 0; j < distance.rows; ++j) {
+    const float* row = distance[j];
+    for (int i = 0; i < distance.cols; ++i) {
+      if (back[i] < 0 || row[i] < distance(back[i], i)) back[i] = j;
+    }
+  }
+  std::vector<cv::Point2f> from, to;
+  for (int j = 0; j < distance.rows; ++j) {
+    const float* row = distance[j];
+    const int nearest = static_cast<int>(std::min_element(row, row + distance.cols) - row);
+    if (back[nearest] != j) continue;
+    const double farthest = row[nearest] / config_.max_ratio;
+    const auto rival = [&](const float& other) { return &other != row + nearest && !(farthest < other); };
+    if (std::any_of(row, row + distance.cols, rival)) continue;
+    from.push_back(view.features.points[j]);
+    to.push_back(seen_.points[nearest]);
+  }
+  fit(from, to, view.g, roi);
+}
+
+// Four parameters hold where few matches would let eight run away; what they miss of the tilt, the alignment mends.
+void FeatureSearch::fit(const std::vector<cv::Point2f>& from, const std::vector<cv::Point2f>& to,
+                        const Eigen::Matrix3d& view, const geometry::Rectangle& roi) {
+  if (static_cast<int>(from.size()) < config_.min_inliers) return;
+  const auto offer = [&](const cv::Mat& motion, const cv::Mat& agree, int at_least) {
+    if (motion.empty() || agree.empty()) return;
+    const int inliers = cv::countNonZero(agree);
+    const Eigen::Matrix3d g = toEigen(motion) * view;
+    if (inliers >= at_least && plausible(g, roi)) found_.push_back({geometry::normaliseDeterminant(g), inliers});
+  };
+  cv::Mat agree;
+  const double inlier = kInlier * coarse_.scale;
+  const cv::Mat similarity = cv::estimateAffinePartial2D(from, to, agree, cv::RANSAC, inlier, kMaxTrials, 0.99);
+  offer(similarity, agree, config_.min_inliers);
+  if (static_cast<int>(from.size()) < kManyInliers) return;
+  const cv::Mat homography = cv::findHomography(from, to, kRobustMethod, inlier, agree, kMaxTrials, 0.99);
+  offer(homography, agree, kManyInliers);
+}
 
 bool FeatureSearch::plausible(const Eigen::Matrix3d& g, const geometry::Rectangle& roi) const {
   if (!g.allFinite() || !(g.determinant() > 0.0)) return false;
@@ -104,106 +216,6 @@ bool FeatureSearch::plausible(const Eigen::Matrix3d& g, const geometry::Rectangl
   if (!geometry::isConvex(corners)) return false;
   const double ratio = geometry::signedArea(corners) / geometry::signedArea(roi.corners());
   return std::max(ratio, 1.0 / ratio) <= max_area_ratio_;
-}
-
-Features FeatureSearch::draw(const cv::Mat& image, const cv::Point& first, const cv::Mat1b& mask, double scale,
-                             const image::ChannelWeights& weights, int count, bool spread) {
-  Features features;
-  const cv::Size size = downscaled(image.size(), scale);
-  if (std::min(size.width, size.height) <= 2 * kEdge) return features;
-  cv::Mat small;
-  if (scale > 1.0) {
-    cv::resize(image, small, size, 0.0, 0.0, cv::INTER_AREA);
-  } else {
-    small = image;
-  }
-  cv::Mat1b usable;
-  cv::inRange(small, cv::Scalar::all(0), cv::Scalar::all(saturation_ - 1), usable);  // highlights move with the lamp
-  cv::erode(usable, usable, cv::Mat(), cv::Point(-1, -1), kGrowBright);
-  if (!mask.empty()) {
-    cv::Mat1b wanted;
-    cv::resize(mask, wanted, size, 0.0, 0.0, cv::INTER_NEAREST);
-    usable &= wanted;
-  }
-  const cv::Mat1b grey = oneChannel(small, weights);
-  std::vector<cv::KeyPoint> points;
-  if (spread) {
-    many_->detect(grey, points, usable);
-    spreadOut(points, size, count);
-    many_->compute(grey, points, features.descriptors);
-  } else {
-    few_->detectAndCompute(grey, usable, points, features.descriptors);
-  }
-  const double sx = static_cast<double>(image.cols) / size.width;
-  const double sy = static_cast<double>(image.rows) / size.height;
-  features.points.reserve(points.size());
-  for (const cv::KeyPoint& point : points) {
-    features.points.emplace_back(static_cast<float>((point.pt.x + 0.5) * sx - 0.5 + first.x),
-                                 static_cast<float>((point.pt.y + 0.5) * sy - 0.5 + first.y));
-  }
-  if (lens_) rectify(*lens_, features);
-  return features;
-}
-
-void FeatureSearch::describe(Keyframe& view, const geometry::Rectangle& roi, double scale,
-                             const image::ChannelWeights& weights) {
-  // Where the crop shows what can be trusted of the ROI.
-  Eigen::Matrix3d from_roi = Eigen::Matrix3d::Identity();
-  from_roi.topRightCorner<2, 1>() << roi.x, roi.y;
-  cv::Mat1b mask;
-  image::drawMask(view.trusted, view.g * from_roi, lens_.get(), cv::Rect(view.first, view.crop.size()), mask);
-  view.features = draw(view.crop, view.first, mask, scale, weights, config_.max_features / 2, false);
-  view.described = true;
-}
-
-std::vector<FeatureCandidate> FeatureSearch::find(const cv::Mat& image, const image::ChannelWeights& weights,
-                                                  Keyframes& keyframes) {
-  std::vector<FeatureCandidate> found;
-  if (keyframes.count() == 0) return found;
-  const double scale = std::max(1.0, std::sqrt(static_cast<double>(image.total()) / config_.max_pixels));
-  const Features seen = draw(image, cv::Point(0, 0), cv::Mat1b(), scale, weights, config_.max_features, true);
-  if (static_cast<int>(seen.points.size()) < config_.min_inliers) return found;
-  std::vector<int> asked = {0};
-  if (keyframes.count() > 1) asked.push_back(1 + turn_++ % (keyframes.count() - 1));
-  for (const int k : asked) {
-    Keyframe& view = keyframes.at(k);
-    if (!view.described) describe(view, keyframes.roi(), scale, weights);
-    match(view, keyframes.roi(), seen, scale, found);
-  }
-  std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.inliers > b.inliers; });
-  return found;
-}
-
-void FeatureSearch::match(const Keyframe& view, const geometry::Rectangle& roi, const Features& seen, double scale,
-                          std::vector<FeatureCandidate>& found) const {
-  if (static_cast<int>(view.features.points.size()) < config_.min_inliers) return;
-  const cv::BFMatcher matcher(cv::NORM_HAMMING);
-  std::vector<std::vector<cv::DMatch>> forth;
-  std::vector<cv::DMatch> back;
-  matcher.knnMatch(view.features.descriptors, seen.descriptors, forth, 2);
-  matcher.match(seen.descriptors, view.features.descriptors, back);
-  std::vector<cv::Point2f> from, to;
-  for (const std::vector<cv::DMatch>& pair : forth) {
-    if (pair.size() < 2 || !(pair[0].distance < config_.max_ratio * pair[1].distance)) continue;
-    if (back[pair[0].trainIdx].trainIdx != pair[0].queryIdx) continue;
-    from.push_back(view.features.points[pair[0].queryIdx]);
-    to.push_back(seen.points[pair[0].trainIdx]);
-  }
-  if (static_cast<int>(from.size()) < config_.min_inliers) return;
-  const auto offer = [&](const cv::Mat& motion, const cv::Mat& agree, int at_least) {
-    if (motion.empty() || agree.empty()) return;
-    const int inliers = cv::countNonZero(agree);
-    const Eigen::Matrix3d g = toEigen(motion) * view.g;
-    if (inliers >= at_least && plausible(g, roi)) found.push_back({geometry::normaliseDeterminant(g), inliers});
-  };
-  // Four parameters hold where few matches would let eight run away; what they miss of the tilt, the alignment mends.
-  cv::Mat agree;
-  const cv::Mat similarity =
-      cv::estimateAffinePartial2D(from, to, agree, cv::RANSAC, kInlier * scale, kMaxTrials, 0.99);
-  offer(similarity, agree, config_.min_inliers);
-  if (static_cast<int>(from.size()) < kManyInliers) return;
-  const cv::Mat homography = cv::findHomography(from, to, kRobustMethod, kInlier * scale, agree, kMaxTrials, 0.99);
-  offer(homography, agree, kManyInliers);
 }
 
 }  // namespace laparoscope_servo::tracking

@@ -1,14 +1,16 @@
-// Finds a lost region of interest (ROI) by points (ORB) matched between the image and the stored views of it.
+// Finds a lost region of interest (ROI) by points matched between an image and the stored views of it. One pass over an
+// image is cut into pieces of known cost, so that it can go on while the next images come.
 #pragma once
 
 #include <Eigen/Core>
 #include <memory>
 #include <opencv2/core.hpp>
-#include <opencv2/features2d.hpp>
 #include <vector>
 
+#include "laparoscope_servo/image/lens.h"
 #include "laparoscope_servo/image/pyramid.h"
 #include "laparoscope_servo/tracking/tracker_config.h"
+#include "tracking/search/coarse_image.h"
 #include "tracking/views/keyframes.h"
 
 namespace laparoscope_servo::tracking {
@@ -24,30 +26,47 @@ class FeatureSearch {
   // Of the configuration `search`, what `esm` calls saturated, and which sizes `quality` will accept.
   explicit FeatureSearch(const TrackerConfig& config, std::shared_ptr<const image::Lens> lens = nullptr);
 
-  // Where the views say that the ROI may be in `image` (CV_8UC1 or CV_8UC3), best first; none when nothing agrees. The
-  // reference is asked every time, the other views one a call in turn, so that the time is bounded whatever is stored.
-  // Draws the features of a view when it is its turn for the first time.
+  // A pass over an image begins. It asks the reference, the most recent view, and one other in turn, so that the time
+  // is bounded whatever is stored. `weights`: of the channel that the image shows.
+  void begin(const CoarseImage& image, const image::ChannelWeights& weights, const Keyframes& keyframes);
+  // There is something left to do in this pass.
+  bool busy() const { return strip_ < strips_ || !asked_.empty(); }
+  // What the next piece costs, s: see nominal_cost.
+  double nextCost(const Keyframes& keyframes) const;
+  // Does the next piece: draws the points of a strip of the image, or of a view when it is asked for the first time, or
+  // compares both.
+  void work(Keyframes& keyframes);
+  // Where the views said, in this pass, that the ROI was in the image, best first; none when nothing agreed.
+  std::vector<FeatureCandidate> found() const;
+
+  // A whole pass over `image` (CV_8UC1 or CV_8UC3).
   std::vector<FeatureCandidate> find(const cv::Mat& image, const image::ChannelWeights& weights, Keyframes& keyframes);
 
-  // Starts the turns again.
-  void restart() { turn_ = 0; }
+  // Starts the turns again, and leaves the pass.
+  void restart();
 
  private:
-  Features draw(const cv::Mat& image, const cv::Point& first, const cv::Mat1b& mask, double scale,
-                const image::ChannelWeights& weights, int count, bool spread);
-  void describe(Keyframe& view, const geometry::Rectangle& roi, double scale, const image::ChannelWeights& weights);
-  void match(const Keyframe& view, const geometry::Rectangle& roi, const Features& seen, double scale,
-             std::vector<FeatureCandidate>& found) const;
-
+  cv::Rect strip(int k) const;
+  void drawStrip();
+  void describe(Keyframe& view, const geometry::Rectangle& roi);
+  void match(const Keyframe& view, const geometry::Rectangle& roi);
+  void fit(const std::vector<cv::Point2f>& from, const std::vector<cv::Point2f>& to, const Eigen::Matrix3d& view,
+           const geometry::Rectangle& roi);
   bool plausible(const Eigen::Matrix3d& g, const geometry::Rectangle& roi) const;
 
   SearchConfig config_;
   int saturation_;         // grey levels
   double max_area_ratio_;  // of the ROI, to the reference
   std::shared_ptr<const image::Lens> lens_;
-  cv::Ptr<cv::ORB> many_;  // of the image, thinned out afterwards
-  cv::Ptr<cv::ORB> few_;   // of a view
   int turn_ = 0;
+
+  // The pass.
+  CoarseImage coarse_;
+  image::ChannelWeights weights_ = image::kLuma;
+  int strip_ = 0, strips_ = 0;
+  std::vector<int> asked_;  // views, the next one last
+  Features seen_;
+  std::vector<FeatureCandidate> found_;
 };
 
 }  // namespace laparoscope_servo::tracking

@@ -1,65 +1,140 @@
 #include "tracking/search/region_search.h"
 
 #include <Eigen/LU>
+#include <algorithm>
+#include <opencv2/imgproc.hpp>
 #include <sstream>
 
 #include "laparoscope_servo/image/warp.h"
+#include "tracking/search/nominal_cost.h"
 #include "tracking/search/relocalisation.h"
 
 namespace laparoscope_servo::tracking {
 
 namespace {
 
-constexpr int kCandidates = 2;  // that are aligned, of each stage of the search
+constexpr std::size_t kCandidates = 2;  // that are looked at, of each stage of the search
+constexpr double kSlidingScale = 4.0;   // px of the image per pixel of that over which the region is slid, about
+// Where a region is, it correlates with 0.3 at least even half covered; where it is not, with 0.2 to 0.25.
+constexpr double kWorthAligning = 0.25;
+// Of the budget: what an alignment may cost to be tried where the check says no. It errs on small regions.
+constexpr double kCheap = 0.2;
 // A view is worth storing that was seen nearly whole, and clearly.
 constexpr double kKeyframeVisible = 0.7;
 constexpr double kKeyframeZncc = 0.85;
+// The most recent view may be worse: tissue that has changed is what it is for.
+constexpr double kRecentVisible = 0.5;
+constexpr int kRecentAge = 10;  // images
 
 }  // namespace
 
 RegionSearch::RegionSearch(const TrackerConfig& config, std::shared_ptr<const image::Lens> lens)
-    : config_(config.search),
+    : config_(config),
       lens_(lens),
       keyframes_(config.search.keyframes, lens),
       feature_search_(config, lens),
+      start_check_(lens),
       confirmation_(config.quality) {}
 
 void RegionSearch::setReference(const cv::Mat& image, RegionAligner& aligner) {
   keyframes_.setReference(image, aligner.roi(), aligner.weights());
+  start_check_.setReference(image, aligner.roi(), aligner.channels().weights[0]);
+  alignment_cost_ = aligner.roi().width * aligner.roi().height * nominal_cost::kPixelAligned;
 }
 
 void RegionSearch::keepView(const cv::Mat& image, const Evidence& seen, const Eigen::Matrix3d& g,
                             RegionAligner& aligner) {
-  if (!(seen.visible_fraction >= kKeyframeVisible) || !(seen.zncc >= kKeyframeZncc)) return;
-  if (config_.features && keyframes_.wants(g)) keyframes_.add(image, g, aligner.weights());
+  ++since_view_;
+  if (!config_.search.features) return;
+  const bool clear = seen.visible_fraction >= kKeyframeVisible && seen.zncc >= kKeyframeZncc;
+  if (clear && keyframes_.wants(g)) keyframes_.add(image, g, aligner.weights());
+  if (since_view_ < kRecentAge || !(seen.visible_fraction >= kRecentVisible)) return;
+  keyframes_.addRecent(image, g, aligner.weights());
+  since_view_ = 0;
 }
 
 void RegionSearch::restart() {
-  turn_ = 0;
   feature_search_.restart();
+  suggested_.clear();
+  passing_ = to_slide_ = false;
+  worked_ = true;  // the first image is for what is known
 }
 
-// What the last image suggested comes first, then where the ROI was last seen, then what the image itself suggests.
-RegionSearch::Found RegionSearch::search(const cv::Mat& image, RegionAligner& aligner, const EsmState& last,
-                                         const std::optional<Eigen::Matrix3d>& carried, const Try& attempt) {
-  Found found;
-  const auto tryAt = [&](const EsmState& light, const Eigen::Matrix3d& g) {
-    EsmState start = light;
-    start.g = g;
-    aligner.startAfresh();
-    found.attempt = attempt(start);
-    if (found.attempt.doubt.empty()) found.attempt.doubt = doubtOf(found.attempt, aligner);
-    return found.attempt.doubt.empty();
+// What was found in the image before comes first, then what images suggested for which there was no time, then where
+// the ROI was when it was last believed.
+void RegionSearch::begin(const EsmState& last, const std::optional<Eigen::Matrix3d>& carried) {
+  budget_.start(config_.search.budget);
+  last_ = last;
+  began_ = false;
+  best_ = Attempt();
+  best_.doubt = "nothing in the image looks like the ROI";
+  best_by_ = Suggestion::kLast;
+  aligned_ = false;
+  const bool waiting = confirmation_.waiting();
+  hungry_ = !worked_ && !waiting;
+  worked_ = false;
+  const auto stale = [&](const SearchPlace& place) {
+    return waiting || (place.by != Suggestion::kFeatures && place.by != Suggestion::kCorrelation);
   };
-  if (confirmation_.waiting() && tryAt(confirmation_.candidate(), confirmation_.expected())) return found;
-  if (carried && tryAt(last, *carried)) {
-    found.where_carried = true;
-    return found;
+  suggested_.erase(std::remove_if(suggested_.begin(), suggested_.end(), stale), suggested_.end());
+  if (waiting) {
+    EsmState start = confirmation_.candidate();
+    start.g = confirmation_.expected();
+    suggested_.push_back({start, Suggestion::kConfirmation});
   }
-  if (tryAt(last, last.g)) return found;
-  for (const Eigen::Matrix3d& g : furtherPlaces(image, aligner, last.g)) {
-    if (tryAt(last, g)) break;
+  if (carried) suggest(*carried, Suggestion::kCarried);
+  suggest(last.g, Suggestion::kLast);
+}
+
+void RegionSearch::suggest(const Eigen::Matrix3d& g, Suggestion by) {
+  EsmState start = last_;
+  start.g = g;
+  suggested_.push_back({start, by});
+}
+
+// Where places take all the time, every second image is for the pass, so that it comes to an end.
+std::optional<SearchPlace> RegionSearch::next(const cv::Mat& image, const RegionAligner& aligner) {
+  if (hungry_) work(image, aligner);
+  hungry_ = false;
+  while (true) {
+    const std::optional<SearchPlace> place = nextSuggested(image);
+    if (place) return place;
+    if (!suggested_.empty() || !work(image, aligner)) break;
   }
+  return std::nullopt;
+}
+
+std::optional<SearchPlace> RegionSearch::nextSuggested(const cv::Mat& image) {
+  while (!suggested_.empty()) {
+    SearchPlace place = suggested_.front();
+    bool worth = true;
+    if (place.by != Suggestion::kConfirmation) {
+      if (!budget_.payTrifle(nominal_cost::kStartChecked)) return std::nullopt;
+      const CheckedStart checked = start_check_.look(image, place.start.g);
+      worth = checked.correlation >= kWorthAligning;
+      if (worth) place.start.g = checked.g;
+    }
+    if (worth || alignment_cost_ <= kCheap * config_.search.budget) {
+      if (!budget_.pay(alignment_cost_)) return std::nullopt;
+      suggested_.pop_front();
+      tried_ = place.by;
+      return place;
+    }
+    suggested_.pop_front();
+  }
+  return std::nullopt;
+}
+
+bool RegionSearch::judge(const Attempt& attempt, const RegionAligner& aligner) {
+  Attempt tried = attempt;
+  if (tried.doubt.empty()) tried.doubt = doubtOf(tried, aligner);
+  const bool found = tried.doubt.empty();
+  if (found || !aligned_ || tried.evidence.zncc > best_.evidence.zncc) {
+    best_ = std::move(tried);
+    best_by_ = tried_;
+  }
+  aligned_ = true;
+  if (found) suggested_.clear();
   return found;
 }
 
@@ -71,56 +146,78 @@ std::string RegionSearch::doubtOf(const Attempt& found, const RegionAligner& ali
   why.precision(3);
   if (found.evidence.esm.status != EsmStatus::kConverged) {
     why << "still moving where it was searched";
-  } else if (!(detail >= config_.min_detail)) {
-    why << "correlation of details " << detail << " where it was searched, expected at least " << config_.min_detail;
+  } else if (!(detail >= config_.search.min_detail)) {
+    why << "correlation of details " << detail << " where it was searched, expected at least "
+        << config_.search.min_detail;
   }
   return why.str();
 }
 
-// What points suggest, or, in turn with them, what correlates anywhere in the image: one of both an image, so that the
-// time is bounded.
-std::vector<Eigen::Matrix3d> RegionSearch::furtherPlaces(const cv::Mat& image, const RegionAligner& aligner,
-                                                         const Eigen::Matrix3d& last) {
-  const bool features = config_.features && (!config_.correlation || turn_ % 2 == 0);
-  ++turn_;
-  if (features) return byFeatures(image, aligner);
-  return config_.correlation ? byCorrelation(image, aligner, last) : std::vector<Eigen::Matrix3d>();
-}
-
-std::vector<Eigen::Matrix3d> RegionSearch::byFeatures(const cv::Mat& image, const RegionAligner& aligner) {
-  std::vector<Eigen::Matrix3d> places;
-  for (const FeatureCandidate& candidate : feature_search_.find(image, aligner.channels().weights[0], keyframes_)) {
-    if (static_cast<int>(places.size()) < kCandidates) places.push_back(candidate.g);
+// The next piece of the pass, if there is time for it.
+bool RegionSearch::work(const cv::Mat& image, const RegionAligner& aligner) {
+  const SearchConfig& search = config_.search;
+  if (!passing_) {
+    if (began_ || !(search.features || search.correlation)) return false;
+    if (!budget_.pay(static_cast<double>(image.total()) * nominal_cost::kPixelTaken)) return false;
+    const image::ChannelWeights& weights = aligner.channels().weights[0];
+    coarse_ = coarseImage(image, coarseScale(image.size(), search.max_pixels), weights, config_.esm.saturation);
+    if (search.features) feature_search_.begin(coarse_, weights, keyframes_);
+    to_slide_ = search.correlation;
+    began_ = passing_ = true;
+  } else if (feature_search_.busy()) {
+    if (!budget_.pay(feature_search_.nextCost(keyframes_))) return false;
+    feature_search_.work(keyframes_);
+    if (feature_search_.busy()) return worked_ = true;
+    const std::vector<FeatureCandidate> found = feature_search_.found();
+    for (std::size_t k = 0; k < std::min(kCandidates, found.size()); ++k) suggest(found[k].g, Suggestion::kFeatures);
+  } else if (to_slide_) {
+    if (!budget_.pay(slideCost())) return false;
+    slide(aligner);
+    to_slide_ = false;
+  } else {
+    passing_ = false;
   }
-  return places;
+  return worked_ = true;
 }
 
-std::vector<Eigen::Matrix3d> RegionSearch::byCorrelation(const cv::Mat& image, const RegionAligner& aligner,
-                                                         const Eigen::Matrix3d& last) const {
-  const int l = aligner.esm().levels() - 1;
-  image::RegionPyramid whole;
-  whole.build(image, cv::Rect(0, 0, image.cols, image.rows), l + 1, aligner.channels().weights[0]);
+double RegionSearch::slideCost() const {
+  const double shrink = std::max(1.0, kSlidingScale / coarse_.scale);
+  return static_cast<double>(coarse_.grey.total()) / (shrink * shrink) * nominal_cost::kPixelSlidOver;
+}
+
+void RegionSearch::slide(const RegionAligner& aligner) {
+  if (coarse_.grey.empty()) return;
+  const int shrink = std::max(1, static_cast<int>(kSlidingScale) / coarse_.scale);
+  const int scale = shrink * coarse_.scale;
+  cv::Mat small;
+  const cv::Size size(std::max(1, coarse_.grey.cols / shrink), std::max(1, coarse_.grey.rows / shrink));
+  cv::resize(coarse_.grey, small, size, 0.0, 0.0, cv::INTER_AREA);
+  cv::Mat1f seen;
+  small.convertTo(seen, CV_32F);
+  int l = 0;
+  while (l + 1 < aligner.esm().levels() && aligner.esm().level(l + 1).scale <= scale) ++l;
   const EsmLevel& level = aligner.esm().level(l);
-  cv::Mat1f coarse = whole.level(l);
-  Eigen::Matrix3d from_coarse = Eigen::Matrix3d::Identity();  // its first pixel to that of the image
+  // The first pixel that is slid over to that of the image, or to rectified ones.
+  const double middle = 0.5 * (scale - 1.0);
+  Eigen::Matrix3d offset = Eigen::Matrix3d::Identity();
+  offset.topRightCorner<2, 1>() << middle, middle;
   if (lens_) {
-    const cv::Rect box = image::rectifiedBox(*lens_, image.size());
-    from_coarse.topRightCorner<2, 1>() << box.x, box.y;
-    Eigen::Matrix3d sampling = from_coarse;
-    sampling.topLeftCorner<2, 2>() *= level.scale;
-    const cv::Size size(static_cast<int>(box.width / level.scale) + 1, static_cast<int>(box.height / level.scale) + 1);
-    coarse = cv::Mat1f(size);
-    cv::Mat1f valid(size);
-    image::warpBilinear(whole.level(l), sampling, *lens_, {cv::Point(0, 0), level.scale}, coarse, valid);
-    coarse.setTo(0.0f, valid == 0.0f);
+    const cv::Rect box = image::rectifiedBox(*lens_, coarse_.grey.size() * coarse_.scale);
+    offset.topRightCorner<2, 1>() << box.x, box.y;
+    Eigen::Matrix3d sampling = offset;
+    sampling.topLeftCorner<2, 2>() *= scale;
+    cv::Mat1f flat(box.height / scale + 1, box.width / scale + 1);
+    cv::Mat1f valid(flat.size());
+    const cv::Point origin(cvFloor(middle), cvFloor(middle));
+    image::warpBilinear(seen, sampling, *lens_, {origin, static_cast<double>(scale)}, flat, valid);
+    flat.setTo(0.0f, valid == 0.0f);
+    seen = flat;
   }
-  std::vector<Eigen::Matrix3d> places;
   for (const Candidate& candidate :
-       searchByCorrelation(level.planes[0].value.view(), level.image_T_patch, coarse, level.scale, aligner.roi(),
-                           from_coarse.inverse() * last, kCandidates)) {
-    places.push_back(from_coarse * candidate.g);
+       searchByCorrelation(level.planes[0].value.view(), level.image_T_patch, seen, scale, aligner.roi(),
+                           offset.inverse() * last_.g, static_cast<int>(kCandidates))) {
+    suggest(offset * candidate.g, Suggestion::kCorrelation);
   }
-  return places;
 }
 
 }  // namespace laparoscope_servo::tracking

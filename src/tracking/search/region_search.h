@@ -1,9 +1,9 @@
-// Searches a region of interest (ROI) that was lost: at one place after another, until what is aligned there can be
-// believed.
+// Searches a region of interest (ROI) that was lost: says where to align it, one place after another. What it takes to
+// find such places is spread over as many images as the budget asks for.
 #pragma once
 
 #include <Eigen/Core>
-#include <functional>
+#include <deque>
 #include <memory>
 #include <opencv2/core.hpp>
 #include <optional>
@@ -16,6 +16,8 @@
 #include "tracking/align/region_aligner.h"
 #include "tracking/search/confirmation.h"
 #include "tracking/search/feature_search.h"
+#include "tracking/search/search_budget.h"
+#include "tracking/search/start_check.h"
 #include "tracking/views/keyframes.h"
 
 namespace laparoscope_servo::tracking {
@@ -26,6 +28,20 @@ struct Attempt {
   std::string doubt;
 };
 
+// What suggested a place.
+enum class Suggestion {
+  kConfirmation,  // it was found there in the image before
+  kCarried,       // somebody else than the images knows how it moved
+  kLast,          // it was there when it was last believed
+  kFeatures,
+  kCorrelation,
+};
+
+struct SearchPlace {
+  EsmState start;
+  Suggestion by = Suggestion::kLast;
+};
+
 class RegionSearch {
  public:
   // With a lens images are raw; homographies and the ROI are in rectified pixels.
@@ -34,22 +50,24 @@ class RegionSearch {
   // `aligner` has the image and its ROI for the reference.
   void setReference(const cv::Mat& image, RegionAligner& aligner);
   // The ROI was tracked at `g`, as `aligner` has just seen it: stores what the image shows of it, when it is clear, and
-  // new.
+  // new, or none was stored for some images.
   void keepView(const cv::Mat& image, const Evidence& seen, const Eigen::Matrix3d& g, RegionAligner& aligner);
 
   // The ROI has been lost: the search starts.
   void restart();
 
-  struct Found {
-    Attempt attempt;             // the last one; without a doubt when the ROI was found
-    bool where_carried = false;  // the attempt was the one at `carried`
-  };
-  // Aligns with the image what `aligner` has for the reference, from a place to start from.
-  using Try = std::function<Attempt(const EsmState& start)>;
-  // One image. `last`: the last estimate that was believed; `carried`: the same, moved by what somebody else than the
-  // images knows.
-  Found search(const cv::Mat& image, RegionAligner& aligner, const EsmState& last,
-               const std::optional<Eigen::Matrix3d>& carried, const Try& attempt);
+  // The next image. `last`: the last estimate that was believed; `carried`: the same, moved by what somebody else than
+  // the images knows.
+  void begin(const EsmState& last, const std::optional<Eigen::Matrix3d>& carried);
+  // Where to align `aligner`'s reference with that image, likely places first; empty when there is no place left, or no
+  // time. To be asked again after each attempt, until one is without a doubt.
+  std::optional<SearchPlace> next(const cv::Mat& image, const RegionAligner& aligner);
+  // What came of the place that next() has said last, as `aligner` has just aligned it. True when it is believed.
+  bool judge(const Attempt& attempt, const RegionAligner& aligner);
+
+  // Of the image, the attempt without a doubt, or that with the highest correlation: what it lacked is what matters.
+  const Attempt& best() const { return best_; }
+  Suggestion suggestedBy() const { return best_by_; }
 
   // What was found waits there until it is confirmed.
   Confirmation& confirmation() { return confirmation_; }
@@ -57,18 +75,37 @@ class RegionSearch {
 
  private:
   std::string doubtOf(const Attempt& found, const RegionAligner& aligner) const;
-  std::vector<Eigen::Matrix3d> furtherPlaces(const cv::Mat& image, const RegionAligner& aligner,
-                                             const Eigen::Matrix3d& last);
-  std::vector<Eigen::Matrix3d> byFeatures(const cv::Mat& image, const RegionAligner& aligner);
-  std::vector<Eigen::Matrix3d> byCorrelation(const cv::Mat& image, const RegionAligner& aligner,
-                                             const Eigen::Matrix3d& last) const;
+  std::optional<SearchPlace> nextSuggested(const cv::Mat& image);
+  bool work(const cv::Mat& image, const RegionAligner& aligner);
+  void suggest(const Eigen::Matrix3d& g, Suggestion by);
+  double slideCost() const;
+  void slide(const RegionAligner& aligner);
 
-  SearchConfig config_;
+  TrackerConfig config_;
   std::shared_ptr<const image::Lens> lens_;  // null: none
   Keyframes keyframes_;
+  int since_view_ = 0;  // images since the most recent view was stored
   FeatureSearch feature_search_;
+  StartCheck start_check_;
   Confirmation confirmation_;
-  unsigned turn_ = 0;  // images searched since the ROI was lost
+  double alignment_cost_ = 0.0;  // s, nominal
+
+  // A pass over one image, which may take several: by points, then by correlation.
+  bool passing_ = false;
+  bool to_slide_ = false;
+  CoarseImage coarse_;
+
+  // The present image.
+  SearchBudget budget_;
+  EsmState last_;
+  std::deque<SearchPlace> suggested_;  // those that there was no time for stay for the next one
+  bool began_ = false;                 // a pass: another one would find the same
+  bool worked_ = true;                 // something of a pass was done,
+  bool hungry_ = false;                // or was not in the image before
+  Suggestion tried_ = Suggestion::kLast;
+  bool aligned_ = false;  // something was
+  Attempt best_;
+  Suggestion best_by_ = Suggestion::kLast;
 };
 
 }  // namespace laparoscope_servo::tracking

@@ -12,8 +12,10 @@ namespace {
 
 constexpr double kLengthStep = 1.3;  // a binary descriptor bears about this much between two views
 constexpr double kTurnStep = 0.6;    // rad
-// Share of the image's diagonal: detectors see nothing near the border of what they are given.
-constexpr double kMargin = 0.08;
+// Of the tissue around the ROI: detectors see nothing near the border of what they are given, and small or smooth
+// regions are found by their surroundings.
+constexpr double kMargin = 0.08;      // of the image's diagonal
+constexpr double kMarginOfRoi = 0.5;  // of the ROI's, where that is more
 
 }  // namespace
 
@@ -32,12 +34,14 @@ double viewDistance(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b, const ge
 void Keyframes::setReference(const cv::Mat& image, const geometry::Rectangle& roi, const cv::Mat1f& weights) {
   roi_ = roi;
   views_.clear();
+  recent_ = Keyframe();
+  recent_pixels_.release();
   views_.push_back(cut(image, Eigen::Matrix3d::Identity(), weights));
 }
 
 double Keyframes::nearest(const Eigen::Matrix3d& g, int except) const {
   double distance = std::numeric_limits<double>::infinity();
-  for (int k = 0; k < count(); ++k) {
+  for (int k = 0; k < stored(); ++k) {
     if (k != except) distance = std::min(distance, viewDistance(g, views_[k].g, roi_));
   }
   return distance;
@@ -45,7 +49,7 @@ double Keyframes::nearest(const Eigen::Matrix3d& g, int except) const {
 
 int Keyframes::leastSingular() const {
   int least = 1;
-  for (int k = 2; k < count(); ++k) {
+  for (int k = 2; k < stored(); ++k) {
     if (nearest(views_[k].g, k) < nearest(views_[least].g, least)) least = k;
   }
   return least;
@@ -55,7 +59,7 @@ bool Keyframes::wants(const Eigen::Matrix3d& g) const {
   if (capacity_ == 0 || views_.empty()) return false;
   const double distance = nearest(g, -1);
   if (!(distance >= 1.0) || !std::isfinite(distance)) return false;
-  if (count() <= capacity_) return true;
+  if (stored() <= capacity_) return true;
   const int least = leastSingular();
   return distance > nearest(views_[least].g, least);
 }
@@ -63,17 +67,37 @@ bool Keyframes::wants(const Eigen::Matrix3d& g) const {
 void Keyframes::add(const cv::Mat& image, const Eigen::Matrix3d& g, const cv::Mat1f& weights) {
   Keyframe view = cut(image, g, weights);
   if (view.crop.empty()) return;
-  if (count() <= capacity_) {
+  if (stored() <= capacity_) {
     views_.push_back(std::move(view));
   } else {
     views_[leastSingular()] = std::move(view);
   }
 }
 
-Keyframe Keyframes::cut(const cv::Mat& image, const Eigen::Matrix3d& g, const cv::Mat1f& weights) const {
-  const double margin = kMargin * std::hypot(image.cols, image.rows);
+void Keyframes::addRecent(const cv::Mat& image, const Eigen::Matrix3d& g, const cv::Mat1f& weights) {
+  const cv::Rect box = boxOf(image, g);
+  if (capacity_ == 0 || box.empty()) return;
+  recent_pixels_.create(image.size(), image.type());
+  recent_.crop = recent_pixels_(cv::Rect(cv::Point(0, 0), box.size()));
+  image(box).copyTo(recent_.crop);
+  recent_.first = box.tl();
+  recent_.g = g;
+  cv::compare(weights, 0.0, recent_.trusted, cv::CMP_GT);
+  recent_.described = false;
+  recent_.features.points.clear();
+  recent_.features.descriptors.release();
+}
+
+// Of the image: the ROI with its margin.
+cv::Rect Keyframes::boxOf(const cv::Mat& image, const Eigen::Matrix3d& g) const {
   const geometry::Quadrilateral corners = geometry::apply(g, roi_.corners());
-  const cv::Rect box = image::seenBox(lens_.get(), corners, margin) & cv::Rect(cv::Point(0, 0), image.size());
+  const double diagonal = std::max((corners[2] - corners[0]).norm(), (corners[3] - corners[1]).norm());
+  const double margin = std::max(kMargin * std::hypot(image.cols, image.rows), kMarginOfRoi * diagonal);
+  return image::seenBox(lens_.get(), corners, margin) & cv::Rect(cv::Point(0, 0), image.size());
+}
+
+Keyframe Keyframes::cut(const cv::Mat& image, const Eigen::Matrix3d& g, const cv::Mat1f& weights) const {
+  const cv::Rect box = boxOf(image, g);
   Keyframe view;
   view.g = g;
   if (box.empty()) return view;

@@ -10,14 +10,9 @@
 
 #include "laparoscope_servo/geometry/homography.h"
 #include "laparoscope_servo/image/lens.h"
+#include "tracking/views/features.h"
 
 namespace laparoscope_servo::tracking {
-
-// Points with binary descriptors, a row of CV_8U each.
-struct Features {
-  std::vector<cv::Point2f> points;  // px, of the image that the keyframe was cut from; with a lens rectified ones
-  cv::Mat descriptors;
-};
 
 struct Keyframe {
   cv::Mat crop;       // of the image as it came: the ROI with a margin
@@ -51,13 +46,20 @@ class Keyframes {
   // Stores a view that wants() said yes to.
   void add(const cv::Mat& image, const Eigen::Matrix3d& g, const cv::Mat1f& weights);
 
-  // With the reference, which is at 0; 0 before it is set.
-  int count() const { return static_cast<int>(views_.size()); }
-  Keyframe& at(int k) { return views_[k]; }
-  const Keyframe& at(int k) const { return views_[k]; }
+  // Stores the view, or one that replaces it soon, as the most recent one, beside those: tissue that bleeds, or is cut,
+  // looks as it did last. Does not allocate once it has stored one. Nothing where capacity is 0.
+  void addRecent(const cv::Mat& image, const Eigen::Matrix3d& g, const cv::Mat1f& weights);
+
+  // With the reference, which is at 0, and the most recent one, which is the last; 0 before the reference is set.
+  int count() const { return static_cast<int>(views_.size()) + (hasRecent() ? 1 : 0); }
+  bool hasRecent() const { return !recent_.crop.empty(); }
+  Keyframe& at(int k) { return k < stored() ? views_[k] : recent_; }
+  const Keyframe& at(int k) const { return k < stored() ? views_[k] : recent_; }
   const geometry::Rectangle& roi() const { return roi_; }
 
  private:
+  int stored() const { return static_cast<int>(views_.size()); }
+  cv::Rect boxOf(const cv::Mat& image, const Eigen::Matrix3d& g) const;
   double nearest(const Eigen::Matrix3d& g, int except) const;
   int leastSingular() const;
   Keyframe cut(const cv::Mat& image, const Eigen::Matrix3d& g, const cv::Mat1f& weights) const;
@@ -66,6 +68,8 @@ class Keyframes {
   std::shared_ptr<const image::Lens> lens_;
   geometry::Rectangle roi_;
   std::vector<Keyframe> views_;
+  Keyframe recent_;
+  cv::Mat recent_pixels_;  // its crop's memory, enough for any
 };
 
 }  // namespace laparoscope_servo::tracking

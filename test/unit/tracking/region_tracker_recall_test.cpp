@@ -27,6 +27,9 @@ class RegionTrackerRecallTest : public RegionTrackerTest {
 };
 
 TEST_F(RegionTrackerRecallTest, FindsTheRegionOfAnOlderImageWhenConfirmed) {
+  TrackerConfig config;
+  config.search.budget = 10.0;  // s: at once
+  tracker_ = RegionTracker(config);
   tracker_.recall(scene_, 3.0, kRoi, kNow);
   EXPECT_TRUE(tracker_.hasRoi());
   EXPECT_EQ(imagesUntilFound(), TrackerConfig().quality.confirmations);

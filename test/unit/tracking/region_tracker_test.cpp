@@ -92,7 +92,7 @@ TEST_F(RegionTrackerTest, SaysSearchingThenLostWhenTheViewIsGoneAndComesBackConf
   Eigen::Matrix3d elsewhere = Eigen::Matrix3d::Identity();
   elsewhere.topRightCorner<2, 1>() << 70.0, 40.0;
   TrackResult r;
-  for (int k = 0; k < 4; ++k) {
+  for (int k = 0; k < 12; ++k) {
     r = tracker_.track(test::view(scene_, elsewhere, 1.0, 0.0, 2.0, 50 + k), 0.04 * frame++);
     if (k == 0) {
       EXPECT_NE(r.state, State::kTracking);

@@ -33,8 +33,9 @@ TEST(TrackerConfig, TheSearchHasRanges) {
   c.search.min_inliers = 3;
   c.search.keyframes = -1;
   c.search.min_detail = -0.1;
+  c.search.budget = 0.0;
   const std::vector<std::string> errors = validate(c);
-  ASSERT_EQ(errors.size(), 6u);
+  ASSERT_EQ(errors.size(), 7u);
   for (const std::string& error : errors) EXPECT_EQ(error.rfind("search/", 0), 0u) << error;
   EXPECT_EQ(errors[0], "search/max_features = 49, expected a number from 50 to 5000");
 }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <vector>
 
 #include "support/synthetic_tissue.h"
@@ -23,7 +24,9 @@ class RegionSearchTest : public ::testing::Test {
   cv::Mat scene_ = test::tissue(kSize, 61);
   TrackerConfig config_;
   Eigen::Matrix3d truth_ = shift(60.0, -40.0);
-  std::vector<Eigen::Matrix3d> tried_;  // where attempts started, since the last search
+  std::vector<SearchPlace> tried_;  // in the last image
+
+  RegionSearchTest() { config_.search.budget = 10.0; }  // all in one image
 
   struct Setup {
     RegionAligner aligner;
@@ -35,78 +38,111 @@ class RegionSearchTest : public ::testing::Test {
     result.search.setReference(scene_, result.aligner);
     return result;
   }
-  // Believes what an alignment, with `image`, brought to the truth.
-  RegionSearch::Found searchIn(const cv::Mat& image, Setup& s,
-                               const std::optional<Eigen::Matrix3d>& carried = std::nullopt) {
+  // One image; believes what an alignment with it brought to the truth.
+  const Attempt& searchIn(const cv::Mat& image, Setup& s, const std::optional<Eigen::Matrix3d>& carried = std::nullopt,
+                          const EsmState& last = EsmState()) {
     tried_.clear();
-    return s.search.search(image, s.aligner, EsmState(), carried, [&](const EsmState& start) {
-      tried_.push_back(start.g);
+    s.search.begin(last, carried);
+    while (const auto place = s.search.next(image, s.aligner)) {
+      tried_.push_back(*place);
       Attempt attempt;
-      attempt.evidence.esm = s.aligner.align(image, start, nullptr, 32.0).esm;
+      attempt.evidence.esm = s.aligner.align(image, place->start, nullptr, 32.0).esm;
+      attempt.evidence.zncc = 0.1 * static_cast<double>(tried_.size() % 3);  // the second is the best
       if (!(test::cornerDistance(attempt.evidence.esm.state.g, truth_, kRoi) < 1.0)) attempt.doubt = "elsewhere";
-      return attempt;
-    });
+      if (s.search.judge(attempt, s.aligner)) break;
+    }
+    return s.search.best();
+  }
+  // How many images it takes until the ROI is found; 0 when it is not in so many.
+  int imagesUntilFound(const cv::Mat& image, Setup& s, int most) {
+    for (int k = 1; k <= most; ++k) {
+      if (searchIn(image, s).doubt.empty()) return k;
+    }
+    return 0;
   }
   cv::Mat seen() const { return test::view(scene_, truth_, 1.0, 0.0, 2.0); }
+  cv::Mat elsewhere() const { return test::view(test::tissue(kSize, 62), truth_, 1.0, 0.0, 2.0); }
 };
 
 TEST_F(RegionSearchTest, LooksFirstWhereItWasLast) {
   truth_ = shift(2.0, 1.0);
   Setup s = setup();
-  EXPECT_EQ(searchIn(seen(), s).attempt.doubt, "");
+  EXPECT_EQ(searchIn(seen(), s).doubt, "");
   ASSERT_EQ(tried_.size(), 1u);
-  EXPECT_EQ(tried_[0], Eigen::Matrix3d::Identity());
+  EXPECT_EQ(tried_[0].by, Suggestion::kLast);
+  EXPECT_LT(test::cornerDistance(tried_[0].start.g, truth_, kRoi), 3.0);
 }
 
-TEST_F(RegionSearchTest, ThenByFeaturesAndByCorrelationInTurn) {
+TEST_F(RegionSearchTest, ThenByFeaturesAndThenByCorrelation) {
   Setup s = setup();
-  for (int turn = 0; turn < 3; ++turn) {
-    const RegionSearch::Found found = searchIn(seen(), s);
-    EXPECT_EQ(found.attempt.doubt, "") << turn;
-    EXPECT_FALSE(found.where_carried);
-    ASSERT_GE(tried_.size(), 2u) << turn;
-    EXPECT_LE(tried_.size(), 3u) << turn;
-    EXPECT_EQ(tried_[0], Eigen::Matrix3d::Identity());
-    EXPECT_LT(test::cornerDistance(tried_.back(), truth_, kRoi), 15.0) << turn;
+  EXPECT_EQ(searchIn(seen(), s).doubt, "");
+  EXPECT_EQ(s.search.suggestedBy(), Suggestion::kFeatures);
+  EXPECT_EQ(tried_[0].by, Suggestion::kLast);
+  EXPECT_EQ(tried_.back().by, Suggestion::kFeatures);
+  EXPECT_LT(test::cornerDistance(tried_.back().start.g, truth_, kRoi), 15.0);
+  // Correlation turns nothing; features do.
+  searchIn(elsewhere(), s);
+  for (const SearchPlace& place : tried_) {
+    EXPECT_TRUE(place.by != Suggestion::kCorrelation || std::abs(place.start.g(0, 1)) < 1e-12);
   }
-  // Correlation goes by whole pixels of its level, and turns nothing; features do neither.
-  searchIn(seen(), s);
-  const Eigen::Matrix3d by_correlation = tried_.back();
-  EXPECT_NEAR(by_correlation(0, 1), 0.0, 1e-12);
-  EXPECT_NEAR(by_correlation(0, 0), 1.0, 1e-12);
-  s.search.restart();
-  searchIn(seen(), s);
-  EXPECT_NE(tried_.back()(0, 1), 0.0);
+  EXPECT_EQ(tried_.back().by, Suggestion::kCorrelation);
 }
 
 TEST_F(RegionSearchTest, WithoutFurtherStagesOnlyWhereItWasLast) {
   config_.search.features = config_.search.correlation = false;
   Setup s = setup();
-  EXPECT_NE(searchIn(seen(), s).attempt.doubt, "");
+  EXPECT_NE(searchIn(seen(), s).doubt, "");
   EXPECT_EQ(tried_.size(), 1u);
 }
 
-TEST_F(RegionSearchTest, OneStageAloneIsAskedEveryTime) {
+TEST_F(RegionSearchTest, OneStageAloneFindsIt) {
   for (const bool features : {true, false}) {
     config_.search.features = features;
     config_.search.correlation = !features;
     Setup s = setup();
-    for (int turn = 0; turn < 3; ++turn) EXPECT_EQ(searchIn(seen(), s).attempt.doubt, "") << features << ' ' << turn;
+    for (int turn = 0; turn < 3; ++turn) EXPECT_EQ(searchIn(seen(), s).doubt, "") << features << ' ' << turn;
+    EXPECT_EQ(s.search.suggestedBy(), features ? Suggestion::kFeatures : Suggestion::kCorrelation);
   }
+}
+
+// Whatever the budget, it comes to an end, and what does not fit into an image is done in the next ones.
+TEST_F(RegionSearchTest, ASmallBudgetTakesMoreImages) {
+  Setup whole = setup();
+  EXPECT_EQ(imagesUntilFound(seen(), whole, 1), 1);
+  config_.search.correlation = false;
+  config_.search.budget = 0.015;
+  Setup usual = setup();
+  const int images = imagesUntilFound(seen(), usual, 25);
+  EXPECT_GT(images, 1);
+  EXPECT_LE(images, 10);
+  config_.search.budget = 0.001;
+  Setup least = setup();
+  EXPECT_GT(imagesUntilFound(seen(), least, 100), images);
+}
+
+TEST_F(RegionSearchTest, APlaceFoundSomeImagesAgoIsCarriedToThePresentOne) {
+  config_.search.budget = 0.005;
+  config_.search.correlation = false;
+  Setup s = setup();
+  int images = 0;
+  for (bool found = false; !found && images < 60; ++images) {
+    truth_ = shift(60.0 + 0.8 * images, -40.0);
+    found = searchIn(seen(), s).doubt.empty();
+  }
+  EXPECT_LT(images, 60);
+  EXPECT_EQ(s.search.suggestedBy(), Suggestion::kFeatures);
 }
 
 TEST_F(RegionSearchTest, WhereItWasCarriedComesBeforeAndIsSaid) {
   Setup s = setup();
-  const RegionSearch::Found found = searchIn(seen(), s, shift(58.0, -41.0));
-  EXPECT_EQ(found.attempt.doubt, "");
-  EXPECT_TRUE(found.where_carried);
+  EXPECT_EQ(searchIn(seen(), s, shift(58.0, -41.0)).doubt, "");
+  EXPECT_EQ(s.search.suggestedBy(), Suggestion::kCarried);
   EXPECT_EQ(tried_.size(), 1u);
   // A robot that is wrong: the search goes on.
-  const RegionSearch::Found despite = searchIn(seen(), s, shift(-80.0, 60.0));
-  EXPECT_EQ(despite.attempt.doubt, "");
-  EXPECT_FALSE(despite.where_carried);
-  EXPECT_EQ(tried_[0], shift(-80.0, 60.0));
-  EXPECT_EQ(tried_[1], Eigen::Matrix3d::Identity());
+  EXPECT_EQ(searchIn(seen(), s, shift(-80.0, 60.0)).doubt, "");
+  EXPECT_NE(s.search.suggestedBy(), Suggestion::kCarried);
+  EXPECT_EQ(tried_[0].start.g, shift(-80.0, 60.0));
+  EXPECT_EQ(tried_[1].start.g, Eigen::Matrix3d::Identity());
 }
 
 TEST_F(RegionSearchTest, WhatWaitsForConfirmationComesFirst) {
@@ -114,53 +150,79 @@ TEST_F(RegionSearchTest, WhatWaitsForConfirmationComesFirst) {
   EsmResult found;
   found.state.g = truth_;
   s.search.confirmation().add(found, kRoi, TrackRecord());
-  EXPECT_EQ(searchIn(seen(), s, shift(0.0, 5.0)).attempt.doubt, "");
+  EXPECT_EQ(searchIn(seen(), s, shift(0.0, 5.0)).doubt, "");
   ASSERT_EQ(tried_.size(), 1u);
-  EXPECT_LT(test::cornerDistance(tried_[0], truth_, kRoi), 1e-9);
+  EXPECT_EQ(tried_[0].by, Suggestion::kConfirmation);
+  EXPECT_LT(test::cornerDistance(tried_[0].start.g, truth_, kRoi), 1e-9);
+}
+
+// What is dear is not aligned where nothing speaks for it.
+TEST_F(RegionSearchTest, AlignsNoPlaceThatDoesNotLookLikeTheRegion) {
+  config_.search.budget = 0.003;
+  Setup s = setup();
+  for (int image = 0; image < 10; ++image) {
+    const Attempt& best = searchIn(elsewhere(), s);
+    EXPECT_LE(tried_.size(), 1u);
+    EXPECT_NE(best.doubt, "");
+  }
+}
+
+TEST_F(RegionSearchTest, TheBestAttemptIsReported) {
+  Setup s = setup();
+  const Attempt& best = searchIn(elsewhere(), s);
+  ASSERT_GE(tried_.size(), 3u);
+  EXPECT_EQ(best.doubt, "elsewhere");
+  EXPECT_NEAR(best.evidence.zncc, 0.2, 1e-12);
+  EXPECT_EQ(s.search.suggestedBy(), tried_[1].by);
 }
 
 TEST_F(RegionSearchTest, AsksForMoreThanAnAttemptThatNobodyDoubts) {
   Setup s = setup();
-  const auto withStatus = [&](EsmStatus status) {
-    const cv::Mat image = seen();
-    return s.search
-        .search(image, s.aligner, EsmState(), truth_,
-                [&](const EsmState& start) {
-                  Attempt attempt;
-                  attempt.evidence.esm = s.aligner.align(image, start, nullptr, 32.0).esm;
-                  attempt.evidence.esm.status = status;
-                  return attempt;
-                })
-        .attempt.doubt;
+  const auto withStatus = [&](EsmStatus status, const cv::Mat& image) {
+    s.search.begin(EsmState(), truth_);
+    const auto place = s.search.next(image, s.aligner);
+    Attempt attempt;
+    attempt.evidence.esm = s.aligner.align(image, place->start, nullptr, 32.0).esm;
+    attempt.evidence.esm.status = status;
+    const bool believed = s.search.judge(attempt, s.aligner);
+    EXPECT_EQ(believed, s.search.best().doubt.empty());
+    return s.search.best().doubt;
   };
-  EXPECT_EQ(withStatus(EsmStatus::kConverged), "");
-  EXPECT_NE(withStatus(EsmStatus::kMaxIterations), "");
+  EXPECT_EQ(withStatus(EsmStatus::kConverged, seen()), "");
+  EXPECT_NE(withStatus(EsmStatus::kMaxIterations, seen()), "");
   // The same shading without the fine structure.
   cv::Mat blurred;
-  cv::GaussianBlur(scene_, blurred, cv::Size(), 6.0);
-  truth_.setIdentity();
-  const RegionSearch::Found found = searchIn(blurred, s);
-  EXPECT_NE(found.attempt.doubt, "");
+  cv::GaussianBlur(seen(), blurred, cv::Size(), 6.0);
+  EXPECT_NE(withStatus(EsmStatus::kConverged, blurred), "");
 }
 
+// Of tissue that has changed since, which the reference does not find.
 TEST_F(RegionSearchTest, KeepsClearAndNewViewsThatItThenFinds) {
-  const Eigen::Matrix3d close = geometry::normaliseDeterminant(
-      (Eigen::Matrix3d() << 2.6, 0.0, -307.0, 0.0, 2.6, -243.0, 0.0, 0.0, 1.0).finished());
+  const cv::Mat changed = test::tissue(kSize, 63);
+  const Eigen::Matrix3d close =
+      geometry::normaliseDeterminant((Eigen::Matrix3d() << 1.4, 0.0, -70.0, 0.0, 1.4, -60.0, 0.0, 0.0, 1.0).finished());
   truth_ = geometry::normaliseDeterminant(shift(25.0, 12.0) * close);
   config_.search.correlation = false;
-  config_.quality.max_area_ratio = 10.0;
-  const cv::Mat now = seen();
-  const auto findsAfterKeeping = [&](double visible_fraction, double zncc) {
+  const cv::Mat now = test::view(changed, truth_, 1.0, 0.0, 2.0);
+  const auto suggestedAfterKeeping = [&](double visible_fraction, double zncc, int images) {
     Setup s = setup();
     Evidence clear;
     clear.visible_fraction = visible_fraction;
     clear.zncc = zncc;
-    s.search.keepView(test::view(scene_, close, 1.0, 0.0, 2.0), clear, close, s.aligner);
-    return searchIn(now, s).attempt.doubt.empty();
+    for (int k = 0; k < images; ++k)
+      s.search.keepView(test::view(changed, close, 1.0, 0.0, 2.0), clear, close, s.aligner);
+    searchIn(now, s);
+    for (const SearchPlace& place : tried_) {
+      if (test::cornerDistance(place.start.g, truth_, kRoi) < 40.0) return true;
+    }
+    return false;
   };
-  EXPECT_TRUE(findsAfterKeeping(0.95, 0.95));
-  EXPECT_FALSE(findsAfterKeeping(0.6, 0.95));
-  EXPECT_FALSE(findsAfterKeeping(0.95, 0.8));
+  EXPECT_TRUE(suggestedAfterKeeping(0.95, 0.95, 1));
+  EXPECT_FALSE(suggestedAfterKeeping(0.6, 0.95, 1));
+  EXPECT_FALSE(suggestedAfterKeeping(0.95, 0.8, 1));
+  // The most recent view is kept every now and then, also where it is worse.
+  EXPECT_TRUE(suggestedAfterKeeping(0.6, 0.8, 10));
+  EXPECT_FALSE(suggestedAfterKeeping(0.4, 0.8, 10));
 }
 
 }  // namespace

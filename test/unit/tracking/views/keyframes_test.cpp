@@ -107,6 +107,52 @@ TEST_F(KeyframesTest, TheCropIsACopyOfTheRegionWithAMargin) {
   EXPECT_FALSE(reference.described);
 }
 
+TEST_F(KeyframesTest, ASmallRegionHasAMarginOfItsOwnSize) {
+  const cv::Mat large = test::tissue(cv::Size(640, 480), 4);
+  Keyframes views(1);
+  views.setReference(large, {100, 80, 200, 200}, cv::Mat1f(200, 200, 1.0f));
+  EXPECT_EQ(views.at(0).first, cv::Point(0, 0));
+  EXPECT_NEAR(views.at(0).crop.cols, 300 + 0.5 * std::hypot(200, 200), 2.0);
+}
+
+TEST_F(KeyframesTest, TheMostRecentViewIsTheLastAndReplaced) {
+  Keyframes views = keyframes(2);
+  EXPECT_FALSE(views.hasRecent());
+  views.addRecent(image_, zoomAndTurn(1.1, 0.0), weights_);
+  ASSERT_TRUE(views.hasRecent());
+  ASSERT_EQ(views.count(), 2);
+  views.at(1).described = true;
+  views.at(1).features.points.emplace_back(1.0f, 2.0f);
+  const Eigen::Matrix3d turned = zoomAndTurn(1.2, 0.1);
+  weights_(3, 4) = 0.0f;
+  views.addRecent(image_, turned, weights_);
+  ASSERT_EQ(views.count(), 2);
+  const Keyframe& recent = views.at(1);
+  EXPECT_EQ(recent.g, turned);
+  EXPECT_FALSE(recent.described);
+  EXPECT_TRUE(recent.features.points.empty());
+  EXPECT_EQ(recent.trusted(3, 4), 0);
+  EXPECT_EQ(recent.trusted(3, 5), 255);
+  EXPECT_EQ(cv::norm(recent.crop, image_(cv::Rect(recent.first, recent.crop.size())), cv::NORM_INF), 0.0);
+  // It takes no place, and does not keep others away.
+  const Eigen::Matrix3d near = zoomAndTurn(1.5, 0.0);
+  views.addRecent(image_, near, weights_);
+  ASSERT_TRUE(views.wants(near));
+  views.add(image_, near, weights_);
+  EXPECT_EQ(views.count(), 3);
+  views.setReference(image_, kRoi, weights_);
+  EXPECT_FALSE(views.hasRecent());
+}
+
+TEST_F(KeyframesTest, NoRecentViewWithoutPlaceOrOutsideTheImage) {
+  Keyframes none = keyframes(0);
+  none.addRecent(image_, Eigen::Matrix3d::Identity(), weights_);
+  EXPECT_FALSE(none.hasRecent());
+  Keyframes views = keyframes(2);
+  views.addRecent(image_, zoomAndTurn(1.5, 0.0, 0.0, {-4000.0, 0.0}), weights_);
+  EXPECT_FALSE(views.hasRecent());
+}
+
 TEST_F(KeyframesTest, AViewOutsideTheImageIsNotStored) {
   Keyframes views = keyframes(2);
   views.add(image_, zoomAndTurn(1.5, 0.0, 0.0, {-4000.0, 0.0}), weights_);

@@ -1,0 +1,57 @@
+#include "tracking/search/point_features.h"
+
+#include <algorithm>
+#include <opencv2/core/version.hpp>
+#include <opencv2/features2d.hpp>
+#include <vector>
+
+namespace laparoscope_servo::tracking {
+
+namespace {
+
+constexpr int kLeastSide = 16;  // px: in less there are no points to be found
+constexpr int kLayers = 3;      // of an octave
+
+#if CV_VERSION_MAJOR * 10000 + CV_VERSION_MINOR * 100 >= 40400
+constexpr int kNorm = cv::NORM_L2;
+constexpr double kContrast = 0.005;  // an eighth of the usual: tissue has little
+
+// To describe a point takes most of the time: SIFT leaves the weaker ones away before.
+void detect(const cv::Mat1b& grey, const cv::Mat1b& mask, int count, std::vector<cv::KeyPoint>& points,
+            cv::Mat& descriptors) {
+  cv::SIFT::create(count, kLayers, kContrast)->detectAndCompute(grey, mask, points, descriptors);
+}
+#else
+constexpr int kNorm = cv::NORM_HAMMING;
+constexpr float kResponse = 1e-5f;  // a hundredth of the usual
+
+void detect(const cv::Mat1b& grey, const cv::Mat1b& mask, int count, std::vector<cv::KeyPoint>& points,
+            cv::Mat& descriptors) {
+  const auto akaze = cv::AKAZE::create(cv::AKAZE::DESCRIPTOR_MLDB, 0, 3, kResponse, kLayers, kLayers);
+  akaze->detect(grey, points, mask);
+  cv::KeyPointsFilter::retainBest(points, count);
+  akaze->compute(grey, points, descriptors);
+}
+#endif
+
+}  // namespace
+
+cv::Mat1f descriptorDistances(const Features& a, const Features& b) {
+  cv::Mat distances;
+  cv::batchDistance(a.descriptors, b.descriptors, distances, -1, cv::noArray(), kNorm);
+  cv::Mat1f result;
+  distances.convertTo(result, CV_32F);
+  return result;
+}
+
+Features drawPoints(const cv::Mat1b& grey, const cv::Mat1b& mask, int count) {
+  Features features;
+  if (std::min(grey.cols, grey.rows) < kLeastSide) return features;
+  std::vector<cv::KeyPoint> points;
+  detect(grey, mask, count, points, features.descriptors);
+  features.points.reserve(points.size());
+  for (const cv::KeyPoint& point : points) features.points.push_back(point.pt);
+  return features;
+}
+
+}  // namespace laparoscope_servo::tracking

@@ -1,0 +1,44 @@
+// Whether a place is worth an alignment: how well the region of interest (ROI), made coarse, correlates with the image
+// there or nearby. Costs a small part of an alignment that leads nowhere, and moves the start to where it fits best, so
+// that a place found in one image serves in the next ones.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <opencv2/core.hpp>
+
+#include "laparoscope_servo/geometry/homography.h"
+#include "laparoscope_servo/image/lens.h"
+#include "laparoscope_servo/image/pyramid.h"
+
+namespace laparoscope_servo::tracking {
+
+struct CheckedStart {
+  Eigen::Matrix3d g;         // reference to current pixels, determinant 1
+  double correlation = 0.0;  // -1 to 1, of local contrast: light and shade do not raise it
+};
+
+class StartCheck {
+ public:
+  // With a lens images are raw; homographies and the ROI are in rectified pixels.
+  explicit StartCheck(std::shared_ptr<const image::Lens> lens = nullptr) : lens_(std::move(lens)) {}
+
+  void setReference(const cv::Mat& image, const geometry::Rectangle& roi, const image::ChannelWeights& weights);
+
+  // The best place within kReach of where `g` shows the ROI; `g` itself, and 0, where that is not in the image.
+  CheckedStart look(const cv::Mat& image, const Eigen::Matrix3d& g) const;
+
+  static constexpr double kReach = 0.25;  // of the ROI's larger side
+
+ private:
+  cv::Mat1f contrast(const cv::Mat& image, const Eigen::Matrix3d& g, int margin) const;
+
+  std::shared_ptr<const image::Lens> lens_;
+  geometry::Rectangle roi_;
+  image::ChannelWeights weights_ = image::kLuma;
+  double step_ = 1.0;  // px of the reference per pixel of what is compared
+  cv::Size size_;      // px of what is compared
+  cv::Mat1f reference_;
+};
+
+}  // namespace laparoscope_servo::tracking

@@ -1,0 +1,37 @@
+#include "tracking/search/search_budget.h"
+
+#include <gtest/gtest.h>
+
+namespace laparoscope_servo::tracking {
+namespace {
+
+TEST(SearchBudget, PaysWhatFits) {
+  SearchBudget budget;
+  budget.start(10.0);
+  EXPECT_TRUE(budget.pay(6.0));
+  EXPECT_FALSE(budget.pay(5.0));
+  EXPECT_TRUE(budget.pay(4.0));
+  EXPECT_FALSE(budget.pay(0.1));
+  budget.start(10.0);
+  EXPECT_TRUE(budget.pay(6.0));
+}
+
+TEST(SearchBudget, TheFirstPieceIsDoneWhateverItCosts) {
+  SearchBudget budget;
+  budget.start(1.0);
+  EXPECT_TRUE(budget.pay(50.0));
+  EXPECT_FALSE(budget.pay(0.001));
+  EXPECT_FALSE(budget.payTrifle(0.001));
+}
+
+TEST(SearchBudget, ATrifleIsPaidButIsNotTheFirstPiece) {
+  SearchBudget budget;
+  budget.start(1.0);
+  EXPECT_TRUE(budget.payTrifle(0.75));
+  EXPECT_FALSE(budget.payTrifle(0.5));
+  EXPECT_TRUE(budget.pay(0.5));
+  EXPECT_FALSE(budget.pay(0.5));
+}
+
+}  // namespace
+}  // namespace laparoscope_servo::tracking
