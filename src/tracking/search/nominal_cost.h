@@ -1,7 +1,7 @@
 // What pieces of the search cost, in seconds. The search spends its budget by these figures instead of by a clock, so
-// that the same images give the same numbers on every machine; how far they hold on yours, bench_search says.
+// that the same images give the same numbers on every machine; how far they hold on yours, bench_returns says.
 //
-// Measured by bench_search on one core (AMD EPYC, 2.6 GHz, OpenCV 4.6): per pixel, per point, per pair of points.
+// Measured by bench_returns on one core (AMD EPYC, 2.6 GHz, OpenCV 4.6): per pixel, per point, per pair of points.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -14,7 +14,8 @@ constexpr double kPointDescribed = 27e-6;  // 128 numbers
 constexpr double kPairCompared = 25e-9;    // a point of the image with one of a view
 constexpr double kMotionFitted = 1e-3;     // RANSAC, for one view
 constexpr double kPixelSlidOver = 60e-9;   // of the image that the region is slid over
-constexpr double kStartChecked = 1e-3;     // see StartCheck
-constexpr double kPixelAligned = 150e-9;   // of the ROI, all iterations at all levels of an alignment
+constexpr double kStartChecked = 0.6e-3;   // see StartCheck
+constexpr double kPixelLookedAt = 60e-9;   // of the ROI, by an alignment before its first iteration
+constexpr double kPixelIterated = 5e-9;    // of the ROI, by an iteration, the coarse levels among them
 
 }  // namespace laparoscope_servo::tracking::nominal_cost

@@ -78,6 +78,7 @@ class RegionSearch {
   std::optional<SearchPlace> nextSuggested(const cv::Mat& image);
   bool work(const cv::Mat& image, const RegionAligner& aligner);
   void suggest(const Eigen::Matrix3d& g, Suggestion by);
+  double alignmentCost(int iterations) const;
   double slideCost() const;
   void slide(const RegionAligner& aligner);
 
@@ -88,7 +89,6 @@ class RegionSearch {
   FeatureSearch feature_search_;
   StartCheck start_check_;
   Confirmation confirmation_;
-  double alignment_cost_ = 0.0;  // s, nominal
 
   // A pass over one image, which may take several: by points, then by correlation.
   bool passing_ = false;
@@ -103,7 +103,8 @@ class RegionSearch {
   bool worked_ = true;                 // something of a pass was done,
   bool hungry_ = false;                // or was not in the image before
   Suggestion tried_ = Suggestion::kLast;
-  bool aligned_ = false;  // something was
+  double likeliest_ = 0.0;  // correlation of the places that were looked at
+  bool aligned_ = false;    // one of them was
   Attempt best_;
   Suggestion best_by_ = Suggestion::kLast;
 };

@@ -25,6 +25,9 @@ class SearchBudget {
     return true;
   }
 
+  // A piece that was paid for has cost so much more, or less.
+  void charge(double more) { left_ -= more; }
+
  private:
   double left_ = 0.0;  // s
   bool idle_ = true;   // nothing was done yet

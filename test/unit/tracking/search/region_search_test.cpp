@@ -61,7 +61,6 @@ class RegionSearchTest : public ::testing::Test {
     return 0;
   }
   cv::Mat seen() const { return test::view(scene_, truth_, 1.0, 0.0, 2.0); }
-  cv::Mat elsewhere() const { return test::view(test::tissue(kSize, 62), truth_, 1.0, 0.0, 2.0); }
 };
 
 TEST_F(RegionSearchTest, LooksFirstWhereItWasLast) {
@@ -77,22 +76,22 @@ TEST_F(RegionSearchTest, ThenByFeaturesAndThenByCorrelation) {
   Setup s = setup();
   EXPECT_EQ(searchIn(seen(), s).doubt, "");
   EXPECT_EQ(s.search.suggestedBy(), Suggestion::kFeatures);
-  EXPECT_EQ(tried_[0].by, Suggestion::kLast);
   EXPECT_EQ(tried_.back().by, Suggestion::kFeatures);
   EXPECT_LT(test::cornerDistance(tried_.back().start.g, truth_, kRoi), 15.0);
-  // Correlation turns nothing; features do.
-  searchIn(elsewhere(), s);
-  for (const SearchPlace& place : tried_) {
-    EXPECT_TRUE(place.by != Suggestion::kCorrelation || std::abs(place.start.g(0, 1)) < 1e-12);
-  }
-  EXPECT_EQ(tried_.back().by, Suggestion::kCorrelation);
+  // Nothing is believed there: the search goes on. Correlation turns nothing; features do.
+  truth_ = shift(0.0, 0.0);
+  searchIn(test::view(scene_, shift(60.0, -40.0), 1.0, 0.0, 2.0), s);
+  ASSERT_EQ(tried_.back().by, Suggestion::kCorrelation);
+  EXPECT_LT(std::abs(tried_.back().start.g(0, 1)), 1e-12);
 }
 
 TEST_F(RegionSearchTest, WithoutFurtherStagesOnlyWhereItWasLast) {
   config_.search.features = config_.search.correlation = false;
   Setup s = setup();
   EXPECT_NE(searchIn(seen(), s).doubt, "");
-  EXPECT_EQ(tried_.size(), 1u);
+  EXPECT_LE(tried_.size(), 1u);
+  truth_ = shift(20.0, 10.0);
+  EXPECT_EQ(searchIn(seen(), s).doubt, "");
 }
 
 TEST_F(RegionSearchTest, OneStageAloneFindsIt) {
@@ -141,8 +140,6 @@ TEST_F(RegionSearchTest, WhereItWasCarriedComesBeforeAndIsSaid) {
   // A robot that is wrong: the search goes on.
   EXPECT_EQ(searchIn(seen(), s, shift(-80.0, 60.0)).doubt, "");
   EXPECT_NE(s.search.suggestedBy(), Suggestion::kCarried);
-  EXPECT_EQ(tried_[0].start.g, shift(-80.0, 60.0));
-  EXPECT_EQ(tried_[1].start.g, Eigen::Matrix3d::Identity());
 }
 
 TEST_F(RegionSearchTest, WhatWaitsForConfirmationComesFirst) {
@@ -156,20 +153,23 @@ TEST_F(RegionSearchTest, WhatWaitsForConfirmationComesFirst) {
   EXPECT_LT(test::cornerDistance(tried_[0].start.g, truth_, kRoi), 1e-9);
 }
 
-// What is dear is not aligned where nothing speaks for it.
-TEST_F(RegionSearchTest, AlignsNoPlaceThatDoesNotLookLikeTheRegion) {
-  config_.search.budget = 0.003;
+TEST_F(RegionSearchTest, AlignsNoPlaceThatDoesNotLookLikeTheRegionAndSaysSo) {
   Setup s = setup();
-  for (int image = 0; image < 10; ++image) {
-    const Attempt& best = searchIn(elsewhere(), s);
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    const Attempt& best = searchIn(test::view(test::tissue(kSize, 90 + seed), truth_, 1.0, 0.0, 2.0, seed), s);
     EXPECT_LE(tried_.size(), 1u);
     EXPECT_NE(best.doubt, "");
   }
+  const Attempt& black = searchIn(cv::Mat::zeros(kSize, CV_8UC3), s);
+  EXPECT_TRUE(tried_.empty());
+  EXPECT_NE(black.doubt.find("no place looks like the ROI: correlation 0, expected"), std::string::npos) << black.doubt;
 }
 
 TEST_F(RegionSearchTest, TheBestAttemptIsReported) {
+  const cv::Mat image = seen();
+  truth_ = shift(0.0, 0.0);  // nothing is believed
   Setup s = setup();
-  const Attempt& best = searchIn(elsewhere(), s);
+  const Attempt& best = searchIn(image, s, shift(58.0, -41.0));
   ASSERT_GE(tried_.size(), 3u);
   EXPECT_EQ(best.doubt, "elsewhere");
   EXPECT_NEAR(best.evidence.zncc, 0.2, 1e-12);
@@ -196,9 +196,10 @@ TEST_F(RegionSearchTest, AsksForMoreThanAnAttemptThatNobodyDoubts) {
   EXPECT_NE(withStatus(EsmStatus::kConverged, blurred), "");
 }
 
-// Of tissue that has changed since, which the reference does not find.
+// Of tissue that has changed since, so much that the reference does not find it.
 TEST_F(RegionSearchTest, KeepsClearAndNewViewsThatItThenFinds) {
-  const cv::Mat changed = test::tissue(kSize, 63);
+  cv::Mat changed;
+  cv::addWeighted(scene_, 0.35, test::tissue(kSize, 63), 0.65, 0.0, changed);
   const Eigen::Matrix3d close =
       geometry::normaliseDeterminant((Eigen::Matrix3d() << 1.4, 0.0, -70.0, 0.0, 1.4, -60.0, 0.0, 0.0, 1.0).finished());
   truth_ = geometry::normaliseDeterminant(shift(25.0, 12.0) * close);

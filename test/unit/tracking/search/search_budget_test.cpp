@@ -33,5 +33,15 @@ TEST(SearchBudget, ATrifleIsPaidButIsNotTheFirstPiece) {
   EXPECT_FALSE(budget.pay(0.5));
 }
 
+TEST(SearchBudget, WhatCostMoreLeavesLess) {
+  SearchBudget budget;
+  budget.start(1.0);
+  EXPECT_TRUE(budget.pay(0.25));
+  budget.charge(0.5);
+  EXPECT_FALSE(budget.pay(0.5));
+  budget.charge(-0.5);
+  EXPECT_TRUE(budget.pay(0.5));
+}
+
 }  // namespace
 }  // namespace laparoscope_servo::tracking
