@@ -9,7 +9,7 @@
 namespace laparoscope_servo::tracking::nominal_cost {
 
 constexpr double kPixelTaken = 1.5e-9;     // of the image, made coarse
-constexpr double kPixelDetected = 180e-9;  // of the coarse image: SIFT looks at it twice as fine
+constexpr double kPixelDetected = 250e-9;  // of the coarse image: SIFT looks at it twice as fine, and twice
 constexpr double kPointDescribed = 27e-6;  // 128 numbers
 constexpr double kPairCompared = 25e-9;    // a point of the image with one of a view
 constexpr double kMotionFitted = 1e-3;     // RANSAC, for one view

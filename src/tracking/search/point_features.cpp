@@ -16,10 +16,14 @@ constexpr int kLayers = 3;      // of an octave
 constexpr int kNorm = cv::NORM_L2;
 constexpr double kContrast = 0.005;  // an eighth of the usual: tissue has little
 
-// To describe a point takes most of the time: SIFT leaves the weaker ones away before.
+// To describe a point takes most of the time, so that the weaker ones are left away before. SIFT's own limit would come
+// before the mask, and leave highlights.
 void detect(const cv::Mat1b& grey, const cv::Mat1b& mask, int count, std::vector<cv::KeyPoint>& points,
             cv::Mat& descriptors) {
-  cv::SIFT::create(count, kLayers, kContrast)->detectAndCompute(grey, mask, points, descriptors);
+  const auto sift = cv::SIFT::create(0, kLayers, kContrast);
+  sift->detect(grey, points, mask);
+  cv::KeyPointsFilter::retainBest(points, count);
+  sift->compute(grey, points, descriptors);
 }
 #else
 constexpr int kNorm = cv::NORM_HAMMING;

@@ -100,13 +100,17 @@ std::optional<SearchPlace> RegionSearch::next(const cv::Mat& image, const Region
     if (place) return place;
     if (!suggested_.empty() || !work(image, aligner)) break;
   }
-  if (!aligned_) {
-    std::ostringstream why;
-    why.precision(3);
-    why << "no place looks like the ROI: correlation " << likeliest_ << ", expected at least " << kWorthAligning;
-    best_.doubt = why.str();
-  }
+  if (!aligned_) best_.doubt = whyNone();
   return std::nullopt;
+}
+
+// Why nothing was aligned.
+std::string RegionSearch::whyNone() const {
+  if (likeliest_ >= kWorthAligning) return "a place that looks like the ROI is aligned in the next image";
+  std::ostringstream why;
+  why.precision(3);
+  why << "no place looks like the ROI: correlation " << likeliest_ << ", expected at least " << kWorthAligning;
+  return why.str();
 }
 
 std::optional<SearchPlace> RegionSearch::nextSuggested(const cv::Mat& image) {

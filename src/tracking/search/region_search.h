@@ -74,6 +74,7 @@ class RegionSearch {
   const Confirmation& confirmation() const { return confirmation_; }
 
  private:
+  std::string whyNone() const;
   std::string doubtOf(const Attempt& found, const RegionAligner& aligner) const;
   std::optional<SearchPlace> nextSuggested(const cv::Mat& image);
   bool work(const cv::Mat& image, const RegionAligner& aligner);
