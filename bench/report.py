@@ -12,10 +12,11 @@ import os
 import pathlib
 
 import make_sequences  # beside this file, as is reporting/
-from reporting import channels, compare, convergence, gates, honesty, kernels, measuring, occlusion
+from reporting import channels, compare, convergence, gates, honesty, kernels, measuring, occlusion, search
 from reporting.document import Report
 
-PARTS = {"kernels": kernels, "compare": compare, "channels": channels, "convergence": convergence, "honesty": honesty, "gates": gates, "occlusion": occlusion}
+PARTS = {"kernels": kernels, "compare": compare, "channels": channels, "convergence": convergence, "honesty": honesty, "gates": gates, "occlusion": occlusion,
+         "search": search}
 
 
 def arguments():
@@ -29,6 +30,8 @@ def arguments():
                    help="likewise, of a still camera and target: the truth is the identity")
     p.add_argument("--scene", nargs=2, action="append", default=[], metavar=("IMAGE or VIDEO@FRAME", "X,Y,W,H"),
                    help="for convergence, instead of the first sequence's first image; may be repeated")
+    p.add_argument("--region", nargs=2, action="append", default=[], metavar=("VIDEO or VIDEO@FRAME", "X,Y,W,H"),
+                   help="for the search: a region of a film from that image on; may be repeated, without one this part is left out")
     p.add_argument("--trials", type=int, default=200, help="of convergence, at each distance")
     p.add_argument("--corners", default="1:20", help="px, FIRST:LAST[:STEP], of convergence: noise of the corners")
     p.add_argument("--shifts", default="5:40:5", help="px, FIRST:LAST[:STEP], likewise: translation")
