@@ -64,15 +64,15 @@ std::vector<Method> methods() {
     for (const double contrast : {0.04, 0.005}) {
       std::ostringstream name;
       name << "SIFT " << contrast;
-      add(name.str(), cv::NORM_L2, around, 100000, [contrast](int) { return cv::SIFT::create(0, 3, contrast); });
+      add(name.str(), cv::NORM_L2, around, 60000, [contrast](int) { return cv::SIFT::create(0, 3, contrast); });
     }
 #endif
   }
-  add("AKAZE 1e-5", cv::NORM_HAMMING, 0.5, 100000, akaze(1e-5f));
+  add("AKAZE 1e-5", cv::NORM_HAMMING, 0.5, 60000, akaze(1e-5f));
   add("KAZE 5e-5", cv::NORM_L2, 0.5, 60000, kaze);
   add("BRISK 8", cv::NORM_HAMMING, 0.5, 150000, brisk);
 #if CV_VERSION_MAJOR * 10000 + CV_VERSION_MINOR * 100 >= 40400
-  add("SIFT 0.005", cv::NORM_L2, 0.5, 50000, [](int) { return cv::SIFT::create(0, 3, 0.005); });
+  add("SIFT 0.005", cv::NORM_L2, 0.5, 30000, [](int) { return cv::SIFT::create(0, 3, 0.005); });
 #endif
   return all;
 }

@@ -67,7 +67,7 @@ struct SearchConfig {
   bool features = true;     // by points matched with stored views
   bool correlation = true;  // by sliding the ROI over a coarse image
   int max_features = 600;   // 50 to 5000, points drawn from an image; half of it from a stored view
-  int max_pixels = 100000;  // 10000 to 10000000: an image with more is scaled down before points are drawn
+  int max_pixels = 60000;   // 10000 to 10000000: an image with more is scaled down before points are drawn
   double max_ratio = 0.85;  // 0.1 to 1: distance of a point's best match over that of its second best
   int min_inliers = 8;      // 4 to 1000 matches that agree
   int keyframes = 8;        // 0 to 64 views stored beside the reference
