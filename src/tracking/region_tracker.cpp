@@ -211,6 +211,7 @@ Attempt RegionTracker::Implementation::attempt(const cv::Mat& image, double stam
   e.visible_fraction = found.visible_fraction;
   e.in_image = found.share_in_image;
   e.zncc = found.zncc;
+  e.blocks = found.blocks;
   result.doubt = found.in_image ? doubt(e, config_.quality) : "the ROI is outside the image";
   return result;
 }

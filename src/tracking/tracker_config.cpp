@@ -19,6 +19,7 @@ std::vector<std::string> validate(const TrackerConfig& c) {
   check.range("quality/min_visible_fraction", c.quality.min_visible_fraction, 0.0, 1.0);
   check.range("quality/min_return_fraction", c.quality.min_return_fraction, 0.0, 1.0);
   check.range("quality/max_corner_error", c.quality.max_corner_error, 0.01, 100.0);
+  check.range("quality/max_centre_error", c.quality.max_centre_error, 0.01, 100.0);
   check.range("quality/max_area_ratio", c.quality.max_area_ratio, 1.01, 1000.0);
   check.range("quality/max_jump", c.quality.max_jump, 0.01, 10.0);
   check.range("quality/max_search_time", c.quality.max_search_time, 0.0, 3600.0);

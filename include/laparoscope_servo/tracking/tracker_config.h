@@ -53,8 +53,10 @@ struct QualityConfig {
   double min_zncc = 0.5;  // 0 to 1, over the pixels used; the tracker asks for more of a ROI that was better
   double min_visible_fraction = 0.1;  // 0 to 1, share of the ROI's pixels used
   double min_return_fraction = 0.3;   // 0 to 1, the same to be believed again after a loss
-  double max_corner_error =
-      1.5;  // px, 0.01 to 100: standard deviation expected of the worst corner, by residuals and motion
+  // px, 0.01 to 100: standard deviations expected of the worst corner, where block matching does not say that it is the
+  // ROI, and of the centre. The centre may be known where the corners are not: who needs them looks at corner_error.
+  double max_corner_error = 1.5;
+  double max_centre_error = 2.5;
   double max_area_ratio = 6.0;  // 1.01 to 1000: area of the ROI in the image over that in the reference, or its inverse
   double max_jump = 0.35;  // 0.01 to 10 of the ROI's diagonal: how far a corner may be from its prediction; less when
                            // little of the ROI is visible

@@ -49,6 +49,7 @@ void readQuality(ParameterReader& reader, tracking::QualityConfig& config) {
   reader.read("tracking/quality/min_visible_fraction", config.min_visible_fraction, 0.0, 1.0);
   reader.read("tracking/quality/min_return_fraction", config.min_return_fraction, 0.0, 1.0);
   reader.read("tracking/quality/max_corner_error", config.max_corner_error, 0.01, 100.0);
+  reader.read("tracking/quality/max_centre_error", config.max_centre_error, 0.01, 100.0);
   reader.read("tracking/quality/max_area_ratio", config.max_area_ratio, 1.01, 1000.0);
   reader.read("tracking/quality/max_jump", config.max_jump, 0.01, 10.0);
   reader.read("tracking/quality/max_search_time", config.max_search_time, 0.0, 3600.0);

@@ -31,6 +31,23 @@ constexpr Tolerance kSearching = {1.5, 0.05, 1.5, 0.3};
 constexpr double kMaxGainChange = 1.5;
 constexpr double kGainChangeRate = 0.5;  // 1/s
 
+// Block matching. So many blocks where the estimate has them, and such a share of those in the image, are the ROI,
+// whatever its light and noise are like; in images of other scenes not three moved alike.
+constexpr int kEnoughBlocks = 6;
+constexpr double kRecognised = 0.3;
+constexpr double kNear = 3.0;     // px of the image, the median of the blocks
+constexpr double kMostOff = 4.0;  // px of the image: from 5 px on an estimate is wrong
+constexpr int kTelling = 8;       // blocks; where fewer can be told from their surroundings, they tell nothing
+constexpr int kFewBlocks = 3;
+constexpr int kFewestOff = 5;  // blocks whose median says where the region is
+
+// A record can be so good that what is real never reaches it again: these are always good enough.
+constexpr double kGoodZncc = 0.9;
+constexpr double kGoodSigma = 4.0;  // grey levels, of a compressed feed
+// Tissue changes while it is not seen: after so long, what it looked like counts as much less as it ever will.
+constexpr double kForgetting = 2.0;                      // s
+constexpr Tolerance kForgotten = {0.0, 0.15, 0.0, 3.0};  // added
+
 std::string text(const char* what, double value, const char* limit, double bound) {
   std::ostringstream stream;
   stream.precision(3);
@@ -59,6 +76,9 @@ double allowedJump(const TrackRecord& record, const QualityConfig& config, const
 std::string doubt(const Evidence& e, const QualityConfig& q) {
   if (e.esm.status == EsmStatus::kOutOfView) return "the ROI's image crosses infinity";
   if (e.esm.status == EsmStatus::kIllConditioned) return "the pixels kept do not determine the motion";
+  const BlockEvidence& blocks = e.blocks;
+  const bool recognised =
+      blocks.confident >= std::max<double>(kEnoughBlocks, kRecognised * blocks.seen) && blocks.off <= kNear;
   const double min_visible = e.from_track ? q.min_visible_fraction : q.min_return_fraction;
   if (!(e.visible_fraction >= min_visible))
     return text("visible fraction", e.visible_fraction, "at least", min_visible);
@@ -74,16 +94,28 @@ std::string doubt(const Evidence& e, const QualityConfig& q) {
   if (!(std::max(ratio, 1.0 / ratio) <= q.max_area_ratio)) {
     return text("area ratio", ratio, "within a factor of", q.max_area_ratio);
   }
-  const Tolerance& tolerance = e.from_track ? kTracking : kSearching;
-  const double min_zncc =
-      std::max(q.min_zncc, 1.0 - tolerance.unexplained - tolerance.unexplained_factor * (1.0 - e.record.zncc()));
-  if (!(e.zncc >= min_zncc)) return text("correlation", e.zncc, "at least", min_zncc);
-  const double max_sigma = tolerance.sigma + tolerance.sigma_factor * e.record.sigma();
-  if (!(e.esm.sigma <= max_sigma)) return text("residual [grey levels]", e.esm.sigma, "at most", max_sigma);
-  if (!(e.esm.corner_error <= q.max_corner_error)) {
+  Tolerance tolerance = e.from_track ? kTracking : kSearching;
+  const double forgotten = e.from_track ? 0.0 : std::clamp(e.unseen / kForgetting, 0.0, 1.0);
+  tolerance.unexplained += forgotten * kForgotten.unexplained;
+  tolerance.sigma += forgotten * kForgotten.sigma;
+  const double min_zncc = std::max(
+      q.min_zncc,
+      std::min(kGoodZncc, 1.0 - tolerance.unexplained - tolerance.unexplained_factor * (1.0 - e.record.zncc())));
+  if (blocks.confident >= kFewestOff && !(blocks.off <= kMostOff))
+    return text("pieces of the region off by [px]", blocks.off, "at most", kMostOff);
+  if (blocks.seen >= kTelling && e.visible_fraction >= 0.5 && blocks.confident < kFewBlocks)
+    return text("pieces of the region found", blocks.confident, "at least", kFewBlocks);
+  if (!recognised && !(e.zncc >= min_zncc)) return text("correlation", e.zncc, "at least", min_zncc);
+  const double max_sigma = std::max(kGoodSigma, tolerance.sigma + tolerance.sigma_factor * e.record.sigma());
+  if (!recognised && !(e.esm.sigma <= max_sigma))
+    return text("residual [grey levels]", e.esm.sigma, "at most", max_sigma);
+  if (!recognised && !(e.esm.corner_error <= q.max_corner_error)) {
     return text("expected corner error [px]", e.esm.corner_error, "at most", q.max_corner_error);
   }
-  if (!e.from_track) {
+  if (!(e.esm.centre_error <= q.max_centre_error)) {
+    return text("expected error of the centre [px]", e.esm.centre_error, "at most", q.max_centre_error);
+  }
+  if (!e.from_track && !recognised) {
     const auto factor = [&](double gain) { return std::max(gain / e.esm.state.gain, e.esm.state.gain / gain); };
     const double of_last = factor(e.last_gain);
     const double change = e.light_gain > 0.0 ? std::min(of_last, factor(e.light_gain)) : of_last;

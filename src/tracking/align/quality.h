@@ -31,6 +31,13 @@ class TrackRecord {
   double innovation_ = 4.0;
 };
 
+// What block matching says of an estimate.
+struct BlockEvidence {
+  int seen = 0;       // blocks in the image that can be told from their surroundings
+  int confident = 0;  // of which the place is known
+  double off = 0.0;   // px of the image, their median distance from where the estimate has them; NaN without any
+};
+
 struct Evidence {
   EsmResult esm;
   geometry::Rectangle roi;    // px, in the reference
@@ -42,6 +49,7 @@ struct Evidence {
   double visible_fraction = 0.0;  // 0 to 1
   double in_image = 1.0;          // 0 to 1, share of the ROI that lies in the image
   double zncc = 0.0;              // over the pixels used, the means of the areas taken out
+  BlockEvidence blocks;
   TrackRecord record;
 };
 

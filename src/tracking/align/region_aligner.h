@@ -11,6 +11,8 @@
 #include "laparoscope_servo/image/lens.h"
 #include "laparoscope_servo/image/pyramid.h"
 #include "laparoscope_servo/tracking/tracker_config.h"
+#include "tracking/align/block_matching.h"
+#include "tracking/align/quality.h"
 #include "tracking/esm/esm.h"
 #include "tracking/occlusion/occlusion_gates.h"
 
@@ -22,6 +24,7 @@ struct Alignment {
   double visible_fraction = 0.0;  // 0 to 1, share of the ROI's pixels that were used
   double share_in_image = 1.0;    // 0 to 1, of the ROI's pixels
   double zncc = 0.0;              // see OcclusionGates::correlation
+  BlockEvidence blocks;
 };
 
 class RegionAligner {
@@ -61,6 +64,7 @@ class RegionAligner {
  private:
   void sample(const cv::Mat& image, const Eigen::Matrix3d& g);
   void look(const cv::Mat& image, const Eigen::Matrix3d& g);
+  void correct(EsmResult& estimate, BlockEvidence& evidence);
   int observeStructure(const EsmResult& estimate);
 
   EsmConfig config_;
@@ -68,6 +72,7 @@ class RegionAligner {
   OcclusionConfig occlusion_;
   Esm esm_;
   OcclusionGates gates_;
+  BlockMatching blocks_;
   image::RegionPyramid pyramid_;
   image::Channels channels_ = image::kLuma;
   image::ColourPatch patch_;

@@ -21,6 +21,7 @@ constexpr double kTukey = 4.6851;  // 95 % efficiency for normal noise (Marchand
 constexpr double kContraction = 0.3;
 constexpr double kSlowest = 0.9;         // steps that shrink by less do not converge
 constexpr double kCoarseAccuracy = 0.1;  // px of the level, enough for the next finer one
+constexpr double kSettled = 0.2;         // standard deviations of the estimate that are still to go
 constexpr int kPatience =
     10;                       // iterations on levels that are reached from a coarser one, for the steps to become short
 constexpr double kFar = 0.5;  // px of the level, a step after which the region may still be elsewhere
@@ -126,6 +127,7 @@ bool Esm::solve(EsmLevel& level, const MotionPrior* prior, bool shift_only, EsmS
   const Vector10d x = -factors.solve(b);
   if (!x.allFinite()) return false;
   deviation_ += x.head<8>();
+  step_deviations_ = std::sqrt(x.dot(a * x) / 8.0 / noise_);
   const geometry::Quadrilateral before = geometry::apply(state.g, roi_.corners());
   takeStep(level, x, state);
   const geometry::Quadrilateral after = geometry::apply(state.g, roi_.corners());
@@ -190,6 +192,7 @@ EsmStatus Esm::iterate(const image::RegionPyramid& current, int l, const MotionP
   result.sigma = residual_scale_.of(level, result.state.gain);
   equations_.sum(level, roi_, light_, result.state.gain, rejection(result.sigma));
   ++result.iterations;
+  noise_ = std::max(result.sigma * result.sigma, prior != nullptr ? prior->noise : 0.0);
   if (!solve(level, prior, how.shift_only, result.state, result.last_step)) return EsmStatus::kIllConditioned;
   return EsmStatus::kMaxIterations;
 }
@@ -235,6 +238,8 @@ EsmStatus Esm::settle(const image::RegionPyramid& current, int l, int patience, 
     if (status != EsmStatus::kMaxIterations) return status;
     if (k > 0) contraction = std::min(result.last_step / std::max(before, 1e-9), kSlowest);
     if (result.last_step * contraction / (1.0 - contraction) < accuracy) return EsmStatus::kConverged;
+    // What the image does not determine is not iterated on.
+    if (step_deviations_ * contraction / (1.0 - contraction) < kSettled) return EsmStatus::kConverged;
     if (k >= patience && result.last_step > kFar * scale) break;
   }
   return EsmStatus::kMaxIterations;

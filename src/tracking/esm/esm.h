@@ -127,6 +127,8 @@ class Esm {
   BlockEquations equations_;
   ResidualScale residual_scale_;
   std::vector<float> scratch_;
+  double noise_ = 1.0;            // grey levels squared, what a unit of J'WJ is worth at this iteration
+  double step_deviations_ = 0.0;  // the last step, in standard deviations of the estimate (root mean square)
   bool light_known_ = false;
   Light light_ = Light::kConstant;                             // that the equations have at this iteration
   geometry::Vector8d deviation_ = geometry::Vector8d::Zero();  // from the prior's prediction

@@ -76,6 +76,7 @@ TEST(DefaultFile, EqualsTheDefaultsOfTheStructs) {
   EXPECT_EQ(f.quality.min_zncc, c.quality.min_zncc);
   EXPECT_EQ(f.quality.min_visible_fraction, c.quality.min_visible_fraction);
   EXPECT_EQ(f.quality.max_corner_error, c.quality.max_corner_error);
+  EXPECT_EQ(f.quality.max_centre_error, c.quality.max_centre_error);
   EXPECT_EQ(f.quality.max_area_ratio, c.quality.max_area_ratio);
   EXPECT_EQ(f.quality.max_jump, c.quality.max_jump);
   EXPECT_EQ(f.quality.max_search_time, c.quality.max_search_time);
@@ -126,6 +127,7 @@ TEST(DefaultFile, NamesEveryParameter) {
                            "tracking/quality/min_zncc",
                            "tracking/quality/min_visible_fraction",
                            "tracking/quality/max_corner_error",
+                           "tracking/quality/max_centre_error",
                            "tracking/quality/max_area_ratio",
                            "tracking/quality/max_jump",
                            "tracking/quality/max_search_time",

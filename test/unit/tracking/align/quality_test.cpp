@@ -62,6 +62,20 @@ TEST(Doubt, NamesEachFlawByItself) {
       {"residual nan", "residual", [=](Evidence& e) { e.esm.sigma = nan; }},
       {"vague", "corner error", [](Evidence& e) { e.esm.corner_error = 7.0; }},
       {"vague inf", "corner error", [](Evidence& e) { e.esm.corner_error = INFINITY; }},
+      {"vague centre", "error of the centre", [](Evidence& e) { e.esm.centre_error = 3.0; }},
+      {"vague centre nan", "error of the centre", [=](Evidence& e) { e.esm.centre_error = nan; }},
+      {"pieces elsewhere", "pieces of the region off",
+       [](Evidence& e) {
+         e.blocks = {30, 20, 4.5};
+       }},
+      {"pieces elsewhere nan", "pieces of the region off",
+       [=](Evidence& e) {
+         e.blocks = {30, 20, nan};
+       }},
+      {"no piece", "pieces of the region found",
+       [=](Evidence& e) {
+         e.blocks = {30, 2, 0.1};
+       }},
       {"jump", "jump", [](Evidence& e) { e.esm.state.g(0, 2) = 100.0; }},
   };
   for (const Flaw& flaw : flaws) {
@@ -76,7 +90,7 @@ TEST(Doubt, AsksMoreOfASearch) {
   const std::vector<Flaw> flaws = {
       {"visible", "visible", [](Evidence& e) { e.visible_fraction = 0.2; }},
       {"correlation", "correlation", [](Evidence& e) { e.zncc = 0.84; }},
-      {"residual", "residual", [](Evidence& e) { e.esm.sigma = 4.0; }},
+      {"residual", "residual", [](Evidence& e) { e.esm.sigma = 4.5; }},
       {"gain", "gain", [](Evidence& e) { e.esm.state.gain = 2.5; }},
       {"gain nan", "gain", [](Evidence& e) { e.esm.state.gain = std::nan(""); }},
   };
@@ -89,6 +103,49 @@ TEST(Doubt, AsksMoreOfASearch) {
     e.from_track = false;
     EXPECT_NE(doubt(e, QualityConfig()).find(flaw.word), std::string::npos) << flaw.name;
   }
+}
+
+// A feed with hardly any noise leaves a record that the same tissue never reaches again.
+TEST(Doubt, ARecordDoesNotAskForMoreThanIsGood) {
+  Evidence e = good();
+  for (int k = 0; k < 200; ++k) e.record.add(0.999, 1.0, 0.1, 1.0);
+  e.from_track = false;
+  e.zncc = 0.92;
+  e.esm.sigma = 3.5;
+  EXPECT_EQ(doubt(e, QualityConfig()), "");
+}
+
+TEST(Doubt, TheRecordCountsLessTheLongerTheRegionHasNotBeenSeen) {
+  Evidence e = good();
+  e.from_track = false;
+  e.zncc = 0.8;
+  e.esm.sigma = 5.5;
+  EXPECT_NE(doubt(e, QualityConfig()), "");
+  e.unseen = 2.0;
+  EXPECT_EQ(doubt(e, QualityConfig()), "");
+  e.unseen = 1000.0;  // but never nothing
+  e.zncc = 0.6;
+  EXPECT_NE(doubt(e, QualityConfig()), "");
+}
+
+TEST(Doubt, PiecesThatAreWhereTheyShouldBeAreTheRegionWhateverItLooksLike) {
+  Evidence e = good();
+  e.from_track = false;
+  e.zncc = 0.55;
+  e.esm.sigma = 20.0;
+  e.esm.corner_error = 4.0;
+  EXPECT_NE(doubt(e, QualityConfig()), "");
+  e.blocks = {30, 12, 1.0};
+  EXPECT_EQ(doubt(e, QualityConfig()), "");
+  e.blocks.off = 3.5;
+  EXPECT_NE(doubt(e, QualityConfig()), "");
+  e.blocks = {30, 7, 1.0};  // too small a share of them
+  EXPECT_NE(doubt(e, QualityConfig()), "");
+  e.blocks = {8, 5, 1.0};  // too few
+  EXPECT_NE(doubt(e, QualityConfig()), "");
+  e.blocks = {30, 12, 1.0};
+  e.visible_fraction = 0.2;  // what a return asks for is asked of them, too
+  EXPECT_NE(doubt(e, QualityConfig()).find("visible"), std::string::npos);
 }
 
 // Of a ROI that has left the image by half, less has to be visible.

@@ -1,0 +1,208 @@
+#include "tracking/align/block_matching.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "laparoscope_servo/image/multiversion.h"
+#include "laparoscope_servo/image/warp.h"
+
+namespace laparoscope_servo::tracking {
+
+namespace {
+
+constexpr int kLargest = 160;         // px of the level, the ROI's larger side: more detail tells no more
+constexpr int kAround = 7;            // px, half of the window that local contrast is relative to
+constexpr float kFloor = 1.5f;        // grey levels: a deviation below it is noise
+constexpr float kMost = 3.0f;         // deviations: an edge or a highlight does not outweigh all else
+constexpr double kLeastEnergy = 0.3;  // mean square of the contrast, of a block with texture
+constexpr double kPeak = 0.5;         // correlation
+constexpr double kLead = 0.1;         // over the second peak
+constexpr double kApart = 2.5;        // px of the level: another peak, and what counts as moved alike
+constexpr int kAlike = 2;             // other blocks
+constexpr double kLeastValid = 0.6;
+
+// Dot product of a block with a window, and the window's energy.
+LAPAROSCOPE_SERVO_CLONES
+void product(const float* __restrict block, int block_stride, const float* __restrict window, int stride, int side,
+             float* __restrict result) {
+  float both = 0.0f, energy = 0.0f;
+  for (int j = 0; j < side; ++j) {
+    const float* a = block + j * block_stride;
+    const float* b = window + j * stride;
+#pragma omp simd reduction(+ : both, energy)
+    for (int i = 0; i < side; ++i) {
+      both += a[i] * b[i];
+      energy += b[i] * b[i];
+    }
+  }
+  result[0] = both;
+  result[1] = energy;
+}
+
+double vertex(double left, double middle, double right) {
+  return 0.5 * (left - right) / std::min(left - 2.0 * middle + right, -1e-6);
+}
+
+}  // namespace
+
+void BlockMatching::setReference(const image::RegionPyramid& reference, const geometry::Rectangle& roi) {
+  level_ = 0;
+  while (level_ + 1 < reference.levels() && std::max(roi.width, roi.height) / (1 << level_) > kLargest) ++level_;
+  scale_ = 1 << level_;
+  const cv::Size inner(static_cast<int>(roi.width / scale_), static_cast<int>(roi.height / scale_));
+  const cv::Size size(inner.width + 2 * kReach, inner.height + 2 * kReach);
+  reference_T_crop_ << scale_, 0.0, roi.x - kReach * scale_, 0.0, scale_, roi.y - kReach * scale_, 0.0, 0.0, 1.0;
+  warped_.create(size);
+  valid_.create(size);
+  detail_.create(size);
+  column_sums_.assign(3 * static_cast<std::size_t>(size.width), 0.0f);
+  blocks_.clear();
+  if (std::min(inner.width, inner.height) < kSide) return;
+  look(reference, Eigen::Matrix3d::Identity());
+  reference_ = detail_.clone();
+  const auto begins = [](int length) {
+    std::vector<int> result;
+    for (int k = 0; k < kAlong; ++k) result.push_back(kReach + k * (length - kSide) / (kAlong - 1));
+    result.erase(std::unique(result.begin(), result.end()), result.end());
+    return result;
+  };
+  for (const int top : begins(inner.height)) {
+    for (const int left : begins(inner.width)) {
+      const cv::Rect box(left, top, kSide, kSide);
+      if (cv::mean(valid_(box))[0] < kLeastValid) continue;
+      const double norm = cv::norm(reference_(box));
+      if (norm * norm < kLeastEnergy * box.area()) continue;
+      const Peak peak = find(box.tl());
+      if (peak.second < peak.top - 2.0 * kLead) blocks_.push_back(box.tl());
+    }
+  }
+  shifts_.reserve(blocks_.size());
+}
+
+void BlockMatching::look(const image::RegionPyramid& current, const Eigen::Matrix3d& g) {
+  const int l = std::min(level_, current.levels() - 1);
+  const double size = 1 << l;
+  Eigen::Matrix3d level_T_image;
+  level_T_image << 1.0 / size, 0.0, -current.origin().x / size, 0.0, 1.0 / size, -current.origin().y / size, 0.0, 0.0,
+      1.0;
+  if (lens_) {
+    image::warpBilinear(current.level(l), g * reference_T_crop_, *lens_, {current.origin(), size}, warped_, valid_);
+  } else {
+    image::warpBilinear(current.level(l), level_T_image * g * reference_T_crop_, warped_, valid_);
+  }
+  contrast();
+}
+
+// What differs from its surroundings, over how much they vary; 0 where the image is not valid.
+void BlockMatching::contrast() {
+  const int width = warped_.cols, height = warped_.rows;
+  float* const count = column_sums_.data();
+  float* const sum = count + width;
+  float* const squares = sum + width;
+  std::fill(column_sums_.begin(), column_sums_.end(), 0.0f);
+  const auto add = [&](int j, float sign) {
+    const float* value = warped_[j];
+    const float* valid = valid_[j];
+    for (int i = 0; i < width; ++i) {
+      const float v = sign * valid[i];
+      count[i] += v;
+      sum[i] += v * value[i];
+      squares[i] += v * value[i] * value[i];
+    }
+  };
+  for (int j = 0; j < std::min(kAround, height); ++j) add(j, 1.0f);
+  for (int j = 0; j < height; ++j) {
+    if (j + kAround < height) add(j + kAround, 1.0f);
+    if (j - kAround > 0) add(j - kAround - 1, -1.0f);
+    float n = 0.0f, s = 0.0f, q = 0.0f;
+    for (int i = 0; i < std::min(kAround, width); ++i) n += count[i], s += sum[i], q += squares[i];
+    for (int i = 0; i < width; ++i) {
+      if (i + kAround < width) n += count[i + kAround], s += sum[i + kAround], q += squares[i + kAround];
+      if (i - kAround > 0) n -= count[i - kAround - 1], s -= sum[i - kAround - 1], q -= squares[i - kAround - 1];
+      const float mean = s / std::max(n, 1.0f);
+      const float deviation = std::sqrt(std::max(q / std::max(n, 1.0f) - mean * mean, kFloor * kFloor));
+      detail_(j, i) = valid_(j, i) * std::clamp((warped_(j, i) - mean) / deviation, -kMost, kMost);
+    }
+  }
+}
+
+BlockMatching::Peak BlockMatching::find(const cv::Point& block) {
+  constexpr int kPlaces = 2 * kReach + 1;
+  std::array<std::array<float, kPlaces>, kPlaces> score;
+  const float* const own = reference_.ptr<float>(block.y) + block.x;
+  const int stride = static_cast<int>(reference_.step1());
+  float result[2];
+  product(own, stride, own, stride, kSide, result);
+  const float energy = result[1];
+  for (auto& row_of_scores : score) row_of_scores.fill(-1.0f);
+  const auto at = [&](int j, int i) {
+    if (score[j][i] > -1.0f) return score[j][i];
+    const float* window = detail_.ptr<float>(block.y + j - kReach) + block.x + i - kReach;
+    product(own, stride, window, static_cast<int>(detail_.step1()), kSide, result);
+    return score[j][i] = result[0] / std::sqrt(energy * std::max(result[1], 0.2f * energy) + 1e-6f);
+  };
+  // Every second place, then uphill: local contrast is smooth over two pixels.
+  Peak peak{0.0, 0.0, -1.0, -1.0};
+  int row = 0, column = 0;
+  const auto better = [&](int j, int i) {
+    if (!(at(j, i) > peak.top)) return false;
+    peak.top = score[j][i];
+    row = j;
+    column = i;
+    return true;
+  };
+  for (int j = 0; j < kPlaces; j += 2) {
+    for (int i = 0; i < kPlaces; i += 2) better(j, i);
+  }
+  for (bool climbs = true; climbs;) {
+    climbs = false;
+    const int j0 = row, i0 = column;
+    for (int j = std::max(j0 - 1, 0); j <= std::min(j0 + 1, kPlaces - 1); ++j) {
+      for (int i = std::max(i0 - 1, 0); i <= std::min(i0 + 1, kPlaces - 1); ++i) climbs |= better(j, i);
+    }
+  }
+  for (int j = 0; j < kPlaces; ++j) {
+    for (int i = 0; i < kPlaces; ++i) {
+      if (std::hypot(j - row, i - column) > kApart)
+        peak.second = std::max(peak.second, static_cast<double>(score[j][i]));
+    }
+  }
+  if (row == 0 || column == 0 || row == kPlaces - 1 || column == kPlaces - 1) {
+    peak.second = peak.top;  // it may be higher beyond
+    return peak;
+  }
+  peak.x = column - kReach + vertex(score[row][column - 1], score[row][column], score[row][column + 1]);
+  peak.y = row - kReach + vertex(score[row - 1][column], score[row][column], score[row + 1][column]);
+  return peak;
+}
+
+const std::vector<BlockShift>& BlockMatching::measure(const image::RegionPyramid& current, const Eigen::Matrix3d& g) {
+  shifts_.clear();
+  if (blocks_.empty()) return shifts_;
+  look(current, g);
+  for (const cv::Point& block : blocks_) {
+    if (cv::mean(valid_(cv::Rect(block.x, block.y, kSide, kSide)))[0] < kLeastValid) continue;
+    const Peak peak = find(block);
+    BlockShift found;
+    found.centre =
+        geometry::apply(reference_T_crop_, Eigen::Vector2d(block.x + 0.5 * (kSide - 1), block.y + 0.5 * (kSide - 1)));
+    found.shift = scale_ * Eigen::Vector2d(peak.x, peak.y);
+    found.correlation = peak.top;
+    found.confident = peak.top >= kPeak && peak.top - peak.second >= kLead;
+    shifts_.push_back(found);
+  }
+  std::array<bool, kMostBlocks> alone{};
+  for (std::size_t k = 0; k < shifts_.size(); ++k) {
+    int alike = 0;
+    for (std::size_t other = 0; other < shifts_.size(); ++other) {
+      if (other != k && shifts_[other].confident && (shifts_[other].shift - shifts_[k].shift).norm() < kApart * scale_)
+        ++alike;
+    }
+    alone[k] = alike < kAlike;
+  }
+  for (std::size_t k = 0; k < shifts_.size(); ++k) shifts_[k].confident = shifts_[k].confident && !alone[k];
+  return shifts_;
+}
+
+}  // namespace laparoscope_servo::tracking

@@ -1,0 +1,133 @@
+#include "tracking/align/block_matching.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "support/synthetic_tissue.h"
+#include "tracking/align/shift_fit.h"
+
+namespace laparoscope_servo::tracking {
+namespace {
+
+const geometry::Rectangle kRoi = {100, 80, 120, 110};
+const cv::Size kSize(330, 280);
+
+class BlockMatchingTest : public ::testing::Test {
+ protected:
+  BlockMatchingTest() { matching_.setReference(pyramid(scene_), kRoi); }
+
+  static image::RegionPyramid pyramid(const cv::Mat& image) {
+    image::RegionPyramid result;
+    result.build(image, cv::Rect(cv::Point(0, 0), image.size()), 3, image::kLuma);
+    return result;
+  }
+  const std::vector<BlockShift>& measured(const cv::Mat& image,
+                                          const Eigen::Matrix3d& g = Eigen::Matrix3d::Identity()) {
+    return matching_.measure(pyramid(image), g);
+  }
+  // The scene, moved by (x, y) px.
+  cv::Mat moved(double x, double y, double gain = 1.0, double bias = 0.0, double noise = 0.0) const {
+    Eigen::Matrix3d g = Eigen::Matrix3d::Identity();
+    g.topRightCorner<2, 1>() << x, y;
+    return test::view(scene_, g, gain, bias, noise);
+  }
+
+  cv::Mat scene_ = test::tissue(kSize, 21);
+  BlockMatching matching_;
+};
+
+TEST_F(BlockMatchingTest, FindsNearlyEveryBlockWhereItIs) {
+  ASSERT_GE(matching_.blocks(), 30);
+  const std::vector<BlockShift>& shifts = measured(scene_);
+  EXPECT_EQ(confidentShifts(shifts), matching_.blocks());
+  for (const BlockShift& s : shifts) {
+    EXPECT_LT(s.shift.norm(), 0.05);
+    EXPECT_NEAR(s.correlation, 1.0, 1e-3);
+  }
+}
+
+TEST_F(BlockMatchingTest, AShiftLeadsFromTheCentreToWhereTheBlockIsSeen) {
+  const std::vector<BlockShift>& shifts = measured(moved(3.4, -2.6));
+  EXPECT_GE(confidentShifts(shifts), 30);
+  for (const BlockShift& s : shifts) {
+    if (s.confident) {
+      EXPECT_LT((s.shift - Eigen::Vector2d(3.4, -2.6)).norm(), 0.25);
+    }
+  }
+}
+
+TEST_F(BlockMatchingTest, ShiftsAreOfTheReferenceWhateverTheHomographyShows) {
+  Eigen::Matrix3d claimed;
+  claimed << 0.0, -1.0, 290.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0;  // a quarter of a turn
+  Eigen::Matrix3d true_shift = Eigen::Matrix3d::Identity();
+  true_shift.topRightCorner<2, 1>() << 2.0, 4.0;
+  const std::vector<BlockShift>& shifts = measured(test::view(scene_, claimed * true_shift), claimed);
+  ASSERT_GE(confidentShifts(shifts), 25);
+  for (const BlockShift& s : shifts) {
+    if (s.confident) {
+      EXPECT_LT((s.shift - Eigen::Vector2d(2.0, 4.0)).norm(), 0.2);
+    }
+  }
+}
+
+// A ramp of shade, a gain and a veil move no block.
+TEST_F(BlockMatchingTest, LightIsNoShift) {
+  cv::Mat image = moved(1.0, 2.0, 0.5, 60.0, 1.0);
+  for (int j = 0; j < image.rows; ++j) {
+    for (int i = 0; i < image.cols; ++i) {
+      for (int c = 0; c < 3; ++c) {
+        unsigned char& value = image.at<cv::Vec3b>(j, i)[c];
+        value = cv::saturate_cast<unsigned char>(value - 0.2 * i);
+      }
+    }
+  }
+  const std::vector<BlockShift>& shifts = measured(image);
+  EXPECT_GE(confidentShifts(shifts), 25);
+  const double off = medianShift(shifts, Eigen::Matrix3d::Identity());
+  EXPECT_NEAR(off, std::hypot(1.0, 2.0), 0.2);
+}
+
+TEST_F(BlockMatchingTest, AnotherSceneHasHardlyABlockOfThis) {
+  for (unsigned seed = 100; seed < 110; ++seed) {
+    EXPECT_LT(confidentShifts(measured(test::tissue(kSize, seed))), 3) << seed;
+  }
+}
+
+TEST_F(BlockMatchingTest, WhatIsCoveredIsNotConfidentAndTheRestIs) {
+  cv::Mat image = moved(1.5, 0.0);
+  cv::rectangle(image, cv::Rect(0, 0, 160, kSize.height), cv::Scalar(120, 120, 120), cv::FILLED);
+  int covered = 0, free = 0;
+  for (const BlockShift& s : measured(image)) {
+    (s.centre.x() < 145.0 ? covered : free) += s.confident ? 1 : 0;
+    if (s.confident && s.centre.x() > 180.0) {
+      EXPECT_LT((s.shift - Eigen::Vector2d(1.5, 0.0)).norm(), 0.25);
+    }
+  }
+  EXPECT_EQ(covered, 0);
+  EXPECT_GE(free, 12);
+}
+
+TEST_F(BlockMatchingTest, ARegionWithoutTextureHasNoBlocks) {
+  BlockMatching plain;
+  plain.setReference(pyramid(cv::Mat(kSize, CV_8UC3, cv::Scalar(60, 70, 140))), kRoi);
+  EXPECT_EQ(plain.blocks(), 0);
+  EXPECT_TRUE(plain.measure(pyramid(scene_), Eigen::Matrix3d::Identity()).empty());
+}
+
+TEST_F(BlockMatchingTest, ARegionSmallerThanABlockHasNone) {
+  BlockMatching small;
+  small.setReference(pyramid(scene_), {100, 80, 16, 16});
+  EXPECT_EQ(small.blocks(), 0);
+}
+
+TEST_F(BlockMatchingTest, BlocksOutsideTheImageAreNotAsked) {
+  Eigen::Matrix3d g = Eigen::Matrix3d::Identity();
+  g(0, 2) = -170.0;  // the region's left two fifths are outside
+  const std::vector<BlockShift>& shifts = measured(test::view(scene_, g), g);
+  EXPECT_LT(static_cast<int>(shifts.size()), matching_.blocks());
+  EXPECT_GT(confidentShifts(shifts), 10);
+}
+
+}  // namespace
+}  // namespace laparoscope_servo::tracking

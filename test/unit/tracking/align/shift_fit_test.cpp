@@ -1,0 +1,123 @@
+#include "tracking/align/shift_fit.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <cmath>
+#include <random>
+
+namespace laparoscope_servo::tracking {
+namespace {
+
+const geometry::Rectangle kRoi = {100, 80, 120, 100};
+constexpr double kSide = 24.0;
+
+// 6 x 6 blocks that a homography takes elsewhere, each with so much noise [px].
+std::vector<BlockShift> shiftsOf(const geometry::Vector8d& x, double noise, unsigned seed = 1) {
+  std::mt19937 generator(seed);
+  std::normal_distribution<double> normal;
+  const Eigen::Matrix3d n = templateFromPixels(kRoi);
+  const Eigen::Matrix3d g = n.inverse() * geometry::sl3Exp(x) * n;
+  std::vector<BlockShift> shifts;
+  for (int row = 0; row < 6; ++row) {
+    for (int column = 0; column < 6; ++column) {
+      BlockShift s;
+      s.centre << kRoi.x + 12.0 + 19.0 * column, kRoi.y + 12.0 + 15.0 * row;
+      s.shift = geometry::apply(g, s.centre) - s.centre + noise * Eigen::Vector2d(normal(generator), normal(generator));
+      s.correlation = 1.0;
+      s.confident = true;
+      shifts.push_back(s);
+    }
+  }
+  return shifts;
+}
+
+geometry::Vector8d someMotion() {
+  geometry::Vector8d x;
+  x << 0.03, -0.02, 0.01, -0.015, 0.01, 0.005, 0.004, -0.003;
+  return x;
+}
+
+double cornersApart(const geometry::Vector8d& a, const geometry::Vector8d& b) {
+  const Eigen::Matrix3d n = templateFromPixels(kRoi);
+  const Eigen::Matrix3d from = n.inverse() * geometry::sl3Exp(a) * n, to = n.inverse() * geometry::sl3Exp(b) * n;
+  return geometry::largestDistance(geometry::apply(from, kRoi.corners()), geometry::apply(to, kRoi.corners()));
+}
+
+TEST(ShiftFit, FindsTheHomographyThatMovedTheBlocks) {
+  const auto fit = fitShifts(shiftsOf(someMotion(), 0.0), kRoi, kSide);
+  ASSERT_TRUE(fit);
+  EXPECT_LT(cornersApart(fit->x, someMotion()), 0.15);
+  EXPECT_GT(fit->significance, 10.0);
+}
+
+TEST(ShiftFit, NoiseIsNotSignificantAndAMotionBeyondItIs) {
+  int significant = 0;
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    significant += fitShifts(shiftsOf(geometry::Vector8d::Zero(), 0.4, seed), kRoi, kSide)->significance > 1.5 ? 1 : 0;
+    geometry::Vector8d shift = geometry::Vector8d::Zero();
+    shift[0] = 2.0 / halfSize(kRoi);
+    EXPECT_GT(fitShifts(shiftsOf(shift, 0.4, seed), kRoi, kSide)->significance, 10.0) << seed;
+  }
+  EXPECT_LE(significant, 8);
+}
+
+TEST(ShiftFit, AFewBlocksThatWentAstrayDoNotLeadIt) {
+  std::vector<BlockShift> shifts = shiftsOf(someMotion(), 0.1);
+  for (int k = 0; k < 5; ++k) shifts[7 * k].shift += Eigen::Vector2d(8.0, -6.0);
+  EXPECT_LT(cornersApart(fitShifts(shifts, kRoi, kSide)->x, someMotion()), 1.0);
+}
+
+TEST(ShiftFit, BlocksThatAreNotConfidentSayNothing) {
+  std::vector<BlockShift> shifts = shiftsOf(someMotion(), 0.0);
+  for (std::size_t k = 0; k < shifts.size(); k += 2) {
+    shifts[k].confident = false;
+    shifts[k].shift = Eigen::Vector2d(50.0, 50.0);
+  }
+  EXPECT_LT(cornersApart(fitShifts(shifts, kRoi, kSide)->x, someMotion()), 0.25);
+  EXPECT_EQ(confidentShifts(shifts), 18);
+}
+
+// The covariance holds what repeated measurement shows, but for what blocks that overlap have in common.
+TEST(ShiftFit, TheCovarianceIsTheScatter) {
+  constexpr int kTimes = 400;
+  double squares = 0.0, claimed = 0.0;
+  for (unsigned seed = 1; seed <= kTimes; ++seed) {
+    const auto fit = fitShifts(shiftsOf(geometry::Vector8d::Zero(), 0.5, seed), kRoi, 15.0);
+    squares += fit->x.head<2>().squaredNorm();
+    claimed += fit->covariance.topLeftCorner<2, 2>().trace();
+  }
+  const double ratio = std::sqrt(squares / claimed);
+  EXPECT_GT(ratio, 0.7);
+  EXPECT_LT(ratio, 1.3);
+}
+
+TEST(ShiftFit, ShearAndPerspectiveAreBelievedOnlyAsFarAsTheyAreSeen) {
+  geometry::Vector8d sheared = geometry::Vector8d::Zero();
+  sheared[2] = 0.05;
+  std::vector<BlockShift> shifts = shiftsOf(sheared, 0.0);
+  const double all = fitShifts(shifts, kRoi, kSide)->x[2];
+  for (std::size_t k = 0; k < shifts.size(); ++k) shifts[k].confident = k / 6 == 2;  // one row: it shifts, no more
+  const double one_row = fitShifts(shifts, kRoi, kSide)->x[2];
+  EXPECT_NEAR(all, 0.05, 0.005);
+  EXPECT_LT(std::abs(one_row), 0.02);
+}
+
+TEST(ShiftFit, FewBlocksTellNothing) {
+  std::vector<BlockShift> shifts = shiftsOf(someMotion(), 0.0);
+  shifts.resize(4);
+  EXPECT_FALSE(fitShifts(shifts, kRoi, kSide));
+  EXPECT_FALSE(fitShifts({}, kRoi, kSide));
+}
+
+TEST(MedianShift, IsInPixelsOfTheImageAndNanWithoutAny) {
+  geometry::Vector8d shift = geometry::Vector8d::Zero();
+  shift[0] = 3.0 / halfSize(kRoi);
+  const std::vector<BlockShift> shifts = shiftsOf(shift, 0.0);
+  EXPECT_NEAR(medianShift(shifts, Eigen::Matrix3d::Identity()), 3.0, 1e-9);
+  EXPECT_NEAR(medianShift(shifts, Eigen::Vector3d(2.0, 2.0, 1.0).asDiagonal()), 6.0, 1e-9);
+  EXPECT_TRUE(std::isnan(medianShift({}, Eigen::Matrix3d::Identity())));
+}
+
+}  // namespace
+}  // namespace laparoscope_servo::tracking
