@@ -117,6 +117,7 @@ TrackResult RegionTracker::Implementation::select(const cv::Mat& image, double s
   attempt.evidence.roi = roi;
   attempt.evidence.esm.status = EsmStatus::kConverged;
   attempt.evidence.esm.corner_error = error;
+  attempt.evidence.esm.centre_error = error;  // it is not known worse than the worst corner
   attempt.evidence.visible_fraction = cv::sum(aligner_.weights())[0] / roi.width / roi.height;
   attempt.evidence.zncc = 1.0;
   TrackResult result = report(attempt);

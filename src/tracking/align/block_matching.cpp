@@ -22,22 +22,36 @@ constexpr double kApart = 2.5;        // px of the level: another peak, and what
 constexpr int kAlike = 2;             // other blocks
 constexpr double kLeastValid = 0.6;
 
-// Dot product of a block with a window, and the window's energy.
-LAPAROSCOPE_SERVO_CLONES
-void product(const float* __restrict block, int block_stride, const float* __restrict window, int stride, int side,
-             float* __restrict result) {
-  float both = 0.0f, energy = 0.0f;
-  for (int j = 0; j < side; ++j) {
-    const float* a = block + j * block_stride;
-    const float* b = window + j * stride;
-#pragma omp simd reduction(+ : both, energy)
-    for (int i = 0; i < side; ++i) {
-      both += a[i] * b[i];
-      energy += b[i] * b[i];
+struct Products {
+  float both = 0.0f;    // dot product of a block with a window
+  float energy = 0.0f;  // of the window
+};
+
+// Column by column, and the columns at the end: sums across a row would take longer than the products.
+template <int kSide>
+[[gnu::always_inline]] inline Products columnwise(const float* block, int block_stride, const float* window,
+                                                  int stride) {
+  float both[kSide] = {}, energy[kSide] = {};
+  for (int j = 0; j < kSide; ++j) {
+    const float* __restrict a = block + j * block_stride;
+    const float* __restrict b = window + j * stride;
+#pragma omp simd
+    for (int i = 0; i < kSide; ++i) {
+      both[i] += a[i] * b[i];
+      energy[i] += b[i] * b[i];
     }
   }
-  result[0] = both;
-  result[1] = energy;
+  Products sums;
+  for (int i = 0; i < kSide; ++i) {
+    sums.both += both[i];
+    sums.energy += energy[i];
+  }
+  return sums;
+}
+
+LAPAROSCOPE_SERVO_CLONES
+Products product(const float* block, int block_stride, const float* window, int stride) {
+  return columnwise<BlockMatching::kSide>(block, block_stride, window, stride);
 }
 
 double vertex(double left, double middle, double right) {
@@ -132,15 +146,13 @@ BlockMatching::Peak BlockMatching::find(const cv::Point& block) {
   std::array<std::array<float, kPlaces>, kPlaces> score;
   const float* const own = reference_.ptr<float>(block.y) + block.x;
   const int stride = static_cast<int>(reference_.step1());
-  float result[2];
-  product(own, stride, own, stride, kSide, result);
-  const float energy = result[1];
+  const float energy = product(own, stride, own, stride).energy;
   for (auto& row_of_scores : score) row_of_scores.fill(-1.0f);
   const auto at = [&](int j, int i) {
     if (score[j][i] > -1.0f) return score[j][i];
     const float* window = detail_.ptr<float>(block.y + j - kReach) + block.x + i - kReach;
-    product(own, stride, window, static_cast<int>(detail_.step1()), kSide, result);
-    return score[j][i] = result[0] / std::sqrt(energy * std::max(result[1], 0.2f * energy) + 1e-6f);
+    const Products found = product(own, stride, window, static_cast<int>(detail_.step1()));
+    return score[j][i] = found.both / std::sqrt(energy * std::max(found.energy, 0.2f * energy) + 1e-6f);
   };
   // Every second place, then uphill: local contrast is smooth over two pixels.
   Peak peak{0.0, 0.0, -1.0, -1.0};

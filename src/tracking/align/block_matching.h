@@ -27,6 +27,7 @@ struct BlockShift {
 class BlockMatching {
  public:
   static constexpr int kMostBlocks = 36;
+  static constexpr int kSide = 24;  // px of the level that blocks are searched on, of a block
 
   // With a lens pyramids are of raw images, all else is in rectified pixels.
   explicit BlockMatching(std::shared_ptr<const image::Lens> lens = nullptr) : lens_(std::move(lens)) {}
@@ -38,8 +39,6 @@ class BlockMatching {
   int blocks() const { return static_cast<int>(blocks_.size()); }
   // px of the reference per px of the level that blocks are searched on.
   double scale() const { return scale_; }
-  // By how much a block may be off and be found [px of the reference].
-  double reach() const { return kReach * scale_; }
   // px of the reference, of the blocks' side.
   double side() const { return kSide * scale_; }
 
@@ -48,7 +47,6 @@ class BlockMatching {
 
  private:
   static constexpr int kAlong = 6;  // blocks along each side, kMostBlocks in all
-  static constexpr int kSide = 24;  // px of the level: a multiple of 8
   static constexpr int kReach = 8;  // px of the level, by which a block is searched for
   struct Peak {
     double x, y, top, second;

@@ -21,6 +21,7 @@
 #include "support/lens_info.h"
 #include "support/synthetic_sequence.h"
 #include "support/temporary_folder.h"
+#include "support/tracker_table.h"
 
 namespace laparoscope_servo {
 namespace {
@@ -33,11 +34,6 @@ std::vector<std::string> lines(const std::string& path) {
   std::ifstream file(path);
   for (std::string line; std::getline(file, line);) result.push_back(line);
   return result;
-}
-
-// Of a line of the table: everything but the time that the tracker took.
-std::string numbers(const std::string& line) {
-  return line.substr(0, line.rfind(','));
 }
 
 class TrackerOfflineTest : public testing::Test {
@@ -131,8 +127,8 @@ TEST_F(TrackerOfflineTest, GivesTheSameNumbersTwiceAndForBagAndFolder) {
   ASSERT_EQ(first.size(), second.size());
   ASSERT_EQ(first.size(), bag.size());
   for (std::size_t k = 1; k < first.size(); ++k) {
-    EXPECT_EQ(numbers(first[k]), numbers(second[k]));
-    EXPECT_EQ(numbers(first[k]), numbers(bag[k]));
+    EXPECT_EQ(test_support::withoutTime(first[k]), test_support::withoutTime(second[k]));
+    EXPECT_EQ(test_support::withoutTime(first[k]), test_support::withoutTime(bag[k]));
   }
 }
 
@@ -266,7 +262,7 @@ TEST_F(TrackerOfflineTest, RectifiesByACalibrationFile) {
     for (int k = 0; k < kImages; ++k) {
       std::istringstream row(table[static_cast<std::size_t>(k) + 1]);
       std::vector<double> values;
-      for (std::string cell; std::getline(row, cell, ',');) values.push_back(std::stod(cell));
+      for (std::string cell; std::getline(row, cell, ',') && cell[0] != '"';) values.push_back(std::stod(cell));
       Eigen::Matrix3d g;
       for (int i = 0; i < 9; ++i) g(i / 3, i % 3) = values[static_cast<std::size_t>(3 + i)];
       for (const Eigen::Vector2d& corner : kRoi.corners()) {
