@@ -23,7 +23,7 @@ constexpr int kMostCorrections = 2;  // blocks that were too far to be found are
 constexpr double kSignificant = 1.0;
 // px of the level that blocks are searched on, their median: as near as this ESM knows better.
 constexpr double kNearOff = 0.3;
-constexpr double kFarOff = 2.0;     // px of the image, the blocks' median: ESM is off, however the blocks scatter
+constexpr double kFarOff = 1.5;     // px of the image, the blocks' median: ESM is off, however the blocks scatter
 constexpr double kGateShift = 2.0;  // px: masks drawn further from the estimate than this are drawn again
 constexpr double kBorder = 4.0;     // px of the coarsest level, of what smoothing takes in from beyond the ROI
 
