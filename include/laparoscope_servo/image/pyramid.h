@@ -7,6 +7,7 @@
 // errs, and gradients are of the tissue rather than of the noise.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <opencv2/core.hpp>
 #include <vector>
@@ -42,6 +43,14 @@ class RegionPyramid {
   int channels() const { return channels_; }
   const cv::Mat1f& level(int l, int channel = 0) const { return planes_[channel * levels_ + l].view; }
   cv::Point origin() const { return region_.tl(); }
+  // Takes pixels of the image to those of level `l`.
+  Eigen::Matrix3d levelFromImage(int l) const {
+    const double size = 1 << l;
+    Eigen::Matrix3d m = Eigen::Matrix3d::Identity();
+    m.diagonal().head<2>().setConstant(1.0 / size);
+    m.topRightCorner<2, 1>() << -origin().x / size, -origin().y / size;
+    return m;
+  }
   const cv::Rect& region() const { return region_; }
 
  private:

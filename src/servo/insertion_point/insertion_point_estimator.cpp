@@ -5,14 +5,12 @@
 #include <cmath>
 
 #include "laparoscope_servo/robust/median.h"
+#include "laparoscope_servo/robust/scale.h"
 #include "laparoscope_servo/validation/error_report.h"
 
 namespace laparoscope_servo::servo {
 
 namespace {
-
-constexpr double kTukey = 4.6851;
-constexpr double kRayleighMedian = 1.17741;  // of a distance in the plane, whose components have unit variance
 
 void throwUnlessValid(const InsertionPointConfig& config, const std::optional<InsertionPointPrior>& prior) {
   std::vector<std::string> errors = validate(config);
@@ -27,7 +25,7 @@ double distanceFromLine(const Eigen::Vector3d& point, const Shaft& line) {
 }
 
 double tukeyWeight(double normalised) {
-  const double t = normalised / kTukey;
+  const double t = normalised / robust::kTukey;
   return t < 1.0 ? (1.0 - t * t) * (1.0 - t * t) : 0.0;
 }
 
@@ -106,7 +104,7 @@ double InsertionPointEstimator::measureSamples() {
                       config_.drift * config_.drift * (time_ - sample.time);
     scratch_.push_back(sample.distance / std::sqrt(sample.variance));
   }
-  return std::max(1.0, robust::median(scratch_) / kRayleighMedian);
+  return std::max(1.0, robust::median(scratch_) / robust::kRayleighMedian);
 }
 
 void InsertionPointEstimator::solve(double scale) {
@@ -169,7 +167,7 @@ void InsertionPointEstimator::updateResidual(const Sample& sample) {
   if (!estimate_.valid) return;
   scratch_.clear();
   for (const Sample& one : recent_) scratch_.push_back(distanceFromLine(estimate_.point, one.shaft));
-  residual_ = robust::median(scratch_) * std::sqrt(2.0) / kRayleighMedian;
+  residual_ = robust::median(scratch_) * std::sqrt(2.0) / robust::kRayleighMedian;
   if (recent_.size() < size) return;
 
   const double keep = 1.0 - config_.residual_hysteresis;

@@ -28,9 +28,9 @@ struct Products {
 };
 
 // Column by column, and the columns at the end: sums across a row would take longer than the products.
-template <int kSide>
-[[gnu::always_inline]] inline Products columnwise(const float* block, int block_stride, const float* window,
-                                                  int stride) {
+LAPAROSCOPE_SERVO_CLONES
+Products product(const float* block, int block_stride, const float* window, int stride) {
+  constexpr int kSide = BlockMatching::kSide;
   float both[kSide] = {}, energy[kSide] = {};
   for (int j = 0; j < kSide; ++j) {
     const float* __restrict a = block + j * block_stride;
@@ -47,11 +47,6 @@ template <int kSide>
     sums.energy += energy[i];
   }
   return sums;
-}
-
-LAPAROSCOPE_SERVO_CLONES
-Products product(const float* block, int block_stride, const float* window, int stride) {
-  return columnwise<BlockMatching::kSide>(block, block_stride, window, stride);
 }
 
 double vertex(double left, double middle, double right) {
@@ -96,14 +91,11 @@ void BlockMatching::setReference(const image::RegionPyramid& reference, const ge
 
 void BlockMatching::look(const image::RegionPyramid& current, const Eigen::Matrix3d& g) {
   const int l = std::min(level_, current.levels() - 1);
-  const double size = 1 << l;
-  Eigen::Matrix3d level_T_image;
-  level_T_image << 1.0 / size, 0.0, -current.origin().x / size, 0.0, 1.0 / size, -current.origin().y / size, 0.0, 0.0,
-      1.0;
   if (lens_) {
-    image::warpBilinear(current.level(l), g * reference_T_crop_, *lens_, {current.origin(), size}, warped_, valid_);
+    image::warpBilinear(current.level(l), g * reference_T_crop_, *lens_,
+                        {current.origin(), static_cast<double>(1 << l)}, warped_, valid_);
   } else {
-    image::warpBilinear(current.level(l), level_T_image * g * reference_T_crop_, warped_, valid_);
+    image::warpBilinear(current.level(l), current.levelFromImage(l) * g * reference_T_crop_, warped_, valid_);
   }
   contrast();
 }

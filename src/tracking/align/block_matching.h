@@ -26,7 +26,8 @@ struct BlockShift {
 
 class BlockMatching {
  public:
-  static constexpr int kMostBlocks = 36;
+  static constexpr int kAlong = 6;  // blocks along each side of the ROI
+  static constexpr int kMostBlocks = kAlong * kAlong;
   static constexpr int kSide = 24;  // px of the level that blocks are searched on, of a block
 
   // With a lens pyramids are of raw images, all else is in rectified pixels.
@@ -46,7 +47,6 @@ class BlockMatching {
   const std::vector<BlockShift>& measure(const image::RegionPyramid& current, const Eigen::Matrix3d& g);
 
  private:
-  static constexpr int kAlong = 6;  // blocks along each side, kMostBlocks in all
   static constexpr int kReach = 8;  // px of the level, by which a block is searched for
   struct Peak {
     double x, y, top, second;

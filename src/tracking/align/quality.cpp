@@ -94,6 +94,10 @@ std::string doubt(const Evidence& e, const QualityConfig& q) {
   if (!(std::max(ratio, 1.0 / ratio) <= q.max_area_ratio)) {
     return text("area ratio", ratio, "within a factor of", q.max_area_ratio);
   }
+  if (blocks.confident >= kFewestOff && !(blocks.off <= kMostOff))
+    return text("pieces of the region off by [px]", blocks.off, "at most", kMostOff);
+  if (blocks.seen >= kTelling && e.visible_fraction >= 0.5 && blocks.confident < kFewBlocks)
+    return text("pieces of the region found", blocks.confident, "at least", kFewBlocks);
   Tolerance tolerance = e.from_track ? kTracking : kSearching;
   const double forgotten = e.from_track ? 0.0 : std::clamp(e.unseen / kForgetting, 0.0, 1.0);
   tolerance.unexplained += forgotten * kForgotten.unexplained;
@@ -101,10 +105,6 @@ std::string doubt(const Evidence& e, const QualityConfig& q) {
   const double min_zncc = std::max(
       q.min_zncc,
       std::min(kGoodZncc, 1.0 - tolerance.unexplained - tolerance.unexplained_factor * (1.0 - e.record.zncc())));
-  if (blocks.confident >= kFewestOff && !(blocks.off <= kMostOff))
-    return text("pieces of the region off by [px]", blocks.off, "at most", kMostOff);
-  if (blocks.seen >= kTelling && e.visible_fraction >= 0.5 && blocks.confident < kFewBlocks)
-    return text("pieces of the region found", blocks.confident, "at least", kFewBlocks);
   if (!recognised && !(e.zncc >= min_zncc)) return text("correlation", e.zncc, "at least", min_zncc);
   const double max_sigma = std::max(kGoodSigma, tolerance.sigma + tolerance.sigma_factor * e.record.sigma());
   if (!recognised && !(e.esm.sigma <= max_sigma))

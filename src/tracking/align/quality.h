@@ -40,7 +40,7 @@ struct BlockEvidence {
 
 struct Evidence {
   EsmResult esm;
-  geometry::Rectangle roi;    // px, in the reference
+  geometry::Rectangle roi;                                  // px, in the reference
   Eigen::Matrix3d predicted = Eigen::Matrix3d::Identity();  // G before ESM
   bool from_track = false;  // the prediction comes from the image before; false: from a search, which has to prove more
   double last_gain = 1.0;   // of the last estimate that was believed

@@ -7,28 +7,28 @@
 #include <limits>
 
 #include "laparoscope_servo/robust/median.h"
+#include "laparoscope_servo/robust/scale.h"
 
 namespace laparoscope_servo::tracking {
 
 namespace {
 
-constexpr int kFew = 5;
+constexpr std::size_t kFew = 5;
 constexpr int kRounds = 5;
-constexpr double kHuber = 1.345;      // 95 % efficiency for normal noise; confident blocks are hardly ever outliers
-constexpr double kRayleigh = 1.1774;  // median length of a normal vector over its deviation in each direction
-constexpr double kPlace = 0.15;       // px, how well a block's place is measured at best
+constexpr double kPlace = 0.15;  // px, how well a block's place is measured at best
 // What ESM may be off by before a block is seen, of half the ROI's side, at its border: shear and perspective are
 // believed only as far as blocks show more.
 constexpr double kShift = 0.08, kAffine = 0.02, kPerspective = 0.012;
 
-using Lengths = boost::container::static_vector<double, BlockMatching::kMostBlocks>;  // does not allocate
+template <typename Value>
+using OfBlocks = boost::container::static_vector<Value, BlockMatching::kMostBlocks>;  // does not allocate
 
-Eigen::Matrix<double, 2, 8> jacobian(const Eigen::Vector2d& p) {
-  Eigen::Matrix<double, 2, 8> m;
-  m.row(0) = esmJacobianRow(1.0, 0.0, p.x(), p.y());
-  m.row(1) = esmJacobianRow(0.0, 1.0, p.x(), p.y());
-  return m;
-}
+// A confident block, in normalised template units.
+struct Row {
+  Eigen::Matrix<double, 2, 8> jacobian;  // of its place, by x
+  Eigen::Vector2d shift;
+  double correlation;
+};
 
 }  // namespace
 
@@ -37,7 +37,7 @@ int confidentShifts(const std::vector<BlockShift>& shifts) {
 }
 
 double medianShift(const std::vector<BlockShift>& shifts, const Eigen::Matrix3d& g) {
-  Lengths lengths;
+  OfBlocks<double> lengths;
   for (const BlockShift& s : shifts) {
     if (s.confident) lengths.push_back((geometry::apply(g, s.centre + s.shift) - geometry::apply(g, s.centre)).norm());
   }
@@ -45,38 +45,36 @@ double medianShift(const std::vector<BlockShift>& shifts, const Eigen::Matrix3d&
 }
 
 std::optional<ShiftFit> fitShifts(const std::vector<BlockShift>& shifts, const geometry::Rectangle& roi, double side) {
-  const int count = confidentShifts(shifts);
-  if (count < kFew) return std::nullopt;
   const Eigen::Matrix3d n = templateFromPixels(roi);
   const double unit = halfSize(roi);
+  OfBlocks<Row> rows;
+  for (const BlockShift& s : shifts) {
+    if (s.confident) rows.push_back({pointJacobian(geometry::apply(n, s.centre)), s.shift / unit, s.correlation});
+  }
+  if (rows.size() < kFew) return std::nullopt;
   geometry::Vector8d spread;
   spread << kShift, kShift, kAffine, kAffine, kAffine, kAffine, kPerspective, kPerspective;
   const Matrix8d known = spread.cwiseAbs2().cwiseInverse().asDiagonal();
   // Blocks overlap, and so tell the same more than once.
-  const double overlap = std::max(1.0, count * side * side / (roi.width * roi.height));
+  const double overlap = std::max(1.0, static_cast<double>(rows.size()) * side * side / (roi.width * roi.height));
   ShiftFit result;
   Matrix8d a = Matrix8d::Zero();
   double sigma = std::numeric_limits<double>::infinity();  // of a shift, each direction; at first all count alike
-  Lengths left;
+  OfBlocks<double> left;
   for (int round = 0; round < kRounds; ++round) {
     a.setZero();
     geometry::Vector8d b = geometry::Vector8d::Zero();
     const double variance = overlap * std::pow(std::isfinite(sigma) ? sigma : kPlace / unit, 2);
-    for (const BlockShift& s : shifts) {
-      if (!s.confident) continue;
-      const Eigen::Matrix<double, 2, 8> m = jacobian(geometry::apply(n, s.centre));
-      const Eigen::Vector2d d = s.shift / unit;
-      const double w =
-          s.correlation * std::min(1.0, kHuber * sigma / std::max((d - m * result.x).norm(), 1e-12)) / variance;
-      a += w * m.transpose() * m;
-      b += w * m.transpose() * d;
+    for (const Row& row : rows) {
+      const double length = (row.shift - row.jacobian * result.x).norm();
+      const double w = row.correlation * std::min(1.0, robust::kHuber * sigma / std::max(length, 1e-12)) / variance;
+      a += w * row.jacobian.transpose() * row.jacobian;
+      b += w * row.jacobian.transpose() * row.shift;
     }
     result.x = (a + known).ldlt().solve(b);
     left.clear();
-    for (const BlockShift& s : shifts) {
-      if (s.confident) left.push_back((s.shift / unit - jacobian(geometry::apply(n, s.centre)) * result.x).norm());
-    }
-    sigma = std::max(kPlace / unit, robust::median(left) / kRayleigh);
+    for (const Row& row : rows) left.push_back((row.shift - row.jacobian * result.x).norm());
+    sigma = std::max(kPlace / unit, robust::median(left) / robust::kRayleighMedian);
   }
   if (!result.x.allFinite()) return std::nullopt;
   result.covariance = (a + known).ldlt().solve(Matrix8d::Identity());

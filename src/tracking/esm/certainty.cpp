@@ -11,14 +11,6 @@ namespace {
 
 constexpr double kSingular = 1e-12;  // conditioning of equations that determine nothing
 
-// The derivative of a point's image, in normalised template units, at the identity: the rows of J for unit gradients.
-Eigen::Matrix<double, 2, 8> pointJacobian(const Eigen::Vector2d& p) {
-  Eigen::Matrix<double, 2, 8> j;
-  j.row(0) = esmJacobianRow(1.0, 0.0, p.x(), p.y());
-  j.row(1) = esmJacobianRow(0.0, 1.0, p.x(), p.y());
-  return j;
-}
-
 // px in the image, standard deviation of the image of a point of the ROI.
 double pointError(const Eigen::Matrix3d& g, const geometry::Rectangle& roi, const Eigen::Vector2d& point,
                   const Matrix8d& covariance) {
@@ -76,7 +68,7 @@ double cornerError(const Eigen::Matrix3d& g, const geometry::Rectangle& roi, con
 }
 
 double centreError(const Eigen::Matrix3d& g, const geometry::Rectangle& roi, const Matrix8d& covariance) {
-  return pointError(g, roi, {roi.x + 0.5 * (roi.width - 1.0), roi.y + 0.5 * (roi.height - 1.0)}, covariance);
+  return pointError(g, roi, roi.centre(), covariance);
 }
 
 }  // namespace laparoscope_servo::tracking

@@ -8,14 +8,13 @@
 
 #include "laparoscope_servo/geometry/sl3.h"
 #include "laparoscope_servo/image/warp.h"
+#include "laparoscope_servo/robust/scale.h"
 #include "tracking/esm/certainty.h"
 #include "tracking/esm/factors.h"
 
 namespace laparoscope_servo::tracking {
 
 namespace {
-
-constexpr double kTukey = 4.6851;  // 95 % efficiency for normal noise (Marchand and Chaumette 2004, appendix)
 
 // Steps shrink by about this factor from one to the next before that has been measured.
 constexpr double kContraction = 0.3;
@@ -33,14 +32,6 @@ constexpr int kTrials = 8;          // iterations with the light of the start, i
 // Surprise, chi squared with 8 degrees of freedom, at which a prior begins to count less: Student's t with as many of
 // its own.
 constexpr double kFreedom = 8.0;
-
-Eigen::Matrix3d scaling(double s, double x, double y) {
-  Eigen::Matrix3d m;
-  m << s, 0.0, x,  //
-      0.0, s, y,   //
-      0.0, 0.0, 1.0;
-  return m;
-}
 
 // How much a prior counts that expected x = 0.
 double credibility(const MotionPrior& prior, const geometry::Vector8d& x) {
@@ -71,15 +62,13 @@ void Esm::setWeights(const cv::Mat1f& weights) {
 }
 
 void Esm::warp(const image::RegionPyramid& current, EsmLevel& level, int l, const Eigen::Matrix3d& g) {
-  const double size = level.scale;
-  const Eigen::Matrix3d level_T_image = scaling(1.0 / size, -current.origin().x / size, -current.origin().y / size);
-  const Eigen::Matrix3d level_T_patch = level_T_image * g * level.image_T_patch;
+  const Eigen::Matrix3d level_T_patch = current.levelFromImage(l) * g * level.image_T_patch;
   for (std::size_t c = 0; c < level.planes.size(); ++c) {
     const int channel =
         std::min(static_cast<int>(c), current.channels() - 1);  // an image without colour stands for all
     image::Patch& warped = level.planes[c].warped;
     level.all_valid = lens_ ? image::warpBilinear(current.level(l, channel), g * level.image_T_patch, *lens_,
-                                                  {current.origin(), size}, warped, level.valid)
+                                                  {current.origin(), level.scale}, warped, level.valid)
                             : image::warpBilinear(current.level(l, channel), level_T_patch, warped, level.valid);
     warped.extrapolate();
   }
@@ -105,10 +94,10 @@ void Esm::startLight(EsmLevel& level, const EsmState& state) {
 }
 
 double Esm::rejection(double sigma) const {
-  return config_.robust ? kTukey * sigma : 0.0;
+  return config_.robust ? robust::kTukey * sigma : 0.0;
 }
 
-bool Esm::solve(EsmLevel& level, const MotionPrior* prior, bool shift_only, EsmState& state, double& step) {
+bool Esm::solve(EsmLevel& level, const MotionPrior* prior, bool shift_only, EsmResult& result) {
   Matrix10d a = equations_.matrix();
   Vector10d b = equations_.vector();
   if (prior != nullptr) {
@@ -127,12 +116,14 @@ bool Esm::solve(EsmLevel& level, const MotionPrior* prior, bool shift_only, EsmS
   const Vector10d x = -factors.solve(b);
   if (!x.allFinite()) return false;
   deviation_ += x.head<8>();
-  step_deviations_ = std::sqrt(x.dot(a * x) / 8.0 / noise_);
+  const double noise = std::max(result.sigma * result.sigma, prior != nullptr ? prior->noise : 0.0);
+  result.last_step_deviations = std::sqrt(x.dot(a * x) / 8.0 / noise);
+  EsmState& state = result.state;
   const geometry::Quadrilateral before = geometry::apply(state.g, roi_.corners());
   takeStep(level, x, state);
   const geometry::Quadrilateral after = geometry::apply(state.g, roi_.corners());
-  step = geometry::largestDistance(before, after);
-  return state.g.allFinite() && std::isfinite(step) && state.gain > 0.0;
+  result.last_step = geometry::largestDistance(before, after);
+  return state.g.allFinite() && std::isfinite(result.last_step) && state.gain > 0.0;
 }
 
 void Esm::takeStep(EsmLevel& level, const Vector10d& x, EsmState& state) {
@@ -192,8 +183,7 @@ EsmStatus Esm::iterate(const image::RegionPyramid& current, int l, const MotionP
   result.sigma = residual_scale_.of(level, result.state.gain);
   equations_.sum(level, roi_, light_, result.state.gain, rejection(result.sigma));
   ++result.iterations;
-  noise_ = std::max(result.sigma * result.sigma, prior != nullptr ? prior->noise : 0.0);
-  if (!solve(level, prior, how.shift_only, result.state, result.last_step)) return EsmStatus::kIllConditioned;
+  if (!solve(level, prior, how.shift_only, result)) return EsmStatus::kIllConditioned;
   return EsmStatus::kMaxIterations;
 }
 
@@ -239,7 +229,7 @@ EsmStatus Esm::settle(const image::RegionPyramid& current, int l, int patience, 
     if (k > 0) contraction = std::min(result.last_step / std::max(before, 1e-9), kSlowest);
     if (result.last_step * contraction / (1.0 - contraction) < accuracy) return EsmStatus::kConverged;
     // What the image does not determine is not iterated on.
-    if (step_deviations_ * contraction / (1.0 - contraction) < kSettled) return EsmStatus::kConverged;
+    if (result.last_step_deviations * contraction / (1.0 - contraction) < kSettled) return EsmStatus::kConverged;
     if (k >= patience && result.last_step > kFar * scale) break;
   }
   return EsmStatus::kMaxIterations;

@@ -43,8 +43,9 @@ struct EsmResult {
   EsmState state;
   EsmStatus status = EsmStatus::kMaxIterations;
   int iterations = 0;
-  double last_step = 0.0;  // px, how far a corner moved in the last iteration
-  double sigma = 0.0;      // grey levels, robust standard deviation of the residual at the finest level used
+  double last_step = 0.0;             // px, how far a corner moved in the last iteration
+  double last_step_deviations = 0.0;  // the same in standard deviations of the estimate, root mean square
+  double sigma = 0.0;                 // grey levels, robust standard deviation of the residual at the finest level used
   // Of the estimate, by the residuals and the prior; x as in MotionPrior. Meaningless where corner_error is infinite.
   Matrix8d covariance = Matrix8d::Zero();
   // Grey levels squared. Residuals of real tissue are not independent; they count as fewer. This is the variance of
@@ -101,7 +102,7 @@ class Esm {
   void warp(const image::RegionPyramid& current, EsmLevel& level, int l, const Eigen::Matrix3d& g);
   void startLight(EsmLevel& level, const EsmState& state);
   double rejection(double sigma) const;
-  bool solve(EsmLevel& level, const MotionPrior* prior, bool shift_only, EsmState& state, double& step);
+  bool solve(EsmLevel& level, const MotionPrior* prior, bool shift_only, EsmResult& result);
   void takeStep(EsmLevel& level, const Vector10d& x, EsmState& state);
   struct Iteration {
     Light light;      // that the equations have
@@ -127,8 +128,6 @@ class Esm {
   BlockEquations equations_;
   ResidualScale residual_scale_;
   std::vector<float> scratch_;
-  double noise_ = 1.0;            // grey levels squared, what a unit of J'WJ is worth at this iteration
-  double step_deviations_ = 0.0;  // the last step, in standard deviations of the estimate (root mean square)
   bool light_known_ = false;
   Light light_ = Light::kConstant;                             // that the equations have at this iteration
   geometry::Vector8d deviation_ = geometry::Vector8d::Zero();  // from the prior's prediction

@@ -64,6 +64,13 @@ Eigen::Matrix<double, 1, 8> esmJacobianRow(double gx, double gy, double u, doubl
   return j.head<8>().transpose();
 }
 
+Eigen::Matrix<double, 2, 8> pointJacobian(const Eigen::Vector2d& p) {
+  Eigen::Matrix<double, 2, 8> j;
+  j.row(0) = esmJacobianRow(1.0, 0.0, p.x(), p.y());
+  j.row(1) = esmJacobianRow(0.0, 1.0, p.x(), p.y());
+  return j;
+}
+
 void NormalEquations::reset(Light light, double gradient_scale) {
   light_ = light;
   gradient_scale_ = gradient_scale;

@@ -28,6 +28,8 @@ Eigen::Matrix3d templateFromPixels(const geometry::Rectangle& roi);
 
 // The eight entries of J for one pixel, as above. Reference for tests, and readable beside the papers.
 Eigen::Matrix<double, 1, 8> esmJacobianRow(double gx, double gy, double u, double v);
+// The derivative by x of where exp(A(x)) takes the point p, all in normalised template units: rows for unit gradients.
+Eigen::Matrix<double, 2, 8> pointJacobian(const Eigen::Vector2d& p);
 
 // Sums over a cell of the weight times: products of the gradient (gx, gy), the residual r and the intensity m.
 struct CellSums {

@@ -3,15 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "laparoscope_servo/robust/scale.h"
+
 namespace laparoscope_servo::tracking {
 
 namespace {
 
-constexpr double kMadToSigma = 1.4826;  // normal noise
-constexpr double kMinSigma = 1.0;       // grey levels; below it quantisation is mistaken for outliers
-constexpr int kMaxSamples = 1024;       // of the residual, for its scale
-constexpr int kRun = 4;                 // px side by side, which share what is fetched from memory
-constexpr double kBinsPerLevel = 8.0;   // of the histogram of residuals, which ends at 128 grey levels
+constexpr double kMinSigma = 1.0;      // grey levels; below it quantisation is mistaken for outliers
+constexpr int kMaxSamples = 1024;      // of the residual, for its scale
+constexpr int kRun = 4;                // px side by side, which share what is fetched from memory
+constexpr double kBinsPerLevel = 8.0;  // of the histogram of residuals, which ends at 128 grey levels
 constexpr int kBins = 1024;
 
 }  // namespace
@@ -71,7 +72,7 @@ double ResidualScale::of(const EsmLevel& level, double gain) {
   int bin = 0;
   while (below + histogram_[bin] < 0.5 * count) below += histogram_[bin++];
   const double median = (bin + (0.5 * count - below) / histogram_[bin]) / kBinsPerLevel;
-  return std::max(kMinSigma, kMadToSigma * median);
+  return std::max(kMinSigma, robust::kMadToSigma * median);
 }
 
 }  // namespace laparoscope_servo::tracking

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "laparoscope_servo/robust/median.h"
+#include "laparoscope_servo/robust/scale.h"
 
 namespace laparoscope_servo::tracking {
 
@@ -13,8 +14,6 @@ namespace {
 constexpr int kClipped = 250;              // grey levels
 constexpr float kMostClipped = 0.02f;      // share of an area; its mean is that of a ceiling beyond
 constexpr int kIterations = 6;             // of the weights; by then they hardly change
-constexpr float kTukey = 4.6851f;          // 95 % efficiency for normal noise
-constexpr float kMadToSigma = 1.4826f;     // normal noise
 constexpr float kLeastSigma = 2.0f;        // grey levels, of an area's mean: texture that has moved by a pixel
 constexpr double kLeastWeight = 8.0;       // areas, for a line through them
 constexpr double kLeastCorrelation = 0.7;  // of the areas' means, for their spread to tell the gain from the offset
@@ -132,7 +131,7 @@ void LightFit::weigh(const AreaColours& image, const AreaColours& reference, con
       if (use[area] && std::isfinite(residual(area))) values_.push_back(std::abs(residual(area)));
     }
     if (values_.empty()) continue;
-    const float sigma = std::max(kLeastSigma, kMadToSigma * robust::median(values_));
+    const float sigma = std::max(kLeastSigma, static_cast<float>(robust::kMadToSigma) * robust::median(values_));
     for (int area = 0; area < areas; ++area) {
       const float r = residual(area) / sigma;
       if (!use[area] || !std::isfinite(r)) continue;
@@ -140,6 +139,7 @@ void LightFit::weigh(const AreaColours& image, const AreaColours& reference, con
       weights_[area] += 1.0f;
     }
   }
+  constexpr float kTukey = static_cast<float>(robust::kTukey);
   for (int area = 0; area < areas; ++area) {
     if (!(weights_[area] > 0.0f)) continue;
     const float u = 1.0f - distances_[area] / weights_[area] / (kTukey * kTukey);
