@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 #include <memory>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <vector>
 
 #include "laparoscope_servo/geometry/homography.h"
@@ -102,6 +103,7 @@ class Esm {
   void warp(const image::RegionPyramid& current, EsmLevel& level, int l, const Eigen::Matrix3d& g);
   void startLight(EsmLevel& level, const EsmState& state);
   double rejection(double sigma) const;
+  Vector10d accelerated(const Matrix10d& a, const Vector10d& x);
   bool solve(EsmLevel& level, const MotionPrior* prior, bool shift_only, EsmResult& result);
   void takeStep(EsmLevel& level, const Vector10d& x, EsmState& state);
   struct Iteration {
@@ -128,6 +130,7 @@ class Esm {
   BlockEquations equations_;
   ResidualScale residual_scale_;
   std::vector<float> scratch_;
+  std::optional<Vector10d> last_step_;  // of this level, see accelerated(); empty after one that was lengthened
   bool light_known_ = false;
   Light light_ = Light::kConstant;                             // that the equations have at this iteration
   geometry::Vector8d deviation_ = geometry::Vector8d::Zero();  // from the prior's prediction
