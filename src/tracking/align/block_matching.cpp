@@ -20,6 +20,8 @@ constexpr double kPeak = 0.5;         // correlation
 constexpr double kLead = 0.1;         // over the second peak
 constexpr double kApart = 2.5;        // px of the level: another peak, and what counts as moved alike
 constexpr int kAlike = 2;             // other blocks
+// Of a block's side: blocks nearer to each other share so much of the image that they agree by themselves.
+constexpr double kIndependent = 0.5;
 constexpr double kLeastValid = 0.6;
 
 struct Products {
@@ -58,6 +60,7 @@ double vertex(double left, double middle, double right) {
 void BlockMatching::setReference(const image::RegionPyramid& reference, const geometry::Rectangle& roi) {
   level_ = 0;
   while (level_ + 1 < reference.levels() && std::max(roi.width, roi.height) / (1 << level_) > kLargest) ++level_;
+  level_ = std::min(level_ + coarser_, reference.levels() - 1);
   scale_ = 1 << level_;
   const cv::Size inner(static_cast<int>(roi.width / scale_), static_cast<int>(roi.height / scale_));
   const cv::Size size(inner.width + 2 * kReach, inner.height + 2 * kReach);
@@ -200,7 +203,9 @@ const std::vector<BlockShift>& BlockMatching::measure(const image::RegionPyramid
   for (std::size_t k = 0; k < shifts_.size(); ++k) {
     int alike = 0;
     for (std::size_t other = 0; other < shifts_.size(); ++other) {
-      if (other != k && shifts_[other].confident && (shifts_[other].shift - shifts_[k].shift).norm() < kApart * scale_)
+      const Eigen::Vector2d apart = (shifts_[other].centre - shifts_[k].centre).cwiseAbs();
+      if (shifts_[other].confident && apart.maxCoeff() >= kIndependent * side() &&
+          (shifts_[other].shift - shifts_[k].shift).norm() < kApart * scale_)
         ++alike;
     }
     alone[k] = alike < kAlike;

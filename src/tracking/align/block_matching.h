@@ -30,8 +30,10 @@ class BlockMatching {
   static constexpr int kMostBlocks = kAlong * kAlong;
   static constexpr int kSide = 24;  // px of the level that blocks are searched on, of a block
 
-  // With a lens pyramids are of raw images, all else is in rectified pixels.
-  explicit BlockMatching(std::shared_ptr<const image::Lens> lens = nullptr) : lens_(std::move(lens)) {}
+  // With a lens pyramids are of raw images, all else is in rectified pixels. `coarser`: levels above the one that shows
+  // the ROI's detail, to find blocks twice as far away for each.
+  explicit BlockMatching(std::shared_ptr<const image::Lens> lens = nullptr, int coarser = 0)
+      : lens_(std::move(lens)), coarser_(coarser) {}
 
   // The pyramid must hold the ROI with the margin (px) below where the image has it.
   void setReference(const image::RegionPyramid& reference, const geometry::Rectangle& roi);
@@ -57,6 +59,7 @@ class BlockMatching {
   Peak find(const cv::Point& block);
 
   std::shared_ptr<const image::Lens> lens_;
+  int coarser_ = 0;
   int level_ = 0;
   double scale_ = 1.0;  // px of the reference per px of the level
   Eigen::Matrix3d reference_T_crop_ = Eigen::Matrix3d::Identity();

@@ -23,9 +23,10 @@ constexpr int kMostCorrections = 2;  // blocks that were too far to be found are
 constexpr double kSignificant = 1.0;
 // px of the level that blocks are searched on, their median: as near as this ESM knows better.
 constexpr double kNearOff = 0.3;
-constexpr double kFarOff = 1.5;     // px of the image, the blocks' median: ESM is off, however the blocks scatter
-constexpr double kGateShift = 2.0;  // px: masks drawn further from the estimate than this are drawn again
-constexpr double kBorder = 4.0;     // px of the coarsest level, of what smoothing takes in from beyond the ROI
+constexpr double kFarOff = 1.5;       // px of the image, the blocks' median: ESM is off, however the blocks scatter
+constexpr double kMostMissing = 0.5;  // share of the blocks that are found, from which on they are not searched further
+constexpr double kGateShift = 2.0;    // px: masks drawn further from the estimate than this are drawn again
+constexpr double kBorder = 4.0;       // px of the coarsest level, of what smoothing takes in from beyond the ROI
 
 bool usable(const EsmResult& estimate) {
   return estimate.status == EsmStatus::kConverged || estimate.status == EsmStatus::kMaxIterations;
@@ -49,7 +50,8 @@ RegionAligner::RegionAligner(const TrackerConfig& config, std::shared_ptr<const 
       occlusion_(config.occlusion),
       esm_(config.esm, lens),
       gates_(config.occlusion, config.esm.saturation),
-      blocks_(lens) {}
+      blocks_(lens),
+      far_blocks_(lens, 1) {}
 
 void RegionAligner::setReference(const cv::Mat& image, const geometry::Rectangle& roi) {
   const cv::Rect box = image::seenBox(lens_.get(), roi.corners(), 0.0) & cv::Rect(cv::Point(0, 0), image.size());
@@ -58,6 +60,7 @@ void RegionAligner::setReference(const cv::Mat& image, const geometry::Rectangle
   pyramid_.build(image, with_border, config_.levels, channels_);
   esm_.setReference(pyramid_, roi);
   blocks_.setReference(pyramid_, roi);
+  far_blocks_.setReference(pyramid_, roi);
   sample(image, Eigen::Matrix3d::Identity());
   gates_.setReference(patch_, cv::Size(static_cast<int>(roi.width), static_cast<int>(roi.height)),
                       coloursIn(channels_));
@@ -125,28 +128,60 @@ Alignment RegionAligner::align(const cv::Mat& image, const EsmState& start, cons
     if (!level.all_valid) result.share_in_image = cv::mean(level.valid.view())[0];
     result.zncc = gates_.correlation();
     correct(result.esm, result.blocks);
+    lookFurther(result.esm, result.blocks);
   }
   return result;
 }
 
+void RegionAligner::follow(const ShiftFit& fit, EsmResult& estimate) const {
+  const Eigen::Matrix3d& n = esm_.normalisation();
+  estimate.state.g = geometry::normaliseDeterminant(estimate.state.g * n.inverse() * geometry::sl3Exp(fit.x) * n);
+  estimate.covariance = fit.covariance;
+  estimate.corner_error = cornerError(estimate.state.g, roi(), fit.covariance);
+  estimate.centre_error = centreError(estimate.state.g, roi(), fit.covariance);
+}
+
+const std::vector<BlockShift>& RegionAligner::measure(const EsmResult& estimate, BlockEvidence& evidence) {
+  const std::vector<BlockShift>& shifts = blocks_.measure(pyramid_, estimate.state.g);
+  evidence.seen = static_cast<int>(shifts.size());
+  evidence.confident = confidentShifts(shifts);
+  evidence.off = medianShift(shifts, estimate.state.g);
+  return shifts;
+}
+
 // Where the blocks contradict ESM, they are right: light and shade that move pull at residuals, but not at places.
 void RegionAligner::correct(EsmResult& estimate, BlockEvidence& evidence) {
-  for (int round = 0;; ++round) {
-    const std::vector<BlockShift>& shifts = blocks_.measure(pyramid_, estimate.state.g);
-    evidence.seen = static_cast<int>(shifts.size());
-    evidence.confident = confidentShifts(shifts);
-    evidence.off = medianShift(shifts, estimate.state.g);
-    if (round == kMostCorrections) break;
-    const std::optional<ShiftFit> fit = fitShifts(shifts, roi(), blocks_.side());
+  const std::vector<BlockShift>* shifts = &measure(estimate, evidence);
+  for (int round = 0; round < kMostCorrections; ++round) {
+    const std::optional<ShiftFit> fit = fitShifts(*shifts, roi(), blocks_.side());
     if (!fit) break;
     const bool contradicts =
         evidence.off > kNearOff * blocks_.scale() && (fit->significance > kSignificant || evidence.off > kFarOff);
     if (!contradicts && std::isfinite(estimate.corner_error)) break;
-    const Eigen::Matrix3d& n = esm_.normalisation();
-    estimate.state.g = geometry::normaliseDeterminant(estimate.state.g * n.inverse() * geometry::sl3Exp(fit->x) * n);
-    estimate.covariance = fit->covariance;
-    estimate.corner_error = cornerError(estimate.state.g, roi(), fit->covariance);
-    estimate.centre_error = centreError(estimate.state.g, roi(), fit->covariance);
+    follow(*fit, estimate);
+    shifts = &measure(estimate, evidence);
+  }
+}
+
+// A part of the region that stands still (a reflection, a fold) holds ESM there, while the rest has moved further than
+// blocks are searched. Where most blocks are missing they are searched further, and the place that more of them are at
+// is the region's.
+void RegionAligner::lookFurther(EsmResult& estimate, BlockEvidence& evidence) {
+  if (evidence.seen == 0 || evidence.confident > kMostMissing * evidence.seen) return;
+  const std::vector<BlockShift>& shifts = far_blocks_.measure(pyramid_, estimate.state.g);
+  const BlockEvidence further = {static_cast<int>(shifts.size()), confidentShifts(shifts),
+                                 medianShift(shifts, estimate.state.g)};
+  const std::optional<ShiftFit> fit = fitShifts(shifts, roi(), far_blocks_.side());
+  if (!fit || !(further.off > kFarOff) || further.confident <= evidence.confident) return;
+  EsmResult other = estimate;
+  BlockEvidence there;
+  follow(*fit, other);
+  correct(other, there);
+  if (there.confident > evidence.confident) {
+    estimate = other;
+    evidence = there;
+  } else {
+    evidence = further;  // neither place is the region's
   }
 }
 

@@ -13,6 +13,7 @@
 #include "laparoscope_servo/tracking/tracker_config.h"
 #include "tracking/align/block_matching.h"
 #include "tracking/align/quality.h"
+#include "tracking/align/shift_fit.h"
 #include "tracking/esm/esm.h"
 #include "tracking/occlusion/occlusion_gates.h"
 
@@ -64,7 +65,10 @@ class RegionAligner {
  private:
   void sample(const cv::Mat& image, const Eigen::Matrix3d& g);
   void look(const cv::Mat& image, const Eigen::Matrix3d& g);
+  void follow(const ShiftFit& fit, EsmResult& estimate) const;
+  const std::vector<BlockShift>& measure(const EsmResult& estimate, BlockEvidence& evidence);
   void correct(EsmResult& estimate, BlockEvidence& evidence);
+  void lookFurther(EsmResult& estimate, BlockEvidence& evidence);
   int observeStructure(const EsmResult& estimate);
 
   EsmConfig config_;
@@ -73,6 +77,7 @@ class RegionAligner {
   Esm esm_;
   OcclusionGates gates_;
   BlockMatching blocks_;
+  BlockMatching far_blocks_;
   image::RegionPyramid pyramid_;
   image::Channels channels_ = image::kLuma;
   image::ColourPatch patch_;

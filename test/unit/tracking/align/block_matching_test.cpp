@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "support/synthetic_tissue.h"
 #include "tracking/align/shift_fit.h"
@@ -127,6 +128,31 @@ TEST_F(BlockMatchingTest, BlocksOutsideTheImageAreNotAsked) {
   const std::vector<BlockShift>& shifts = measured(test::view(scene_, g), g);
   EXPECT_LT(static_cast<int>(shifts.size()), matching_.blocks());
   EXPECT_GT(confidentShifts(shifts), 10);
+}
+
+// Blocks of a small region overlap: neighbours that find the same by chance are no proof.
+TEST_F(BlockMatchingTest, ASmallRegionIsNotFoundInAnotherScene) {
+  BlockMatching small;
+  small.setReference(pyramid(scene_), {120, 90, 60, 60});
+  ASSERT_GE(small.blocks(), 30);
+  EXPECT_GE(confidentShifts(small.measure(pyramid(moved(2.0, 1.0)), Eigen::Matrix3d::Identity())), 25);
+  int images_with_proof = 0;
+  for (unsigned seed = 100; seed < 140; ++seed) {
+    const cv::Mat other = test::tissue(kSize, seed);
+    images_with_proof += confidentShifts(small.measure(pyramid(other), Eigen::Matrix3d::Identity())) >= 3;
+  }
+  EXPECT_LE(images_with_proof, 1);
+}
+
+TEST_F(BlockMatchingTest, ACoarserLevelFindsWhatIsTooFarForTheFineOne) {
+  BlockMatching coarse(nullptr, 1);
+  coarse.setReference(pyramid(scene_), kRoi);
+  EXPECT_EQ(coarse.scale(), 2.0 * matching_.scale());
+  const cv::Mat image = moved(12.0, -3.0);
+  EXPECT_LT(confidentShifts(measured(image)), 3);
+  const std::vector<BlockShift>& shifts = coarse.measure(pyramid(image), Eigen::Matrix3d::Identity());
+  EXPECT_GE(confidentShifts(shifts), 20);
+  EXPECT_NEAR(medianShift(shifts, Eigen::Matrix3d::Identity()), std::hypot(12.0, 3.0), 0.5);
 }
 
 }  // namespace

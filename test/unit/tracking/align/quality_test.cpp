@@ -227,5 +227,25 @@ TEST(Doubt, NearlyConvergedIsGoodEnough) {
   EXPECT_EQ(doubt(e, QualityConfig()), "");
 }
 
+// Where more is visible, more of the blocks have to be found; a search has to find some in any case.
+TEST(Doubt, AsksForMoreBlocksTheMoreIsVisible) {
+  const auto refused = [](double visible, int confident, bool from_track) {
+    Evidence e = good();
+    e.visible_fraction = visible;
+    e.blocks = {36, confident, 0.3};
+    e.from_track = from_track;
+    return doubt(e, QualityConfig()).find("pieces of the region found") != std::string::npos;
+  };
+  for (const bool from_track : {true, false}) {
+    EXPECT_TRUE(refused(0.57, 5, from_track));
+    EXPECT_FALSE(refused(0.57, 6, from_track));
+    EXPECT_TRUE(refused(0.9, 8, from_track));
+    EXPECT_FALSE(refused(0.9, 9, from_track));
+  }
+  EXPECT_FALSE(refused(0.3, 0, true)) << "beside an instrument a block is covered, too";
+  EXPECT_TRUE(refused(0.3, 2, false));
+  EXPECT_FALSE(refused(0.3, 3, false));
+}
+
 }  // namespace
 }  // namespace laparoscope_servo::tracking

@@ -112,5 +112,24 @@ TEST_F(RegionAlignerTest, ForgetsWhatHidTheRegionElsewhere) {
   EXPECT_GT(aligner.align(scene_, EsmState(), nullptr, 12.0).visible_fraction, 0.97);
 }
 
+// An instrument that lay over a third of the region when it was selected, and stays while the tissue slides under it:
+// the region is where most of it is.
+TEST_F(RegionAlignerTest, WhatStandsStillDoesNotHoldTheRestThatHasMovedFar) {
+  const auto withInstrument = [&](double shift) {
+    Eigen::Matrix3d g = Eigen::Matrix3d::Identity();
+    g(0, 2) = shift;
+    cv::Mat image = test::view(scene_, g);
+    test::tissue(cv::Size(46, 110), 77).copyTo(image(cv::Rect(174, 80, 46, 110)));
+    return image;
+  };
+  for (const double shift : {-13.0, 13.0}) {
+    RegionAligner aligner = alignerOn(withInstrument(0.0));
+    const Alignment found = aligner.align(withInstrument(shift), EsmState(), nullptr, 32.0);
+    const double u = geometry::apply(found.esm.state.g, Eigen::Vector2d(135.0, 135.0)).x();  // on the tissue
+    EXPECT_NEAR(u, 135.0 + shift, 2.0);
+    EXPECT_LT(found.blocks.off, 2.5);
+  }
+}
+
 }  // namespace
 }  // namespace laparoscope_servo::tracking
