@@ -32,6 +32,14 @@ std::string PinholeCamera::error() const {
   return message.str();
 }
 
+bool operator==(const PinholeCamera& a, const PinholeCamera& b) {
+  return a.fx == b.fx && a.fy == b.fy && a.cx == b.cx && a.cy == b.cy;
+}
+
+bool operator!=(const PinholeCamera& a, const PinholeCamera& b) {
+  return !(a == b);
+}
+
 PinholeCamera cameraFromRowMajor(const double* k) {
   return {k[0], k[4], k[2], k[5]};
 }

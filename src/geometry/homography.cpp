@@ -87,6 +87,10 @@ double largestDistance(const Quadrilateral& a, const Quadrilateral& b) {
   return largest;
 }
 
+double cornerDistance(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b, const Rectangle& rectangle) {
+  return largestDistance(geometry::apply(a, rectangle.corners()), geometry::apply(b, rectangle.corners()));
+}
+
 bool isConvex(const Quadrilateral& q) {
   for (int k = 0; k < 4; ++k) {
     const Eigen::Vector2d side = q[(k + 1) % 4] - q[k];

@@ -83,4 +83,12 @@ Eigen::Matrix3d normaliseDeterminant(const Eigen::Matrix3d& g) {
   return scaled;
 }
 
+Eigen::Matrix3d Sl3Steps::plus(const Eigen::Matrix3d& g, const Vector8d& x) const {
+  return g * n_inv_ * sl3Exp(x) * n_;
+}
+
+Vector8d Sl3Steps::minus(const Eigen::Matrix3d& to, const Eigen::Matrix3d& from) const {
+  return sl3Log(normaliseDeterminant(n_ * from.inverse() * to * n_inv_));
+}
+
 }  // namespace laparoscope_servo::geometry

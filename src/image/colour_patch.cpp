@@ -5,6 +5,7 @@
 #include <string>
 
 #include "image/kernel_parts.h"
+#include "laparoscope_servo/image/image_type.h"
 #include "laparoscope_servo/image/multiversion.h"
 
 namespace laparoscope_servo::image {
@@ -121,10 +122,7 @@ void growAcross(int grow, cv::Mat1b& mask) {
 // `lens`: null without one.
 void warpRows(const cv::Mat& image, const Eigen::Matrix3d& g, const LensLoop* lens, const cv::Size& size,
               ColourPatch& patch) {
-  if (image.type() != CV_8UC1 && image.type() != CV_8UC3) {
-    throw std::invalid_argument("image of OpenCV type " + std::to_string(image.type()) +
-                                ", expected 8 bit with one channel or three");
-  }
+  checkType(image);
   patch.has_colour = image.channels() == 3;
   patch.blue.create(size);
   patch.valid.create(size);

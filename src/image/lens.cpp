@@ -20,10 +20,6 @@ constexpr double kSolved = 1e-9;   // of the focal length
 constexpr int kMapStep = 8;        // px
 constexpr float kNowhere = -1e6f;  // px
 
-bool sameCamera(const geometry::PinholeCamera& a, const geometry::PinholeCamera& b) {
-  return a.fx == b.fx && a.fy == b.fy && a.cx == b.cx && a.cy == b.cy;
-}
-
 void check(const LensParameters& p) {
   std::ostringstream error;
   for (const double value : p.coefficients) {
@@ -187,8 +183,8 @@ LensLoop Lens::loop(const RawWindow& window) const {
 bool operator==(const Lens& a, const Lens& b) {
   const LensParameters& p = a.parameters();
   const LensParameters& q = b.parameters();
-  return p.distortion == q.distortion && p.coefficients == q.coefficients && sameCamera(p.raw, q.raw) &&
-         sameCamera(p.rectified, q.rectified) && p.rotation == q.rotation;
+  return p.distortion == q.distortion && p.coefficients == q.coefficients && p.raw == q.raw &&
+         p.rectified == q.rectified && p.rotation == q.rotation;
 }
 
 cv::Rect rawBox(const Lens& lens, const geometry::Quadrilateral& rectified, double margin) {

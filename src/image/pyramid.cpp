@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "laparoscope_servo/image/image_type.h"
 #include "laparoscope_servo/image/multiversion.h"
 
 namespace laparoscope_servo::image {
@@ -126,10 +127,7 @@ void RegionPyramid::halve(const cv::Mat1f& fine, cv::Mat1f& coarse) {
 }
 
 void RegionPyramid::build(const cv::Mat& image, const cv::Rect& region, int levels, const Channels& channels) {
-  if (image.type() != CV_8UC1 && image.type() != CV_8UC3) {
-    throw std::invalid_argument("image of OpenCV type " + std::to_string(image.type()) +
-                                ", expected 8 bit with one channel or three");
-  }
+  checkType(image);
   const cv::Rect inside = region & cv::Rect(0, 0, image.cols, image.rows);
   if (inside.empty() || levels < 1) {
     throw std::invalid_argument("region of interest holds no pixel of the image");

@@ -34,8 +34,7 @@ void MotionFilter::start(const geometry::Rectangle& roi, const Eigen::Matrix3d& 
   const double half_size = 1.0 / normalisation(0, 0);
   *this = MotionFilter(damping_);
   roi_ = roi;
-  n_ = normalisation;
-  n_inv_ = n_.inverse();
+  steps_ = geometry::Sl3Steps(normalisation);
   last_stamp_ = stamp;
   innovation_ = covariance(kGuess, half_size);
   least_ = covariance(kLeast, half_size);
@@ -43,14 +42,14 @@ void MotionFilter::start(const geometry::Rectangle& roi, const Eigen::Matrix3d& 
 }
 
 geometry::Vector8d MotionFilter::deviation(const Eigen::Matrix3d& from, const Eigen::Matrix3d& to) const {
-  return geometry::sl3Log(geometry::normaliseDeterminant(n_ * from.inverse() * to * n_inv_));
+  return steps_.minus(to, from);
 }
 
 MotionPrior MotionFilter::predict(double stamp, const std::optional<Eigen::Matrix3d>& carried) const {
   MotionPrior prior;
   const double dt = std::max(0.0, stamp - last_stamp_);
   const Eigen::Matrix3d from = carried.value_or(last_);
-  prior.predicted = from * n_inv_ * geometry::sl3Exp(damping_ * dt * (carried ? rest_ : velocity_)) * n_;
+  prior.predicted = steps_.plus(from, damping_ * dt * (carried ? rest_ : velocity_));
   if (!geometry::isConvex(geometry::apply(prior.predicted, roi_.corners()))) prior.predicted = from;
   const double images = interval_ > 0.0 ? std::clamp(dt / interval_, 1.0, kMaxIntervals) : 1.0;
   const Matrix8d expected = covariance_ + images * images * (innovation_ + least_);

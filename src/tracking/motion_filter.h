@@ -48,8 +48,7 @@ class MotionFilter {
 
   double damping_;
   geometry::Rectangle roi_;
-  Eigen::Matrix3d n_ = Eigen::Matrix3d::Identity();
-  Eigen::Matrix3d n_inv_ = Eigen::Matrix3d::Identity();
+  geometry::Sl3Steps steps_;
   Eigen::Matrix3d last_ = Eigen::Matrix3d::Identity();
   double last_stamp_ = 0.0;
   geometry::Vector8d velocity_ = geometry::Vector8d::Zero();  // 1/s

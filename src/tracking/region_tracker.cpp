@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "laparoscope_servo/geometry/sl3.h"
+#include "laparoscope_servo/validation/error_report.h"
 #include "tracking/align/quality.h"
 #include "tracking/align/region_aligner.h"
 #include "tracking/motion_filter.h"
@@ -245,7 +246,8 @@ void RegionTracker::Implementation::decide(const Attempt& best, const MotionPrio
     state_ = State::kTracking;
     filter_.restart(e.esm, stamp);
   } else {
-    record_.add(e.zncc, e.esm.sigma, farthestCorner(e.predicted, e.esm.state.g, aligner_.roi()), e.visible_fraction);
+    record_.add(e.zncc, e.esm.sigma, geometry::cornerDistance(e.predicted, e.esm.state.g, aligner_.roi()),
+                e.visible_fraction);
     filter_.update(prior, e.esm, stamp, e.visible_fraction >= kRecordVisible, carried_);
   }
   search_.confirmation().forget();
@@ -304,12 +306,7 @@ cv::Mat RegionTracker::Implementation::occlusionMask() const {
 }
 
 RegionTracker::RegionTracker(const TrackerConfig& config) {
-  const std::vector<std::string> errors = validate(config);
-  if (!errors.empty()) {
-    std::string message = "tracker configuration:";
-    for (const std::string& error : errors) message += "\n  " + error;
-    throw std::invalid_argument(message);
-  }
+  validation::throwErrors("tracker", validate(config));
   implementation_ = std::make_unique<Implementation>(config);
 }
 

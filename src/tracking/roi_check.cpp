@@ -4,6 +4,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "laparoscope_servo/image/image_type.h"
+
 namespace laparoscope_servo::tracking {
 
 namespace {
@@ -44,10 +46,7 @@ std::string text(const geometry::Rectangle& roi) {
 
 void checkImage(const cv::Mat& image) {
   if (image.empty()) throw std::invalid_argument("image is empty, expected at least one pixel");
-  if (image.type() != CV_8UC1 && image.type() != CV_8UC3) {
-    throw std::invalid_argument("image of OpenCV type " + std::to_string(image.type()) +
-                                ", expected 8 bit with one channel or three");
-  }
+  image::checkType(image);
 }
 
 geometry::Rectangle checkedRoi(const cv::Mat& image, const geometry::Rectangle& roi, int min_side,

@@ -80,9 +80,4 @@ inline Eigen::Matrix3d zoomAndTurn(const geometry::Rectangle& roi, double zoom, 
   return geometry::normaliseDeterminant(g * tilted * centre);
 }
 
-// px, the largest distance between the corners of the ROI as both homographies show them.
-inline double cornerDistance(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b, const geometry::Rectangle& roi) {
-  return geometry::largestDistance(geometry::apply(a, roi.corners()), geometry::apply(b, roi.corners()));
-}
-
 }  // namespace laparoscope_servo::test

@@ -23,6 +23,10 @@ struct PinholeCamera {
   std::string error() const;
 };
 
+// To the last digit: two calibrations of one camera differ. No camera with a NaN equals another.
+bool operator==(const PinholeCamera& a, const PinholeCamera& b);
+bool operator!=(const PinholeCamera& a, const PinholeCamera& b);
+
 // From a row-major 3x3 camera matrix as in sensor_msgs/CameraInfo.K. Does not judge: see error(). A skew is not
 // represented, since camera calibration of ROS reports none.
 PinholeCamera cameraFromRowMajor(const double* k);

@@ -46,6 +46,8 @@ double signedArea(const Quadrilateral& q);
 // The largest distance between corresponding corners; infinite where a corner is not finite, so that no comparison
 // takes it for near.
 double largestDistance(const Quadrilateral& a, const Quadrilateral& b);
+// The same of the corners to which two homographies take those of a rectangle, px.
+double cornerDistance(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b, const Rectangle& rectangle);
 
 // Strictly convex, turning as a Rectangle's corners do, and finite.
 bool isConvex(const Quadrilateral& q);

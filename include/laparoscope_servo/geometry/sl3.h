@@ -6,7 +6,7 @@
 // caller has normalised.
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/LU>
 
 namespace laparoscope_servo::geometry {
 
@@ -28,5 +28,25 @@ Vector8d sl3Log(const Eigen::Matrix3d& g);
 // g / cbrt(det g): the same homography with determinant 1. Throws std::invalid_argument when g is not finite or its
 // determinant is zero, or so small that the division overflows.
 Eigen::Matrix3d normaliseDeterminant(const Eigen::Matrix3d& g);
+
+// Steps between homographies, in the coordinates that N takes theirs to: G + x = G N^-1 exp(A(x)) N. They are steps of
+// one size in all eight directions where N takes what is looked at to a size of about 1.
+class Sl3Steps {
+ public:
+  Sl3Steps() = default;
+  // N must be invertible.
+  explicit Sl3Steps(const Eigen::Matrix3d& n) : n_(n), n_inv_(n.inverse()) {}
+
+  const Eigen::Matrix3d& normalisation() const { return n_; }
+
+  // Of the determinant of `g`, but for rounding.
+  Eigen::Matrix3d plus(const Eigen::Matrix3d& g, const Vector8d& x) const;
+  // The x with plus(from, x) = to, up to scale. Not finite where sl3Log is not; throws as normaliseDeterminant does.
+  Vector8d minus(const Eigen::Matrix3d& to, const Eigen::Matrix3d& from) const;
+
+ private:
+  Eigen::Matrix3d n_ = Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d n_inv_ = Eigen::Matrix3d::Identity();
+};
 
 }  // namespace laparoscope_servo::geometry

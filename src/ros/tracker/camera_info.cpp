@@ -17,10 +17,6 @@ std::string text(const geometry::PinholeCamera& camera) {
   return stream.str();
 }
 
-bool same(const geometry::PinholeCamera& a, const geometry::PinholeCamera& b) {
-  return a.fx == b.fx && a.fy == b.fy && a.cx == b.cx && a.cy == b.cy;
-}
-
 // Binning of 0 means 1, as does a region of interest of 0 x 0 the whole image.
 struct Axis {
   const char* name;
@@ -231,7 +227,7 @@ void Intrinsics::update(const cv::Size& size, bool new_reference) {
   try {
     const geometry::PinholeCamera camera = cameraFromInfo(*info_, kind_, size);
     if (!reference_) reference_ = camera;
-    if (!same(camera, *reference_)) {
+    if (camera != *reference_) {
       error_ = "the intrinsics changed since the ROI was selected, from " + text(*reference_) + " to " + text(camera) +
                ": select it again";
       return;

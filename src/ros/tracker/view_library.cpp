@@ -6,10 +6,6 @@ namespace laparoscope_servo {
 
 namespace {
 
-bool same(const geometry::PinholeCamera& a, const geometry::PinholeCamera& b) {
-  return a.fx == b.fx && a.fy == b.fy && a.cx == b.cx && a.cy == b.cy;
-}
-
 bool same(const std::shared_ptr<const image::Lens>& a, const std::shared_ptr<const image::Lens>& b) {
   return a && b ? *a == *b : !a && !b;
 }
@@ -21,7 +17,7 @@ ViewLibrary::ViewLibrary(const TrackerParameters& parameters)
 
 // H between images of two cameras means nothing, and a ROI is in pixels of its lens.
 void ViewLibrary::followCamera(const Snapshot& snapshot) {
-  const bool other_camera = camera_ && snapshot.camera && !same(*camera_, *snapshot.camera);
+  const bool other_camera = camera_ && snapshot.camera && *camera_ != *snapshot.camera;
   if (other_camera || !same(lens_, snapshot.lens)) {
     if (!stamps_.empty()) forgotten_ = "; the camera's calibration changed, views stored before that are forgotten";
     store_ = tracking::ViewStore(parameters_.tracking, parameters_.views.capacity, snapshot.lens);

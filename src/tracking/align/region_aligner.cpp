@@ -34,10 +34,6 @@ bool usable(const EsmResult& estimate) {
 
 }  // namespace
 
-double farthestCorner(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b, const geometry::Rectangle& roi) {
-  return geometry::largestDistance(geometry::apply(a, roi.corners()), geometry::apply(b, roi.corners()));
-}
-
 Eigen::Matrix3d imageFromPatch(const geometry::Rectangle& roi) {
   Eigen::Matrix3d m = Eigen::Matrix3d::Identity();
   m.topRightCorner<2, 1>() << roi.x, roi.y;
@@ -112,7 +108,7 @@ Alignment RegionAligner::align(const cv::Mat& image, const EsmState& start, cons
     result.esm = esm_.align(pyramid_, result.esm.state, prior, 0);
     iterations += result.esm.iterations;
   };
-  if (usable(result.esm) && farthestCorner(shown_, result.esm.state.g, roi()) > kGateShift) {
+  if (usable(result.esm) && geometry::cornerDistance(shown_, result.esm.state.g, roi()) > kGateShift) {
     look(image, result.esm.state.g);
     refine();
   }
@@ -134,8 +130,7 @@ Alignment RegionAligner::align(const cv::Mat& image, const EsmState& start, cons
 }
 
 void RegionAligner::follow(const ShiftFit& fit, EsmResult& estimate) const {
-  const Eigen::Matrix3d& n = esm_.normalisation();
-  estimate.state.g = geometry::normaliseDeterminant(estimate.state.g * n.inverse() * geometry::sl3Exp(fit.x) * n);
+  estimate.state.g = geometry::normaliseDeterminant(esm_.steps().plus(estimate.state.g, fit.x));
   estimate.covariance = fit.covariance;
   estimate.corner_error = cornerError(estimate.state.g, roi(), fit.covariance);
   estimate.centre_error = centreError(estimate.state.g, roi(), fit.covariance);

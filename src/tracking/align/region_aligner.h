@@ -84,10 +84,6 @@ class RegionAligner {
   Eigen::Matrix3d shown_ = Eigen::Matrix3d::Identity();  // where the gates last looked
 };
 
-// px, how far the worst of the ROI's corners moves from one homography to the other; infinite where one of both has no
-// image of it.
-double farthestCorner(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b, const geometry::Rectangle& roi);
-
 // Pixels of a patch of the ROI's size to those of the image that the ROI is taken from.
 Eigen::Matrix3d imageFromPatch(const geometry::Rectangle& roi);
 

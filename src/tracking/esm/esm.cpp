@@ -51,8 +51,7 @@ double credibility(const MotionPrior& prior, const geometry::Vector8d& x) {
 
 void Esm::setReference(const image::RegionPyramid& reference, const geometry::Rectangle& roi) {
   roi_ = roi;
-  n_ = templateFromPixels(roi);
-  n_inv_ = n_.inverse();
+  steps_ = geometry::Sl3Steps(templateFromPixels(roi));
   levels_.clear();
   forgetLight();
   for (int l = 0; l < std::min(config_.levels, reference.levels()); ++l) {
@@ -151,7 +150,7 @@ bool Esm::solve(EsmLevel& level, const MotionPrior* prior, bool shift_only, EsmR
 }
 
 void Esm::takeStep(EsmLevel& level, const Vector10d& x, EsmState& state) {
-  state.g = state.g * n_inv_ * geometry::sl3Exp(x.head<8>()) * n_;
+  state.g = steps_.plus(state.g, x.head<8>());
   state.g /= std::cbrt(state.g.determinant());
   state.gain += x[8];
   state.bias += x[9];
@@ -292,7 +291,7 @@ EsmResult Esm::align(const image::RegionPyramid& current, const EsmState& start,
   result.corner_error = result.centre_error = std::numeric_limits<double>::infinity();
   deviation_.setZero();
   if (prior != nullptr && prior->predicted != start.g) {
-    deviation_ = geometry::sl3Log(geometry::normaliseDeterminant(n_ * prior->predicted.inverse() * start.g * n_inv_));
+    deviation_ = steps_.minus(start.g, prior->predicted);
     if (!deviation_.allFinite()) prior = nullptr;
   }
   const int first = std::min({coarsest, levels() - 1, current.levels() - 1});

@@ -97,7 +97,8 @@ class Esm {
   const geometry::Rectangle& roi() const { return roi_; }
   const EsmLevel& level(int l) const { return levels_[l]; }
   // N, see above.
-  const Eigen::Matrix3d& normalisation() const { return n_; }
+  const Eigen::Matrix3d& normalisation() const { return steps_.normalisation(); }
+  const geometry::Sl3Steps& steps() const { return steps_; }
 
  private:
   void warp(const image::RegionPyramid& current, EsmLevel& level, int l, const Eigen::Matrix3d& g);
@@ -124,8 +125,7 @@ class Esm {
   EsmConfig config_;
   std::shared_ptr<const image::Lens> lens_;
   geometry::Rectangle roi_;
-  Eigen::Matrix3d n_ = Eigen::Matrix3d::Identity();  // N: reference pixels to normalised template coordinates
-  Eigen::Matrix3d n_inv_ = Eigen::Matrix3d::Identity();
+  geometry::Sl3Steps steps_;  // N: reference pixels to normalised template coordinates
   std::vector<EsmLevel> levels_;
   BlockEquations equations_;
   ResidualScale residual_scale_;

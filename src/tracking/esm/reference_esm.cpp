@@ -42,7 +42,8 @@ Eigen::Vector2d gradient(const cv::Mat1d& patch, int j, int i) {
 
 Eigen::Matrix3d referenceEsm(const cv::Mat1f& reference, const geometry::Rectangle& roi, const cv::Mat1f& current,
                              const Eigen::Matrix3d& start, int iterations, double min_step) {
-  const Eigen::Matrix3d n = templateFromPixels(roi), n_inv = n.inverse();
+  const geometry::Sl3Steps steps(templateFromPixels(roi));
+  const Eigen::Matrix3d& n = steps.normalisation();
   const cv::Mat1d t = warped(reference, Eigen::Matrix3d::Identity(), roi);
   Eigen::Matrix3d g = start;
   for (int k = 0; k < iterations; ++k) {
@@ -61,9 +62,8 @@ Eigen::Matrix3d referenceEsm(const cv::Mat1f& reference, const geometry::Rectang
     }
     const geometry::Vector8d x = -jtj.ldlt().solve(jtr);  // x = -(J'J)^-1 J'r
     const Eigen::Matrix3d next =
-        geometry::normaliseDeterminant(g * n_inv * geometry::sl3Exp(x) * n);  // G <- G exp(A(x)), in template units
-    const double step =
-        geometry::largestDistance(geometry::apply(g, roi.corners()), geometry::apply(next, roi.corners()));
+        geometry::normaliseDeterminant(steps.plus(g, x));  // G <- G exp(A(x)), in template units
+    const double step = geometry::cornerDistance(g, next, roi);
     g = next;
     if (step < min_step) break;
   }

@@ -24,7 +24,7 @@ Eigen::Matrix3d Confirmation::expected() const {
 bool Confirmation::add(const EsmResult& found, const geometry::Rectangle& roi, const TrackRecord& record) {
   // The target may have been moving all the time.
   if (count_ > 0) {
-    const double apart = farthestCorner(expected(), found.state.g, roi);
+    const double apart = geometry::cornerDistance(expected(), found.state.g, roi);
     const double share = count_ == 1 ? kUnknownMotion : 0.0;
     const double unknown = share * std::hypot(roi.width, roi.height);
     const double allowed = allowedJump(record, config_, roi, 0.0, found.corner_error);

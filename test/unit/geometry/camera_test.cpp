@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 namespace laparoscope_servo::geometry {
@@ -23,6 +24,20 @@ TEST(PinholeCamera, InverseUndoesTheMatrix) {
 TEST(PinholeCamera, ReadsARowMajorMatrix) {
   const double k[9] = {400, 0, 320, 0, 300, 240, 0, 0, 1};
   EXPECT_EQ(cameraFromRowMajor(k).matrix(), kCamera.matrix());
+}
+
+TEST(PinholeCamera, EqualsItselfToTheLastDigit) {
+  EXPECT_TRUE(kCamera == kCamera);
+  EXPECT_FALSE(kCamera != kCamera);
+  for (double PinholeCamera::*field :
+       {&PinholeCamera::fx, &PinholeCamera::fy, &PinholeCamera::cx, &PinholeCamera::cy}) {
+    PinholeCamera other = kCamera;
+    other.*field = std::nextafter(other.*field, 1e9);
+    EXPECT_TRUE(other != kCamera);
+    other.*field = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_FALSE(other == other);
+    EXPECT_TRUE(other != other);
+  }
 }
 
 TEST(PinholeCamera, NamesWhatIsWrong) {

@@ -157,6 +157,17 @@ TEST(LargestDistance, OfWhatIsNotFiniteIsInfinite) {
   }
 }
 
+TEST(CornerDistance, IsInfiniteWhereThereIsNoImage) {
+  const Rectangle roi{100, 80, 101, 61};
+  Eigen::Matrix3d shift = Eigen::Matrix3d::Identity();
+  shift.topRightCorner<2, 1>() << 3.0, -4.0;
+  EXPECT_NEAR(cornerDistance(Eigen::Matrix3d::Identity(), shift, roi), 5.0, 1e-12);
+  Eigen::Matrix3d through_infinity = Eigen::Matrix3d::Identity();
+  through_infinity(2, 0) = -1.0 / 150.0;  // the line x = 150 crosses the rectangle
+  EXPECT_EQ(cornerDistance(Eigen::Matrix3d::Identity(), through_infinity, roi),
+            std::numeric_limits<double>::infinity());
+}
+
 TEST(IsConvex, RefusesWhatNoRectangleLooksLike) {
   using V = Eigen::Vector2d;
   EXPECT_TRUE(isConvex({V(0, 0), V(10, 1), V(9, 11), V(-1, 8)}));

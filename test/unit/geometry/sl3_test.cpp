@@ -157,5 +157,43 @@ TEST(NormaliseDeterminant, RefusesWhatIsNoHomography) {
   }
 }
 
+class Sl3StepsTest : public ::testing::Test {
+ protected:
+  Sl3StepsTest() {
+    Eigen::Matrix3d n;
+    n << 0.02, 0.0, -3.0, 0.0, 0.02, -2.0, 0.0, 0.0, 1.0;  // 100 px about (150, 100)
+    steps_ = Sl3Steps(n);
+    g_ = normaliseDeterminant(n.inverse() * sl3Exp(0.1 * Vector8d::LinSpaced(-1.0, 1.0)) * n);
+  }
+  Sl3Steps steps_;
+  Eigen::Matrix3d g_;
+};
+
+TEST_F(Sl3StepsTest, MinusUndoesPlusAndNothingIsNoStep) {
+  EXPECT_TRUE(steps_.plus(g_, Vector8d::Zero()).isApprox(g_, 1e-14));
+  EXPECT_LT(steps_.minus(g_, g_).norm(), 1e-12);
+  for (const Vector8d& x : elements()) {
+    if (x.norm() > 1.5) continue;  // further, the logarithm need not be the principal one
+    const Eigen::Matrix3d there = steps_.plus(g_, x);
+    EXPECT_NEAR(there.determinant(), 1.0, 1e-9);
+    EXPECT_LT((steps_.minus(there, g_) - x).norm(), 1e-9 * (1.0 + x.norm())) << x.transpose();
+    EXPECT_LT((steps_.minus(-3.0 * there, g_) - x).norm(), 1e-9 * (1.0 + x.norm())) << "up to scale";
+  }
+}
+
+// The first two directions are shifts: in N's coordinates by x, in the homography's own by x over N's scale.
+TEST_F(Sl3StepsTest, CountsInTheUnitsOfTheNormalisation) {
+  Vector8d x = Vector8d::Zero();
+  x[0] = 0.1;
+  const Eigen::Matrix3d moved = steps_.plus(Eigen::Matrix3d::Identity(), x);
+  EXPECT_NEAR(moved(0, 2) / moved(2, 2), 0.1 / 0.02, 1e-9);
+}
+
+TEST_F(Sl3StepsTest, KeepsWhatIsNotFinite) {
+  const Vector8d bad = Vector8d::Constant(std::numeric_limits<double>::quiet_NaN());
+  EXPECT_FALSE(steps_.plus(g_, bad).allFinite());
+  EXPECT_THROW(steps_.minus(g_, Eigen::Matrix3d::Zero()), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace laparoscope_servo::geometry

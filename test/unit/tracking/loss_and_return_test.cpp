@@ -62,7 +62,7 @@ class LossAndReturnTest : public ::testing::Test {
       const TrackResult r = tracker.track(image, kPeriod * frame);
       const bool tracking = r.state == State::kTracking;
       // While hidden there is nothing to track: the first image may still be SEARCHING's cause.
-      if (tracking && (hidden || test::cornerDistance(r.g, g, kRoi) >= kLie)) ++outcome.lies;
+      if (tracking && (hidden || geometry::cornerDistance(r.g, g, kRoi) >= kLie)) ++outcome.lies;
       if (hidden && !tracking) outcome.lost = true;
       if (!hidden && frame > kBefore && tracking && outcome.first_after < 0)
         outcome.first_after = frame - kBefore - kHidden;

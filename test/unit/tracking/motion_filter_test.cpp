@@ -59,16 +59,16 @@ TEST_F(MotionFilterTest, StartsAtTheReference) {
 TEST_F(MotionFilterTest, GoesOnByTheDampedLastMotion) {
   next(shift(3.0, -1.0));
   const Eigen::Matrix3d expected = filter_.predict(now_ + 0.04).predicted;
-  EXPECT_LT(farthestCorner(expected, shift(3.0 + 0.8 * 3.0, -1.8), kRoi), 1e-6);
-  EXPECT_LT(farthestCorner(filter_.predict(now_ + 0.08).predicted, shift(3.0 + 1.6 * 3.0, -2.6), kRoi), 1e-6);
-  EXPECT_LT(farthestCorner(filter_.predict(now_ - 1.0).predicted, shift(3.0, -1.0), kRoi),
+  EXPECT_LT(geometry::cornerDistance(expected, shift(3.0 + 0.8 * 3.0, -1.8), kRoi), 1e-6);
+  EXPECT_LT(geometry::cornerDistance(filter_.predict(now_ + 0.08).predicted, shift(3.0 + 1.6 * 3.0, -2.6), kRoi), 1e-6);
+  EXPECT_LT(geometry::cornerDistance(filter_.predict(now_ - 1.0).predicted, shift(3.0, -1.0), kRoi),
             1e-6);  // time does not run back
 }
 
 TEST_F(MotionFilterTest, StopsWhenTheRegionIsNotSeen) {
   next(shift(3.0, -1.0));
   filter_.stop();
-  EXPECT_LT(farthestCorner(filter_.predict(now_ + 0.04).predicted, shift(3.0, -1.0), kRoi), 1e-9);
+  EXPECT_LT(geometry::cornerDistance(filter_.predict(now_ + 0.04).predicted, shift(3.0, -1.0), kRoi), 1e-9);
 }
 
 TEST_F(MotionFilterTest, IsSurerOfATargetThatIsAsExpected) {
@@ -106,7 +106,7 @@ TEST_F(MotionFilterTest, IsLessSureAfterImagesThatWereMissed) {
 TEST_F(MotionFilterTest, RestartsWithoutAVelocity) {
   next(shift(3.0, -1.0));
   filter_.restart(seen(shift(40.0, 0.0)), 1.0);
-  EXPECT_LT(farthestCorner(filter_.predict(1.04).predicted, shift(40.0, 0.0), kRoi), 1e-9);
+  EXPECT_LT(geometry::cornerDistance(filter_.predict(1.04).predicted, shift(40.0, 0.0), kRoi), 1e-9);
   EXPECT_EQ(filter_.lastStamp(), 1.0);
 }
 
@@ -143,8 +143,8 @@ TEST_F(MotionFilterTest, TheCoveredPartFollowsWhatIsSeen) {
     const EsmResult known = esm.align(image, start, &prior);
     esm.forgetLight();
     const EsmResult alone = esm.align(image, start);
-    with += farthestCorner(known.state.g, truth, kRoi) / 20.0;
-    without += farthestCorner(alone.state.g, truth, kRoi) / 20.0;
+    with += geometry::cornerDistance(known.state.g, truth, kRoi) / 20.0;
+    without += geometry::cornerDistance(alone.state.g, truth, kRoi) / 20.0;
     expected += known.corner_error / 20.0;
   }
   EXPECT_LT(with, 0.7 * without);

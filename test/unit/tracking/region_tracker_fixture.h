@@ -35,7 +35,7 @@ class RegionTrackerTest : public ::testing::Test {
     ASSERT_EQ(result.state, State::kTracking);
     ASSERT_TRUE(result.selected_now);
   }
-  static double error(const TrackResult& r, int frame) { return test::cornerDistance(r.g, motion(frame), kRoi); }
+  static double error(const TrackResult& r, int frame) { return geometry::cornerDistance(r.g, motion(frame), kRoi); }
 };
 
 }  // namespace laparoscope_servo::tracking

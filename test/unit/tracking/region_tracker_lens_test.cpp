@@ -54,7 +54,7 @@ class RegionTrackerLens : public ::testing::TestWithParam<image::Distortion> {
     return result;
   }
 
-  static double error(const TrackResult& r, int frame) { return test::cornerDistance(r.g, motion(frame), kRoi); }
+  static double error(const TrackResult& r, int frame) { return geometry::cornerDistance(r.g, motion(frame), kRoi); }
 
   const image::Lens lens_;
   const test::LensView view_;
@@ -145,7 +145,7 @@ TEST_P(RegionTrackerLens, FindsTheRegionAgainElsewhere) {
     TrackResult r;
     for (int k = 0; k < 12 && r.state != State::kTracking; ++k) r = with.track(there, 0.04 * ++frame);
     ASSERT_EQ(r.state, State::kTracking) << (features ? "features: " : "correlation: ") << r.reason;
-    EXPECT_LT(test::cornerDistance(r.g, away, kRoi), 0.2);
+    EXPECT_LT(geometry::cornerDistance(r.g, away, kRoi), 0.2);
   }
 }
 

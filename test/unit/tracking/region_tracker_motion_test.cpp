@@ -69,7 +69,7 @@ TEST_F(RegionTrackerMotion, FollowsWithIt) {
     const TrackResult r = tracker_.track(image(frame), 0.04 * frame, byRobot(frame - 1, frame));
     ASSERT_EQ(r.state, State::kTracking) << frame << ": " << r.reason;
     EXPECT_TRUE(r.motion_used);
-    EXPECT_LT(test::cornerDistance(r.g, truth(frame), kRoi), 0.3) << frame;
+    EXPECT_LT(geometry::cornerDistance(r.g, truth(frame), kRoi), 0.3) << frame;
   }
 }
 
@@ -91,7 +91,7 @@ TEST_F(RegionTrackerMotion, GoesOnWhenItIsMissingForAWhile) {
     const TrackResult r = tracker_.track(image(at), 0.04 * frame, motion);
     ASSERT_EQ(r.state, State::kTracking) << frame << ": " << r.reason;
     EXPECT_EQ(r.motion_used, motion.has_value());
-    EXPECT_LT(test::cornerDistance(r.g, truth(at), kRoi), 0.3) << frame;
+    EXPECT_LT(geometry::cornerDistance(r.g, truth(at), kRoi), 0.3) << frame;
   }
 }
 
@@ -110,7 +110,7 @@ TEST_F(RegionTrackerMotion, WhatIsNoMotionIsIgnored) {
     const TrackResult r = tracker_.track(image(0), 0.04 * frame, bad);
     ASSERT_EQ(r.state, State::kTracking) << bad << '\n' << r.reason;
     EXPECT_FALSE(r.motion_used);
-    EXPECT_LT(test::cornerDistance(r.g, truth(0), kRoi), 0.3);
+    EXPECT_LT(geometry::cornerDistance(r.g, truth(0), kRoi), 0.3);
     ++frame;
   }
 }
@@ -125,7 +125,7 @@ TEST_F(RegionTrackerMotion, WhatLeadsNowhereDoesNoHarm) {
       const TrackResult r = tracker_.track(image(0), 0.04 * frame, wrong);
       ASSERT_EQ(r.state, State::kTracking) << frame << ": " << r.reason;
       EXPECT_FALSE(r.motion_used);
-      EXPECT_LT(test::cornerDistance(r.g, truth(0), kRoi), 0.3) << frame;
+      EXPECT_LT(geometry::cornerDistance(r.g, truth(0), kRoi), 0.3) << frame;
     }
   }
 }
@@ -136,7 +136,7 @@ TEST_F(RegionTrackerMotion, SaysWhereToLookForWhatIsLost) {
   TrackResult r;
   for (int frame = 2; frame <= 6; ++frame) r = tracker_.track(image(1), 0.04 * frame, byRobot(0, 1));
   ASSERT_EQ(r.state, State::kTracking) << r.reason;
-  EXPECT_LT(test::cornerDistance(r.g, truth(1), kRoi), 0.3);
+  EXPECT_LT(geometry::cornerDistance(r.g, truth(1), kRoi), 0.3);
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ TEST_F(RegionTrackerRecallTest, FindsTheRegionOfAnOlderImageWhenConfirmed) {
   tracker_.recall(scene_, 3.0, kRoi, kNow);
   EXPECT_TRUE(tracker_.hasRoi());
   EXPECT_EQ(imagesUntilFound(), TrackerConfig().quality.confirmations);
-  EXPECT_LT(test::cornerDistance(last_.g, g_, kRoi), 1.0);
+  EXPECT_LT(geometry::cornerDistance(last_.g, g_, kRoi), 1.0);
   EXPECT_EQ(last_.reference_stamp, 3.0);
 }
 

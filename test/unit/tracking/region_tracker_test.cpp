@@ -99,7 +99,7 @@ TEST_F(RegionTrackerTest, SaysSearchingThenLostWhenTheViewIsGoneAndComesBackConf
     }
   }
   EXPECT_EQ(r.state, State::kTracking) << r.reason;
-  EXPECT_LT(test::cornerDistance(r.g, elsewhere, kRoi), 0.5);
+  EXPECT_LT(geometry::cornerDistance(r.g, elsewhere, kRoi), 0.5);
 }
 
 // It has gone on while nobody saw it, and goes on while it is being confirmed.
@@ -119,7 +119,7 @@ TEST_F(RegionTrackerTest, ComesBackWhileItIsMoving) {
   for (; seen < 6; ++seen, ++frame) {
     const TrackResult r = tracker_.track(test::view(scene_, at(frame), 1.0, 0.0, 2.0, frame), 0.04 * frame);
     if (r.state != State::kTracking) continue;
-    EXPECT_LT(test::cornerDistance(r.g, at(frame), kRoi), 0.5);
+    EXPECT_LT(geometry::cornerDistance(r.g, at(frame), kRoi), 0.5);
     break;
   }
   EXPECT_LT(seen, 6);
@@ -142,7 +142,7 @@ TEST_F(RegionTrackerTest, FollowsTheRegionPartlyOutOfTheImage) {
     g(0, 2) = -6.0 * frame;  // in the end 34 of 112 columns are outside
     const TrackResult r = tracker_.track(test::view(scene_, g, 1.0, 0.0, 2.0, frame), 0.04 * frame);
     ASSERT_EQ(r.state, State::kTracking) << frame << ": " << r.reason;
-    EXPECT_LT(test::cornerDistance(r.g, g, kRoi), 1.0) << frame;
+    EXPECT_LT(geometry::cornerDistance(r.g, g, kRoi), 1.0) << frame;
   }
 }
 
@@ -162,7 +162,7 @@ TEST_F(RegionTrackerTest, FollowsTheRegionIntoTheRoundBorderOfThePicture) {
     g(0, 2) = -4.0 * frame;
     r = tracker_.track(throughTheScope(g, 100 + frame), 0.04 * frame);
     ASSERT_EQ(r.state, State::kTracking) << frame << ": " << r.reason;
-    EXPECT_LT(test::cornerDistance(r.g, g, kRoi), 1.0) << frame;
+    EXPECT_LT(geometry::cornerDistance(r.g, g, kRoi), 1.0) << frame;
   }
   const cv::Rect roi(110 - 4 * 19, 80, 112, 112);
   const double in_picture = cv::countNonZero(picture(roi)) / static_cast<double>(roi.area());

@@ -45,7 +45,7 @@ TEST_F(TrackerSessionLens, FollowsKnownMotionInRectifiedPixels) {
   for (std::size_t k = 0; k < motion_.size(); ++k) {
     const Processed processed = session.process(image(motion_[k]), at(0.04 * static_cast<double>(k)));
     ASSERT_EQ(processed.result.state, State::kTracking) << k << ": " << processed.result.reason;
-    EXPECT_LT(tracking::farthestCorner(processed.result.g, motion_[k], kRoi), 0.2) << k;
+    EXPECT_LT(geometry::cornerDistance(processed.result.g, motion_[k], kRoi), 0.2) << k;
     ASSERT_TRUE(processed.camera);
     EXPECT_EQ(processed.camera->fx, info_.P[0]);
     EXPECT_TRUE(processed.lens);

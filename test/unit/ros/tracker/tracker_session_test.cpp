@@ -74,7 +74,7 @@ TEST_F(TrackerSessionTest, FollowsKnownMotion) {
     const Processed processed =
         session.process(test_support::view(image_, motion[k]), at(0.04 * static_cast<double>(k)));
     ASSERT_EQ(processed.result.state, State::kTracking) << k << ": " << processed.result.reason;
-    EXPECT_LT(tracking::farthestCorner(processed.result.g, motion[k], kRoi), 0.5) << k;
+    EXPECT_LT(geometry::cornerDistance(processed.result.g, motion[k], kRoi), 0.5) << k;
     EXPECT_NEAR(processed.result.g.determinant(), 1.0, 1e-9);
   }
 }

@@ -25,16 +25,6 @@ class RegionAlignerTest : public ::testing::Test {
   }
 };
 
-TEST(FarthestCorner, IsInfiniteWhereThereIsNoImage) {
-  Eigen::Matrix3d shift = Eigen::Matrix3d::Identity();
-  shift.topRightCorner<2, 1>() << 3.0, -4.0;
-  EXPECT_NEAR(farthestCorner(Eigen::Matrix3d::Identity(), shift, kRoi), 5.0, 1e-12);
-  Eigen::Matrix3d through_infinity = Eigen::Matrix3d::Identity();
-  through_infinity(2, 0) = -1.0 / 150.0;  // the line x = 150 crosses the ROI
-  EXPECT_EQ(farthestCorner(Eigen::Matrix3d::Identity(), through_infinity, kRoi),
-            std::numeric_limits<double>::infinity());
-}
-
 TEST_F(RegionAlignerTest, FindsTheMotionInWhateverChannels) {
   const Eigen::Matrix3d truth = test::randomHomography(kRoi, 3.0, rng_);
   const cv::Mat image = test::view(scene_, truth, 0.9, 5.0, 1.0, 3);
@@ -42,7 +32,7 @@ TEST_F(RegionAlignerTest, FindsTheMotionInWhateverChannels) {
     config_.esm.channels = channels;
     RegionAligner aligner = alignerOn(scene_);
     const Alignment found = aligner.align(image, EsmState(), nullptr, 32.0);
-    EXPECT_LT(farthestCorner(found.esm.state.g, truth, kRoi), 0.15);
+    EXPECT_LT(geometry::cornerDistance(found.esm.state.g, truth, kRoi), 0.15);
     EXPECT_GT(found.visible_fraction, 0.97);
     EXPECT_GT(found.zncc, 0.9);
     EXPECT_GT(aligner.detail(), 0.8);
@@ -56,7 +46,7 @@ TEST_F(RegionAlignerTest, TracksAnImageWithoutColourByItsReferenceWithColour) {
   cv::cvtColor(test::view(scene_, truth), mono, cv::COLOR_BGR2GRAY);
   config_.esm.channels = TrackedChannels::kColour;
   RegionAligner aligner = alignerOn(scene_);
-  EXPECT_LT(farthestCorner(aligner.align(mono, EsmState(), nullptr, 32.0).esm.state.g, truth, kRoi), 0.3);
+  EXPECT_LT(geometry::cornerDistance(aligner.align(mono, EsmState(), nullptr, 32.0).esm.state.g, truth, kRoi), 0.3);
 }
 
 TEST_F(RegionAlignerTest, LeavesOutWhatIsCovered) {
@@ -66,7 +56,7 @@ TEST_F(RegionAlignerTest, LeavesOutWhatIsCovered) {
   scene_(cv::Rect(10, 10, 65, 40)).copyTo(image(cv::Rect(155, 150, 65, 40)));  // tissue from elsewhere
   RegionAligner aligner = alignerOn(scene_);
   const Alignment found = aligner.align(image, EsmState(), nullptr, 32.0);
-  EXPECT_LT(farthestCorner(found.esm.state.g, truth, kRoi), 0.5);
+  EXPECT_LT(geometry::cornerDistance(found.esm.state.g, truth, kRoi), 0.5);
   EXPECT_LT(found.visible_fraction, 0.45);
   EXPECT_GT(found.visible_fraction, 0.25);
   const cv::Mat1f weights = aligner.weights();

@@ -39,9 +39,9 @@ geometry::Vector8d someMotion() {
 }
 
 double cornersApart(const geometry::Vector8d& a, const geometry::Vector8d& b) {
-  const Eigen::Matrix3d n = templateFromPixels(kRoi);
-  const Eigen::Matrix3d from = n.inverse() * geometry::sl3Exp(a) * n, to = n.inverse() * geometry::sl3Exp(b) * n;
-  return geometry::largestDistance(geometry::apply(from, kRoi.corners()), geometry::apply(to, kRoi.corners()));
+  const geometry::Sl3Steps steps(templateFromPixels(kRoi));
+  const Eigen::Matrix3d identity = Eigen::Matrix3d::Identity();
+  return geometry::cornerDistance(steps.plus(identity, a), steps.plus(identity, b), kRoi);
 }
 
 TEST(ShiftFit, FindsTheHomographyThatMovedTheBlocks) {

@@ -33,7 +33,7 @@ class EsmTest : public ::testing::Test {
   double errorAfter(Esm& esm, const Eigen::Matrix3d& truth, const cv::Mat& image, EsmResult* out = nullptr) {
     const EsmResult result = esm.align(pyramidOf(image, esm.levels()), EsmState());
     if (out != nullptr) *out = result;
-    return test::cornerDistance(result.state.g, truth, kRoi);
+    return geometry::cornerDistance(result.state.g, truth, kRoi);
   }
 };
 
@@ -162,7 +162,7 @@ TEST_F(EsmTest, ARegionPartlyOutOfTheImageIsStillAligned) {
   EsmState start;
   start.g(0, 2) = -118.0;
   const EsmResult result = esm.align(pyramidOf(image), start);
-  EXPECT_LT(test::cornerDistance(result.state.g, truth, kRoi), 0.5);
+  EXPECT_LT(geometry::cornerDistance(result.state.g, truth, kRoi), 0.5);
 }
 
 TEST_F(EsmTest, ReportsWhatItCannotAlign) {

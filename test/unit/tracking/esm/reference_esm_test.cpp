@@ -44,7 +44,7 @@ TEST_F(ReferenceEsm, FindsTheMotion) {
   cv::RNG rng(3);
   for (int trial = 0; trial < 10; ++trial) {
     const Eigen::Matrix3d truth = test::randomHomography(kRoi, 2.0, rng);
-    EXPECT_LT(test::cornerDistance(plain(test::view(scene_, truth), 30), truth, kRoi), 0.1) << trial;
+    EXPECT_LT(geometry::cornerDistance(plain(test::view(scene_, truth), 30), truth, kRoi), 0.1) << trial;
   }
 }
 
@@ -53,7 +53,7 @@ TEST_F(ReferenceEsm, AndTheFastOneComeToTheSamePlace) {
   cv::RNG rng(4);
   for (int trial = 0; trial < 10; ++trial) {
     const cv::Mat image = test::view(scene_, test::randomHomography(kRoi, 2.0, rng), 1.0, 0.0, 2.0, 5 + trial);
-    EXPECT_LT(test::cornerDistance(plain(image, 50), fast(image, 50), kRoi), 0.02) << trial;
+    EXPECT_LT(geometry::cornerDistance(plain(image, 50), fast(image, 50), kRoi), 0.02) << trial;
   }
 }
 
@@ -62,9 +62,9 @@ TEST_F(ReferenceEsm, AndTheFastOneTakeTheSameFirstStep) {
   for (int trial = 0; trial < 10; ++trial) {
     const cv::Mat image = test::view(scene_, test::randomHomography(kRoi, 2.0, rng));
     const Eigen::Matrix3d one = plain(image, 1);
-    const double length = test::cornerDistance(one, Eigen::Matrix3d::Identity(), kRoi);
+    const double length = geometry::cornerDistance(one, Eigen::Matrix3d::Identity(), kRoi);
     ASSERT_GT(length, 0.5);
-    EXPECT_LT(test::cornerDistance(one, fast(image, 1), kRoi), 0.05 * length) << trial;
+    EXPECT_LT(geometry::cornerDistance(one, fast(image, 1), kRoi), 0.05 * length) << trial;
   }
 }
 

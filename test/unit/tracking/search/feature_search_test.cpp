@@ -40,7 +40,7 @@ TEST_F(FeatureSearchTest, FindsTheRegionMovedTurnedAndZoomed) {
       const Eigen::Matrix3d g = motion(zoom, angle, 0.2, {200.0, 210.0});
       const std::vector<FeatureCandidate> found = find(seen(g));
       ASSERT_FALSE(found.empty()) << zoom << ' ' << angle;
-      EXPECT_LT(test::cornerDistance(found[0].g, g, kRoi), 15.0) << zoom << ' ' << angle;
+      EXPECT_LT(geometry::cornerDistance(found[0].g, g, kRoi), 15.0) << zoom << ' ' << angle;
       EXPECT_NEAR(found[0].g.determinant(), 1.0, 1e-9);
       EXPECT_GE(found[0].inliers, SearchConfig().min_inliers);
     }
@@ -54,7 +54,7 @@ TEST_F(FeatureSearchTest, AnImageThatIsScaledDownGivesPlacesInItsOwnPixels) {
   const Eigen::Matrix3d g = motion(1.1, 0.5, 0.0, {250.0, 170.0});
   const std::vector<FeatureCandidate> found = find(seen(g));
   ASSERT_FALSE(found.empty());
-  EXPECT_LT(test::cornerDistance(found[0].g, g, kRoi), 15.0);
+  EXPECT_LT(geometry::cornerDistance(found[0].g, g, kRoi), 15.0);
 }
 
 TEST_F(FeatureSearchTest, TakesGreyImages) {
@@ -65,14 +65,14 @@ TEST_F(FeatureSearchTest, TakesGreyImages) {
   cv::cvtColor(seen(g), moved, cv::COLOR_BGR2GRAY);
   const std::vector<FeatureCandidate> found = find(moved);
   ASSERT_FALSE(found.empty());
-  EXPECT_LT(test::cornerDistance(found[0].g, g, kRoi), 15.0);
+  EXPECT_LT(geometry::cornerDistance(found[0].g, g, kRoi), 15.0);
 }
 
 TEST_F(FeatureSearchTest, BearsAMixtureWithNegativeWeights) {
   const Eigen::Matrix3d g = motion(1.0, 0.4, 0.0, {230.0, 190.0});
   const std::vector<FeatureCandidate> found = search_.find(seen(g), {-0.2f, 0.6f, 0.2f}, views_);
   ASSERT_FALSE(found.empty());
-  EXPECT_LT(test::cornerDistance(found[0].g, g, kRoi), 15.0);
+  EXPECT_LT(geometry::cornerDistance(found[0].g, g, kRoi), 15.0);
 }
 
 TEST_F(FeatureSearchTest, FindsNothingInSmokeOrDarknessOrATinyImage) {
@@ -145,7 +145,7 @@ TEST_F(FeatureSearchTest, FindsARegionByItsSurroundings) {
   cv::fillConvexPoly(image, corners, cv::Scalar(90, 90, 95));
   const std::vector<FeatureCandidate> found = find(image);
   ASSERT_FALSE(found.empty());
-  EXPECT_LT(test::cornerDistance(found[0].g, g, kRoi), 15.0);
+  EXPECT_LT(geometry::cornerDistance(found[0].g, g, kRoi), 15.0);
 }
 
 TEST_F(FeatureSearchTest, APassInPiecesFindsTheSameAsAWholeOne) {
@@ -193,7 +193,7 @@ TEST_F(FeatureSearchTest, AViewFindsWhatTheReferenceDoesNot) {
   search_.restart();
   const std::vector<FeatureCandidate> found = find(image);
   ASSERT_FALSE(found.empty());
-  EXPECT_LT(test::cornerDistance(found[0].g, now, kRoi), 15.0);
+  EXPECT_LT(geometry::cornerDistance(found[0].g, now, kRoi), 15.0);
 }
 
 TEST_F(FeatureSearchTest, TheSameImageGivesTheSameCandidates) {

@@ -48,7 +48,7 @@ class RegionSearchTest : public ::testing::Test {
       Attempt attempt;
       attempt.evidence.esm = s.aligner.align(image, place->start, nullptr, 32.0).esm;
       attempt.evidence.zncc = 0.1 * static_cast<double>(tried_.size() % 3);  // the second is the best
-      if (!(test::cornerDistance(attempt.evidence.esm.state.g, truth_, kRoi) < 1.0)) attempt.doubt = "elsewhere";
+      if (!(geometry::cornerDistance(attempt.evidence.esm.state.g, truth_, kRoi) < 1.0)) attempt.doubt = "elsewhere";
       if (s.search.judge(attempt, s.aligner)) break;
     }
     return s.search.best();
@@ -69,7 +69,7 @@ TEST_F(RegionSearchTest, LooksFirstWhereItWasLast) {
   EXPECT_EQ(searchIn(seen(), s).doubt, "");
   ASSERT_EQ(tried_.size(), 1u);
   EXPECT_EQ(tried_[0].by, Suggestion::kLast);
-  EXPECT_LT(test::cornerDistance(tried_[0].start.g, truth_, kRoi), 3.0);
+  EXPECT_LT(geometry::cornerDistance(tried_[0].start.g, truth_, kRoi), 3.0);
 }
 
 TEST_F(RegionSearchTest, ThenByFeaturesAndThenByCorrelation) {
@@ -77,7 +77,7 @@ TEST_F(RegionSearchTest, ThenByFeaturesAndThenByCorrelation) {
   EXPECT_EQ(searchIn(seen(), s).doubt, "");
   EXPECT_EQ(s.search.suggestedBy(), Suggestion::kFeatures);
   EXPECT_EQ(tried_.back().by, Suggestion::kFeatures);
-  EXPECT_LT(test::cornerDistance(tried_.back().start.g, truth_, kRoi), 15.0);
+  EXPECT_LT(geometry::cornerDistance(tried_.back().start.g, truth_, kRoi), 15.0);
   // Nothing is believed there: the search goes on. Correlation turns nothing; features do.
   truth_ = shift(0.0, 0.0);
   searchIn(test::view(scene_, shift(60.0, -40.0), 1.0, 0.0, 2.0), s);
@@ -150,7 +150,7 @@ TEST_F(RegionSearchTest, WhatWaitsForConfirmationComesFirst) {
   EXPECT_EQ(searchIn(seen(), s, shift(0.0, 5.0)).doubt, "");
   ASSERT_EQ(tried_.size(), 1u);
   EXPECT_EQ(tried_[0].by, Suggestion::kConfirmation);
-  EXPECT_LT(test::cornerDistance(tried_[0].start.g, truth_, kRoi), 1e-9);
+  EXPECT_LT(geometry::cornerDistance(tried_[0].start.g, truth_, kRoi), 1e-9);
 }
 
 TEST_F(RegionSearchTest, AlignsNoPlaceThatDoesNotLookLikeTheRegionAndSaysSo) {
@@ -214,7 +214,7 @@ TEST_F(RegionSearchTest, KeepsClearAndNewViewsThatItThenFinds) {
       s.search.keepView(test::view(changed, close, 1.0, 0.0, 2.0), clear, close, s.aligner);
     searchIn(now, s);
     for (const SearchPlace& place : tried_) {
-      if (test::cornerDistance(place.start.g, truth_, kRoi) < 40.0) return true;
+      if (geometry::cornerDistance(place.start.g, truth_, kRoi) < 40.0) return true;
     }
     return false;
   };

@@ -35,8 +35,8 @@ TEST_F(RelocalisationTest, FindsTheRegionWhereverItMoved) {
     g.topRightCorner<2, 1>() << x, y;
     const std::vector<Candidate> found = search(test::view(scene_, g), Eigen::Matrix3d::Identity());
     ASSERT_FALSE(found.empty());
-    EXPECT_LT(test::cornerDistance(found[0].g, g, kRoi), 4.0);  // one pixel of the level
-    EXPECT_GT(found[0].score, 0.7);                             // half a pixel of the level off, fine texture has gone
+    EXPECT_LT(geometry::cornerDistance(found[0].g, g, kRoi), 4.0);  // one pixel of the level
+    EXPECT_GT(found[0].score, 0.7);  // half a pixel of the level off, fine texture has gone
   }
 }
 
@@ -47,7 +47,7 @@ TEST_F(RelocalisationTest, KeepsTheLastScaleAndRotation) {
   moved(0, 2) += 120.0;
   const std::vector<Candidate> found = search(test::view(scene_, moved), turn / std::cbrt(turn.determinant()));
   ASSERT_FALSE(found.empty());
-  EXPECT_LT(test::cornerDistance(found[0].g, moved, kRoi), 5.0);
+  EXPECT_LT(geometry::cornerDistance(found[0].g, moved, kRoi), 5.0);
   EXPECT_NEAR(found[0].g.determinant(), 1.0, 1e-9);
 }
 
@@ -56,7 +56,7 @@ TEST_F(RelocalisationTest, CandidatesAreOrderedAndApart) {
   ASSERT_GE(found.size(), 2u);
   for (std::size_t k = 1; k < found.size(); ++k) {
     EXPECT_LE(found[k].score, found[k - 1].score);
-    for (std::size_t l = 0; l < k; ++l) EXPECT_GT(test::cornerDistance(found[k].g, found[l].g, kRoi), 10.0);
+    for (std::size_t l = 0; l < k; ++l) EXPECT_GT(geometry::cornerDistance(found[k].g, found[l].g, kRoi), 10.0);
   }
 }
 

@@ -32,7 +32,7 @@ TEST_F(StartCheckTest, MovesToWhereTheRegionIsNearby) {
     const Eigen::Matrix3d truth = motion(zoom, angle, 10.0, -6.0);
     const cv::Mat image = test::view(scene_, truth, 0.7, 20.0, 2.0);
     const CheckedStart at = check_.look(image, motion(zoom, angle, 35.0 - 10.0, 12.0 - 6.0));
-    EXPECT_LT(test::cornerDistance(at.g, truth, kRoi), 6.0) << zoom << ' ' << angle;
+    EXPECT_LT(geometry::cornerDistance(at.g, truth, kRoi), 6.0) << zoom << ' ' << angle;
     EXPECT_GT(at.correlation, 0.5) << zoom << ' ' << angle;
     EXPECT_NEAR(at.g.determinant(), 1.0, 1e-9);
   }
@@ -59,7 +59,7 @@ TEST_F(StartCheckTest, TakesGreyImagesAndSmallRegions) {
   Eigen::Matrix3d truth = Eigen::Matrix3d::Identity();
   truth(0, 2) = 5.0;
   const CheckedStart at = check_.look(test::view(grey, truth), Eigen::Matrix3d::Identity());
-  EXPECT_LT(test::cornerDistance(at.g, truth, small), 1.5);
+  EXPECT_LT(geometry::cornerDistance(at.g, truth, small), 1.5);
   EXPECT_GT(at.correlation, 0.8);
 }
 
@@ -70,7 +70,7 @@ TEST_F(StartCheckTest, ThroughALens) {
   check.setReference(view(scene_, Eigen::Matrix3d::Identity()), kRoi, image::kLuma);
   const Eigen::Matrix3d truth = motion(1.0, 0.0, 20.0, 12.0);
   const CheckedStart at = check.look(view(scene_, truth), Eigen::Matrix3d::Identity());
-  EXPECT_LT(test::cornerDistance(at.g, truth, kRoi), 6.0);
+  EXPECT_LT(geometry::cornerDistance(at.g, truth, kRoi), 6.0);
   EXPECT_GT(at.correlation, 0.6);
 }
 
