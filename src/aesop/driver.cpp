@@ -9,10 +9,6 @@ namespace laparoscope_servo::aesop {
 
 namespace {
 
-void append(const std::string& group, const std::vector<std::string>& errors, std::vector<std::string>& all) {
-  for (const std::string& error : errors) all.push_back(group + "/" + error);
-}
-
 const DriverConfig& checked(const DriverConfig& config) {
   validation::throwErrors("driver", validate(config));
   return config;
@@ -35,11 +31,11 @@ std::string insertionPointError(const Eigen::Vector3d& point) {
 
 std::vector<std::string> validate(const DriverConfig& config) {
   std::vector<std::string> errors;
-  append("kinematics", validate(config.kinematics), errors);
-  append("motion", validate(config.motion), errors);
-  append("command", validate(config.command), errors);
-  append("link", validate(config.session), errors);
-  append("monitor", validate(config.monitor), errors);
+  validation::addGroup("kinematics", validate(config.kinematics), errors);
+  validation::addGroup("motion", validate(config.motion), errors);
+  validation::addGroup("command", validate(config.command), errors);
+  validation::addGroup("link", validate(config.session), errors);
+  validation::addGroup("monitor", validate(config.monitor), errors);
   const std::string point = insertionPointError(config.insertion_point);
   if (!point.empty()) errors.push_back(point);
   return errors;

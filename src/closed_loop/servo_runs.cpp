@@ -8,6 +8,8 @@
 #include <random>
 #include <stdexcept>
 
+#include "laparoscope_servo/robust/median.h"
+
 namespace laparoscope_servo::closed_loop {
 
 namespace {
@@ -93,10 +95,6 @@ void divideRest(double count, RunSummary& run) {
 void printSpread(const std::string& name, std::vector<double> values, const std::string& unit, std::ostream& stream) {
   std::replace_if(
       values.begin(), values.end(), [](double v) { return std::isnan(v); }, std::numeric_limits<double>::infinity());
-  std::sort(values.begin(), values.end());
-  const auto rank = [&](double share) {
-    return values[static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size()))) - 1];
-  };
   stream << name << ": median ";
   const auto print = [&](double value) {
     if (std::isinf(value)) {
@@ -105,11 +103,11 @@ void printSpread(const std::string& name, std::vector<double> values, const std:
       stream << value << unit;
     }
   };
-  print(rank(0.5));
+  print(robust::nearestRank(values, 0.5));
   stream << ", 95 % ";
-  print(rank(0.95));
+  print(robust::nearestRank(values, 0.95));
   stream << ", worst ";
-  print(values.back());
+  print(robust::nearestRank(values, 1.0));
   stream << '\n';
 }
 

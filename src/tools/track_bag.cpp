@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "laparoscope_servo/robust/median.h"
 #include "laparoscope_servo/tracking/region_tracker.h"
 #include "ros/common/parameters.h"
 #include "ros/playback/tracker_offline.h"
@@ -83,20 +84,16 @@ class ProgressLine {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-double quantile(std::vector<double> values, double share) {
-  const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1) + 0.5);
-  std::nth_element(values.begin(), values.begin() + rank, values.end());
-  return values[static_cast<std::size_t>(rank)];
-}
-
 void printSummary(const OfflineSummary& summary) {
   std::fprintf(stderr, "%zu images:", summary.images);
   for (std::size_t state = 0; state < summary.by_state.size(); ++state) {
     const char* name = laparoscope_servo::tracking::stateName(static_cast<laparoscope_servo::tracking::State>(state));
     if (summary.by_state[state] > 0) std::fprintf(stderr, " %s %zu", name, summary.by_state[state]);
   }
-  std::fprintf(stderr, "; time per image: median %.2f ms, 99 %% below %.2f ms\n", 1e3 * quantile(summary.times, 0.5),
-               1e3 * quantile(summary.times, 0.99));
+  std::vector<double> times = summary.times;
+  const double median = laparoscope_servo::robust::median(times);
+  std::fprintf(stderr, "; time per image: median %.2f ms, 99 %% below %.2f ms\n", 1e3 * median,
+               1e3 * laparoscope_servo::robust::nearestRank(times, 0.99));
 }
 
 volatile std::sig_atomic_t stop_signal = 0;

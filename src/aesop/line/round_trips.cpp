@@ -1,7 +1,8 @@
 #include "laparoscope_servo/aesop/round_trips.h"
 
-#include <algorithm>
 #include <cmath>
+
+#include "laparoscope_servo/robust/median.h"
 
 namespace laparoscope_servo::aesop {
 
@@ -28,14 +29,10 @@ RoundTripSummary RoundTrips::summary() const {
     const std::size_t before = (next_ + k - 1) % times_.size();
     summary.jitter += std::abs(times_[at] - times_[before]) / static_cast<double>(times_.size() - 1);
   }
-  std::vector<double> sorted = times_;
-  std::sort(sorted.begin(), sorted.end());
-  const auto rank = [&](double share) {
-    return sorted[static_cast<std::size_t>(std::ceil(share * static_cast<double>(sorted.size()))) - 1];
-  };
-  summary.median = rank(0.5);
-  summary.p99 = rank(0.99);
-  summary.longest = sorted.back();
+  std::vector<double> times = times_;
+  summary.median = robust::nearestRank(times, 0.5);
+  summary.p99 = robust::nearestRank(times, 0.99);
+  summary.longest = robust::nearestRank(times, 1.0);
   return summary;
 }
 

@@ -1,9 +1,10 @@
 #include "ros/common/recent_values.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <vector>
+
+#include "laparoscope_servo/robust/median.h"
 
 namespace laparoscope_servo {
 
@@ -18,11 +19,7 @@ double RecentValues::percentile(double now, double share) {
   if (entries_.empty()) return 0.0;
   std::vector<double> values(entries_.size());
   std::transform(entries_.begin(), entries_.end(), values.begin(), [](const Entry& entry) { return entry.value; });
-  // The nearest rank.
-  const double rank = std::ceil(share * static_cast<double>(values.size())) - 1.0;
-  const auto at = static_cast<std::ptrdiff_t>(std::clamp(rank, 0.0, static_cast<double>(values.size() - 1)));
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return values[static_cast<std::size_t>(at)];
+  return robust::nearestRank(values, share);
 }
 
 double RecentValues::sum(double now) {

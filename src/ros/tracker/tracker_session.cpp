@@ -5,6 +5,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "laparoscope_servo/validation/error_report.h"
 #include "ros/tracker/image_conversion.h"
 
 namespace laparoscope_servo {
@@ -28,8 +29,7 @@ TrackerSession::TrackerSession(const TrackerParameters& parameters)
       intrinsics_(parameters.image_kind),
       gate_(parameters.input),
       feed_(parameters.input) {
-  const std::vector<std::string> errors = tracking::validate(parameters.input);
-  if (!errors.empty()) throw std::invalid_argument("input: " + errors.front());
+  validation::throwErrors("input", tracking::validate(parameters.input));
   start_roi_pending_ = parameters.roi.has_value();
 }
 

@@ -2,22 +2,20 @@
 
 #include <algorithm>
 
+#include "laparoscope_servo/validation/error_report.h"
+
 namespace laparoscope_servo::sim {
 
 namespace {
 
 using aesop::RobotState;
 
-void append(const std::string& group, const std::vector<std::string>& errors, std::vector<std::string>& all) {
-  for (const std::string& error : errors) all.push_back(group + "/" + error);
-}
-
 }  // namespace
 
 std::vector<std::string> validate(const EmulatorConfig& config) {
   std::vector<std::string> errors;
-  append("kinematics", aesop::validate(config.kinematics), errors);
-  append("emulator", validate(config.arm), errors);
+  validation::addGroup("kinematics", aesop::validate(config.kinematics), errors);
+  validation::addGroup("emulator", validate(config.arm), errors);
   if (!config.codec) errors.emplace_back("emulator/codec: there is none, expected one that makes a codec");
   return errors;
 }

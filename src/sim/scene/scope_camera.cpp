@@ -1,9 +1,9 @@
 #include "laparoscope_servo/sim/scope_camera.h"
 
 #include <opencv2/imgproc.hpp>
-#include <stdexcept>
 
 #include "laparoscope_servo/sim/texture.h"
+#include "laparoscope_servo/validation/error_report.h"
 
 namespace laparoscope_servo::sim {
 
@@ -11,10 +11,8 @@ namespace {
 
 constexpr int kNoiseMargin = 128;  // px
 
-const SceneConfig& valid(const SceneConfig& config) {
-  std::string text;
-  for (const std::string& error : validate(config)) text += (text.empty() ? "" : "\n") + error;
-  if (!text.empty()) throw std::invalid_argument(text);
+const SceneConfig& checked(const SceneConfig& config) {
+  validation::throwErrors("scene", validate(config));
   return config;
 }
 
@@ -51,7 +49,7 @@ void applyLight(cv::Mat& image, const cv::Mat1f& light, double gain) {
 }  // namespace
 
 ScopeCamera::ScopeCamera(const SceneConfig& config, const Eigen::Isometry3d& base_T_tissue)
-    : config_(valid(config)),
+    : config_(checked(config)),
       tissue_(texture(config.tissue), config.tissue.width, base_T_tissue),
       lamp_(config.light, config.camera.intrinsics, {config.camera.width, config.camera.height},
             config.camera.border_radius),

@@ -15,5 +15,12 @@ TEST(ErrorReport, listsAllErrors) {
   }
 }
 
+TEST(ErrorReport, saysWhoseErrorsTheyAre) {
+  std::vector<std::string> all{"rate = 0"};
+  addGroup("arm", {"delay = -1, expected 0 to 2", "joint = 9"}, all);
+  addGroup("line", {}, all);
+  EXPECT_EQ(all, (std::vector<std::string>{"rate = 0", "arm/delay = -1, expected 0 to 2", "arm/joint = 9"}));
+}
+
 }  // namespace
 }  // namespace laparoscope_servo::validation
