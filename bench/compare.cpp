@@ -11,9 +11,9 @@
 #include "bench/support/arguments.h"
 #include "bench/support/contestant.h"
 #include "bench/support/cpu_clock.h"
-#include "bench/support/json.h"
 #include "bench/support/sequence.h"
 #include "bench/support/statistics.h"
+#include "ros/common/json_writer.h"
 
 namespace laparoscope_servo::bench {
 

@@ -12,9 +12,9 @@
 #include "bench/support/arguments.h"
 #include "bench/support/contestant.h"
 #include "bench/support/crop.h"
-#include "bench/support/json.h"
 #include "bench/support/sequence.h"
 #include "bench/support/synthetic.h"
+#include "ros/common/json_writer.h"
 
 namespace laparoscope_servo::bench {
 

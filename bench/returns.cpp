@@ -9,11 +9,11 @@
 #include <sstream>
 
 #include "bench/support/arguments.h"
-#include "bench/support/json.h"
 #include "bench/support/scenes.h"
 #include "bench/support/sequence.h"
 #include "bench/support/statistics.h"
 #include "laparoscope_servo/tracking/region_tracker.h"
+#include "ros/common/json_writer.h"
 
 namespace laparoscope_servo::bench {
 

@@ -15,10 +15,10 @@
 #include <sstream>
 
 #include "bench/support/arguments.h"
-#include "bench/support/json.h"
 #include "bench/support/scenes.h"
 #include "bench/support/sequence.h"
 #include "laparoscope_servo/tracking/tracker_config.h"
+#include "ros/common/json_writer.h"
 #include "tracking/search/coarse_image.h"
 
 namespace laparoscope_servo::bench {

@@ -1,20 +1,11 @@
 #include "ros/aesop/aesop_conversions.h"
 
 #include "laparoscope_servo/geometry/se3.h"
+#include "ros/common/eigen_messages.h"
 
 namespace laparoscope_servo {
 
 namespace {
-
-geometry_msgs::Quaternion rotation(const Eigen::Matrix3d& r) {
-  const Eigen::Quaterniond q(r);
-  geometry_msgs::Quaternion message;
-  message.x = q.x();
-  message.y = q.y();
-  message.z = q.z();
-  message.w = q.w();
-  return message;
-}
 
 geometry_msgs::TransformStamped transform(const std::string& parent, const std::string& child,
                                           const Eigen::Isometry3d& t, const ros::Time& stamp) {
@@ -22,18 +13,7 @@ geometry_msgs::TransformStamped transform(const std::string& parent, const std::
   message.header.stamp = stamp;
   message.header.frame_id = parent;
   message.child_frame_id = child;
-  message.transform.translation.x = t.translation().x();
-  message.transform.translation.y = t.translation().y();
-  message.transform.translation.z = t.translation().z();
-  message.transform.rotation = rotation(t.linear());
-  return message;
-}
-
-geometry_msgs::Vector3 vector(const Eigen::Vector3d& v) {
-  geometry_msgs::Vector3 message;
-  message.x = v.x();
-  message.y = v.y();
-  message.z = v.z();
+  message.transform = transformMessage(t);
   return message;
 }
 
@@ -75,10 +55,8 @@ geometry_msgs::PoseStamped opticalPose(const aesop::Kinematics& kinematics, cons
   geometry_msgs::PoseStamped message;
   message.header.stamp = stamp;
   message.header.frame_id = prefix + "aesop_base";
-  message.pose.position.x = base_T_optical.translation().x();
-  message.pose.position.y = base_T_optical.translation().y();
-  message.pose.position.z = base_T_optical.translation().z();
-  message.pose.orientation = rotation(base_T_optical.linear() * tip_R_optical);
+  message.pose.position = pointMessage(base_T_optical.translation());
+  message.pose.orientation = rotationMessage(base_T_optical.linear() * tip_R_optical);
   return message;
 }
 
@@ -91,8 +69,8 @@ geometry_msgs::TwistStamped opticalTwist(const aesop::Kinematics& kinematics, co
   geometry_msgs::TwistStamped message;
   message.header.stamp = stamp;
   message.header.frame_id = prefix + "aesop_base";
-  message.twist.linear = vector(twist.head<3>() + w.cross(lever));
-  message.twist.angular = vector(w);
+  message.twist.linear = vectorMessage(twist.head<3>() + w.cross(lever));
+  message.twist.angular = vectorMessage(w);
   return message;
 }
 

@@ -6,6 +6,7 @@
 
 #include "laparoscope_servo/CalibrationState.h"
 #include "ros/common/clocks.h"
+#include "ros/common/eigen_messages.h"
 
 namespace laparoscope_servo {
 
@@ -42,9 +43,7 @@ CalibrationState toMessage(const InsertionPointCalibration& calibration, const s
   message.poses = static_cast<std::uint32_t>(fit.poses);
   message.cone = fit.cone;
   message.known = fit.known ? 1 : 0;
-  message.point.x = fit.point.x();
-  message.point.y = fit.point.y();
-  message.point.z = fit.point.z();
+  message.point = pointMessage(fit.point);
   std::copy(fit.covariance.data(), fit.covariance.data() + 9, message.covariance.begin());
   message.stddev = fit.stddev;
   message.residual = fit.residual;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "ros/common/eigen_messages.h"
 #include "ros/common/input_owner.h"
 
 namespace laparoscope_servo {
@@ -21,17 +22,13 @@ std::string stripped(const std::string& frame) {
   return !frame.empty() && frame.front() == '/' ? frame.substr(1) : frame;
 }
 
-Eigen::Vector3d translation(const geometry_msgs::Transform& t) {
-  return {t.translation.x, t.translation.y, t.translation.z};
-}
-
 Eigen::Vector4d rotation(const geometry_msgs::Transform& t) {
   return {t.rotation.x, t.rotation.y, t.rotation.z, t.rotation.w};
 }
 
 bool isSame(const geometry_msgs::TransformStamped& a, const geometry_msgs::TransformStamped& b) {
   if (a.header.frame_id != b.header.frame_id) return false;
-  if (!(translation(a.transform) - translation(b.transform)).isZero(kStill)) return false;
+  if (!(fromMessage(a.transform.translation) - fromMessage(b.transform.translation)).isZero(kStill)) return false;
   const Eigen::Vector4d p = rotation(a.transform), q = rotation(b.transform);
   return (p - q).isZero(kStill) || (p + q).isZero(kStill);
 }
@@ -109,8 +106,8 @@ bool TransformGate::mayReplace(const Frame& known, const Frame& news) const {
 std::string TransformGate::nonsense(const Frame& news, const ros::Time& now) const {
   const geometry_msgs::TransformStamped& t = news.transform;
   if (t.header.frame_id.empty() || t.header.frame_id == t.child_frame_id) return "has no parent";
-  if (!translation(t.transform).allFinite() || !rotation(t.transform).allFinite()) return "is not finite";
-  if (!(translation(t.transform).norm() <= kFarthest)) return "is further away than anything in a room";
+  if (!fromMessage(t.transform.translation).allFinite() || !rotation(t.transform).allFinite()) return "is not finite";
+  if (!(fromMessage(t.transform.translation).norm() <= kFarthest)) return "is further away than anything in a room";
   if (!(std::abs(rotation(t.transform).norm() - 1.0) <= kRotationError)) {
     return "has a rotation that is none: its quaternion is not of length 1";
   }

@@ -2,17 +2,11 @@
 
 #include <cmath>
 
+#include "ros/common/eigen_messages.h"
+
 namespace laparoscope_servo {
 
 namespace {
-
-Eigen::Vector3d vector(const geometry_msgs::Vector3& v) {
-  return {v.x, v.y, v.z};
-}
-
-Eigen::Quaterniond quaternion(const geometry_msgs::Quaternion& q) {
-  return Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized();
-}
 
 bool isRotation(const geometry_msgs::Quaternion& q) {
   const double length = Eigen::Vector4d(q.x, q.y, q.z, q.w).norm();
@@ -29,9 +23,9 @@ servo::TaskErrorInput fromMessage(const TaskError& message) {
   input.visible_fraction = message.visible_fraction;
   input.corner_error = message.corner_error;
   servo::TaskError& error = input.error;
-  error.e_v = vector(message.e_v);
-  error.e_w = vector(message.e_w);
-  error.m_star = vector(message.m_star);
+  error.e_v = fromMessage(message.e_v);
+  error.e_w = fromMessage(message.e_w);
+  error.m_star = fromMessage(message.m_star);
   error.x = message.x;
   error.y = message.y;
   error.log_depth = message.log_depth;
@@ -51,9 +45,9 @@ servo::DepthInput fromTransforms(const geometry_msgs::Transform& camera_T_insert
     return depth;
   }
   depth.problem.clear();
-  const Eigen::Quaterniond camera_R_insertion_point = quaternion(camera_T_insertion_point.rotation);
-  depth.camera_R_shaft = quaternion(camera_T_shaft.rotation).toRotationMatrix();
-  const Eigen::Vector3d in_camera = vector(camera_T_insertion_point.translation);
+  const Eigen::Quaterniond camera_R_insertion_point = fromMessage(camera_T_insertion_point.rotation);
+  depth.camera_R_shaft = fromMessage(camera_T_shaft.rotation).toRotationMatrix();
+  const Eigen::Vector3d in_camera = fromMessage(camera_T_insertion_point.translation);
   const Eigen::Vector3d along = depth.camera_R_shaft.transpose() * in_camera;  // O_A from O_C, in the shaft's axes
   depth.d2 = -along.z();
   depth.lateral_offset = along.head<2>().norm();
@@ -65,8 +59,8 @@ servo::DepthInput fromTransforms(const geometry_msgs::Transform& camera_T_insert
 }
 
 scope::Velocity fromTwist(const geometry_msgs::Twist& twist, const Eigen::Quaterniond& shaft_R_frame) {
-  const Eigen::Vector3d w = shaft_R_frame * vector(twist.angular);
-  const Eigen::Vector3d v = shaft_R_frame * vector(twist.linear);
+  const Eigen::Vector3d w = shaft_R_frame * fromMessage(twist.angular);
+  const Eigen::Vector3d v = shaft_R_frame * fromMessage(twist.linear);
   return {w.y(), w.x(), w.z(), v.z()};
 }
 

@@ -3,6 +3,7 @@
 #include <ros/console.h>
 #include <tf2/exceptions.h>
 
+#include "ros/common/eigen_messages.h"
 #include "ros/controller/controller_conversions.h"
 
 namespace laparoscope_servo {
@@ -18,10 +19,6 @@ TransformGateConfig gateConfig(const ControllerNodeConfig& config) {
   gate.frames = {config.camera, config.insertion_point, config.shaft};
   gate.max_ahead = config.control.safety.max_depth_age;
   return gate;
-}
-
-Eigen::Quaterniond rotationOf(const geometry_msgs::Transform& t) {
-  return Eigen::Quaterniond(t.rotation.w, t.rotation.x, t.rotation.y, t.rotation.z).normalized();
 }
 
 }  // namespace
@@ -79,10 +76,8 @@ servo::DepthInput ScopePose::judged(const servo::DepthInput& found, const geomet
   depth.pose_is_new = stamps_.arrived(stamp, steady_now) != StampWatch::Arrival::kRepeated;
   depth.age = stamps_.age(ros::Time::now(), steady_now);
   if (!depth.insertion_point_T_tip) return depth;
-  const auto& t = camera_T_shaft.translation;
-  const Eigen::Isometry3d optics = Eigen::Translation3d(t.x, t.y, t.z) * rotationOf(camera_T_shaft);
   const servo::PoseWatch::Verdict verdict =
-      watch_.judge(stamp.toSec(), steady_now, *depth.insertion_point_T_tip, optics, engaged);
+      watch_.judge(stamp.toSec(), steady_now, *depth.insertion_point_T_tip, fromMessage(camera_T_shaft), engaged);
   if (!verdict.problem.empty()) depth.problem = verdict.problem;
   fault_ = verdict.fault;
   return depth;
@@ -90,7 +85,7 @@ servo::DepthInput ScopePose::judged(const servo::DepthInput& found, const geomet
 
 std::optional<Eigen::Quaterniond> ScopePose::shaftFrom(const std::string& frame) const {
   try {
-    return rotationOf(transforms_.buffer()->lookupTransform(shaft_, frame, ros::Time(0)).transform);
+    return fromMessage(transforms_.buffer()->lookupTransform(shaft_, frame, ros::Time(0)).transform.rotation);
   } catch (const tf2::TransformException&) {
     return std::nullopt;
   }

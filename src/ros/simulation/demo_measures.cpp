@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
 #include <sstream>
+
+#include "ros/common/json_writer.h"
 
 namespace laparoscope_servo {
 
@@ -11,32 +12,6 @@ namespace {
 
 constexpr double kDegrees = 180.0 / M_PI;
 constexpr double kMillimetres = 1e3;
-
-class Object {
- public:
-  void add(const std::string& name, double value) {
-    std::ostringstream text;
-    text << std::setprecision(6) << value;
-    raw(name, std::isfinite(value) ? text.str() : "null");
-  }
-  void add(const std::string& name, int value) { raw(name, std::to_string(value)); }
-  void add(const std::string& name, bool value) { raw(name, value ? "true" : "false"); }
-  void add(const std::string& name, const std::string& value) {
-    std::string escaped;
-    for (const char c : value) {
-      if (c == '"' || c == '\\') escaped += '\\';
-      escaped += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-    }
-    raw(name, '"' + escaped + '"');
-  }
-  std::string text() const { return "{\n" + text_ + "\n}\n"; }
-
- private:
-  void raw(const std::string& name, const std::string& value) {
-    text_ += (text_.empty() ? "  \"" : ",\n  \"") + name + "\": " + value;
-  }
-  std::string text_;
-};
 
 }  // namespace
 
@@ -69,29 +44,32 @@ void Settling::update(double time, bool tracking, const ViewError& error) {
 }
 
 std::string toJson(const DemoSummary& summary) {
-  Object object;
-  object.add("converged", summary.converged);
-  object.add("reason", summary.reason);
-  object.add("total_frames", summary.total_frames);
-  object.add("tracked_frames", summary.tracked_frames);
-  object.add("start_error_px", summary.start_error_px);
-  object.add("start_scale_error", summary.start_scale_error);
-  object.add("start_angle_deg", summary.start_truth.angle * kDegrees);
-  object.add("start_depth_mm", summary.start_truth.depth * kMillimetres);
-  object.add("settling_time_s", summary.settling_time);
-  object.add("final_error_px", summary.final_error_px);
-  object.add("final_scale_error", summary.final_scale_error);
-  object.add("final_angle_deg", summary.final_truth.angle * kDegrees);
-  object.add("final_depth_mm", summary.final_truth.depth * kMillimetres);
-  object.add("final_lateral_mm", summary.final_truth.lateral * kMillimetres);
-  object.add("instrument_crossed", summary.crossed);
+  std::ostringstream text;
+  JsonWriter json(text, 6);
+  json.beginObject();
+  json.value("converged", summary.converged);
+  json.value("reason", summary.reason);
+  json.value("total_frames", summary.total_frames);
+  json.value("tracked_frames", summary.tracked_frames);
+  json.value("start_error_px", summary.start_error_px);
+  json.value("start_scale_error", summary.start_scale_error);
+  json.value("start_angle_deg", summary.start_truth.angle * kDegrees);
+  json.value("start_depth_mm", summary.start_truth.depth * kMillimetres);
+  json.value("settling_time_s", summary.settling_time);
+  json.value("final_error_px", summary.final_error_px);
+  json.value("final_scale_error", summary.final_scale_error);
+  json.value("final_angle_deg", summary.final_truth.angle * kDegrees);
+  json.value("final_depth_mm", summary.final_truth.depth * kMillimetres);
+  json.value("final_lateral_mm", summary.final_truth.lateral * kMillimetres);
+  json.value("instrument_crossed", summary.crossed);
   if (summary.crossed) {
-    object.add("crossing_frames", summary.crossing_frames);
-    object.add("crossing_tracked_frames", summary.crossing_tracked_frames);
-    object.add("crossing_visible_fraction", summary.crossing_visible_fraction);
-    object.add("crossing_error_px", summary.crossing_error_px);
+    json.value("crossing_frames", summary.crossing_frames);
+    json.value("crossing_tracked_frames", summary.crossing_tracked_frames);
+    json.value("crossing_visible_fraction", summary.crossing_visible_fraction);
+    json.value("crossing_error_px", summary.crossing_error_px);
   }
-  return object.text();
+  json.end();
+  return text.str();
 }
 
 }  // namespace laparoscope_servo

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
 
+#include "ros/common/eigen_messages.h"
+
 namespace laparoscope_servo {
 
 namespace {
@@ -11,21 +13,9 @@ using visualization_msgs::Marker;
 
 constexpr int kCells = 96;  // of the tissue's mesh, along its width
 
-geometry_msgs::Point point(const Eigen::Vector3d& p) {
-  geometry_msgs::Point result;
-  result.x = p.x();
-  result.y = p.y();
-  result.z = p.z();
-  return result;
-}
-
 void setPose(Marker& marker, const Eigen::Isometry3d& pose) {
-  const Eigen::Quaterniond q(pose.linear());
-  marker.pose.position = point(pose.translation());
-  marker.pose.orientation.x = q.x();
-  marker.pose.orientation.y = q.y();
-  marker.pose.orientation.z = q.z();
-  marker.pose.orientation.w = q.w();
+  marker.pose.position = pointMessage(pose.translation());
+  marker.pose.orientation = rotationMessage(pose.linear());
 }
 
 }  // namespace
@@ -60,7 +50,7 @@ Marker tissueMarker(const std::string& frame, const Eigen::Isometry3d& frame_T_t
   result.scale.x = result.scale.y = result.scale.z = 1.0;
   setPose(result, frame_T_tissue);
   const auto add = [&](int row, int column) {
-    result.points.push_back(point({(column - kCells / 2.0) * cell, (row - rows / 2.0) * cell, 0.0}));
+    result.points.push_back(pointMessage({(column - kCells / 2.0) * cell, (row - rows / 2.0) * cell, 0.0}));
     const auto& bgr = colours.at<cv::Vec3b>(row, column);
     std_msgs::ColorRGBA colour;
     colour.r = static_cast<float>(bgr[2]) / 255.0F;
@@ -107,10 +97,10 @@ Marker viewMarker(const std::string& frame, const geometry::PinholeCamera& camer
     corners.emplace_back(depth * (camera.inverseMatrix() * pixel));
   }
   for (std::size_t k = 0; k < corners.size(); ++k) {
-    result.points.push_back(point(Eigen::Vector3d::Zero()));
-    result.points.push_back(point(corners[k]));
-    result.points.push_back(point(corners[k]));
-    result.points.push_back(point(corners[(k + 1) % corners.size()]));
+    result.points.push_back(pointMessage(Eigen::Vector3d::Zero()));
+    result.points.push_back(pointMessage(corners[k]));
+    result.points.push_back(pointMessage(corners[k]));
+    result.points.push_back(pointMessage(corners[(k + 1) % corners.size()]));
   }
   return result;
 }

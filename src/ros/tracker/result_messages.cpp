@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "laparoscope_servo/servo/task_function.h"
+#include "ros/common/eigen_messages.h"
 
 namespace laparoscope_servo {
 
@@ -27,14 +28,6 @@ void setRowMajor(const Eigen::Matrix3d& matrix, Array& array) {
 
 geometry::Quadrilateral currentCorners(const tracking::TrackResult& result) {
   return geometry::apply(result.g, result.roi.corners());
-}
-
-geometry_msgs::Vector3 vector(const Eigen::Vector3d& v) {
-  geometry_msgs::Vector3 message;
-  message.x = v.x();
-  message.y = v.y();
-  message.z = v.z();
-  return message;
 }
 
 bool hasRoi(const tracking::TrackResult& result) {
@@ -86,9 +79,9 @@ TaskError taskErrorMessage(const Processed& processed) {
   }
   if (!servo::isFinite(error)) return message;
   message.valid = true;
-  message.e_v = vector(error.e_v);
-  message.e_w = vector(error.e_w);
-  message.m_star = vector(error.m_star);
+  message.e_v = vectorMessage(error.e_v);
+  message.e_w = vectorMessage(error.e_w);
+  message.m_star = vectorMessage(error.m_star);
   message.x = error.x;
   message.y = error.y;
   message.log_depth = error.log_depth;

@@ -2,24 +2,10 @@
 
 #include <tf2/exceptions.h>
 
-#include <cmath>
-
+#include "ros/common/eigen_messages.h"
 #include "ros/common/frame_names.h"
 
 namespace laparoscope_servo {
-
-namespace {
-
-Eigen::Isometry3d toEigen(const geometry_msgs::Transform& transform) {
-  const auto& q = transform.rotation;
-  const auto& t = transform.translation;
-  Eigen::Isometry3d result = Eigen::Isometry3d::Identity();
-  result.linear() = Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized().toRotationMatrix();
-  result.translation() << t.x, t.y, t.z;
-  return result;
-}
-
-}  // namespace
 
 std::string fixedFrame(const RobotMotionConfig& config, const std::string& name_space) {
   return prefixedFrame(framePrefix(config.frame_prefix, name_space), config.fixed_frame);
@@ -29,8 +15,8 @@ std::optional<Eigen::Isometry3d> cameraMotion(const tf2::BufferCore& tf, const s
                                               const std::string& frame, const ros::Time& from, const ros::Time& to,
                                               std::string& why) {
   try {
-    const Eigen::Isometry3d fixed_T_from = toEigen(tf.lookupTransform(fixed_frame, frame, from).transform);
-    const Eigen::Isometry3d fixed_T_to = toEigen(tf.lookupTransform(fixed_frame, frame, to).transform);
+    const Eigen::Isometry3d fixed_T_from = fromMessage(tf.lookupTransform(fixed_frame, frame, from).transform);
+    const Eigen::Isometry3d fixed_T_to = fromMessage(tf.lookupTransform(fixed_frame, frame, to).transform);
     const Eigen::Isometry3d motion = fixed_T_to.inverse() * fixed_T_from;
     if (motion.matrix().allFinite()) return motion;
     why = "the pose of " + frame + " in " + fixed_frame + " is not finite";

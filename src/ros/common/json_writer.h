@@ -5,18 +5,22 @@
 #include <string>
 #include <vector>
 
-namespace laparoscope_servo::bench {
+namespace laparoscope_servo {
 
 class JsonWriter {
  public:
-  explicit JsonWriter(std::ostream& out) : out_(out) { out_.precision(9); }
+  // `digits`: of a number, at most.
+  explicit JsonWriter(std::ostream& out, int digits = 9) : out_(out) { out_.precision(digits); }
 
   // Inside an object every value has a name; inside an array the name is empty.
   void beginObject(const std::string& name = "");
   void beginArray(const std::string& name = "");
   void end();
   void value(const std::string& name, double number);
+  void value(const std::string& name, int number);
+  void value(const std::string& name, bool truth);
   void value(const std::string& name, const std::string& text);
+  void value(const std::string& name, const char* text) { value(name, std::string(text)); }  // not as a bool
   void values(const std::string& name, const std::vector<double>& numbers);
 
  private:
@@ -29,4 +33,4 @@ class JsonWriter {
   bool first_ = true;
 };
 
-}  // namespace laparoscope_servo::bench
+}  // namespace laparoscope_servo

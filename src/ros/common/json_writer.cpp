@@ -1,8 +1,8 @@
-#include "bench/support/json.h"
+#include "ros/common/json_writer.h"
 
 #include <cmath>
 
-namespace laparoscope_servo::bench {
+namespace laparoscope_servo {
 
 void JsonWriter::beginObject(const std::string& name) {
   separate(name);
@@ -28,6 +28,16 @@ void JsonWriter::end() {
 void JsonWriter::value(const std::string& name, double number) {
   separate(name);
   write(number);
+}
+
+void JsonWriter::value(const std::string& name, int number) {
+  separate(name);
+  out_ << number;
+}
+
+void JsonWriter::value(const std::string& name, bool truth) {
+  separate(name);
+  out_ << (truth ? "true" : "false");
 }
 
 void JsonWriter::value(const std::string& name, const std::string& text) {
@@ -68,4 +78,4 @@ void JsonWriter::write(const std::string& text) {
   out_ << '"';
 }
 
-}  // namespace laparoscope_servo::bench
+}  // namespace laparoscope_servo
