@@ -8,6 +8,7 @@
 #include <random>
 #include <stdexcept>
 
+#include "laparoscope_servo/robust/largest.h"
 #include "laparoscope_servo/robust/median.h"
 
 namespace laparoscope_servo::closed_loop {
@@ -60,14 +61,14 @@ class Stopping {
     if (ended && run.stopped < 0.0) run.stopped = s.t;
     if (s.state == servo::ControllerState::kHold && before_ != servo::ControllerState::kHold) ++run.holds;
     if (!ended && s.state != servo::ControllerState::kIdle) {
-      run.evidence = std::max(run.evidence, s.evidence);
-      run.unconfirmed = std::max(run.unconfirmed, s.unconfirmed);
+      run.evidence = robust::largest(run.evidence, s.evidence);
+      run.unconfirmed = robust::largest(run.unconfirmed, s.unconfirmed);
     }
     before_ = s.state;
     if (s.t <= from_) start_ = s.moved;
     const Eigen::Vector4d way = s.moved - start_;
-    run.turned = std::max({run.turned, way.head<2>().norm(), std::abs(way[2])});
-    run.inserted = std::max(run.inserted, std::abs(way[3]));
+    run.turned = robust::largest(robust::largest(run.turned, way.head<2>().norm()), std::abs(way[2]));
+    run.inserted = robust::largest(run.inserted, std::abs(way[3]));
   }
 
  private:
@@ -148,9 +149,9 @@ RunSummary summariseRun(const std::vector<SimulationSample>& samples, const Simu
     scale.add(s.t, scale_error);
     orientation.add(s.t, s.alpha);
     run.left_image = run.left_image || !(s.worst_corner >= 0.0);
-    run.max_commanded_lateral_speed = std::max(run.max_commanded_lateral_speed, s.commanded_lateral_speed);
-    run.max_lateral_speed = std::max(run.max_lateral_speed, s.lateral_speed);
-    run.max_lateral_offset = std::max(run.max_lateral_offset, s.lateral_offset);
+    run.max_commanded_lateral_speed = robust::largest(run.max_commanded_lateral_speed, s.commanded_lateral_speed);
+    run.max_lateral_speed = robust::largest(run.max_lateral_speed, s.lateral_speed);
+    run.max_lateral_offset = robust::largest(run.max_lateral_offset, s.lateral_offset);
     run.final_state = s.state;
     stopping.add(s, run);
     if (s.t < bounds.rest_after) continue;

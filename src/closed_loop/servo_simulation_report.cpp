@@ -2,6 +2,7 @@
 #include <ostream>
 
 #include "laparoscope_servo/closed_loop/servo_simulation.h"
+#include "laparoscope_servo/robust/largest.h"
 
 namespace laparoscope_servo::closed_loop {
 
@@ -18,8 +19,8 @@ SimulationSummary summarise(const std::vector<SimulationSample>& samples, const 
     const bool settled = offset <= offset_bound && std::abs(scale) <= scale_bound;  // false for NaN
     if (!settled) summary.settling_time = -1.0;
     if (settled && summary.settling_time < 0.0) summary.settling_time = s.t;
-    summary.max_lateral_speed = std::max(summary.max_lateral_speed, s.lateral_speed);
-    summary.max_lateral_offset = std::max(summary.max_lateral_offset, s.lateral_offset);
+    summary.max_lateral_speed = robust::largest(summary.max_lateral_speed, s.lateral_speed);
+    summary.max_lateral_offset = robust::largest(summary.max_lateral_offset, s.lateral_offset);
     if (k < rest) continue;
     count += 1.0;
     summary.final_offset += offset * offset;

@@ -38,12 +38,13 @@ void check(const LensParameters& p) {
 class Bounds {
  public:
   void add(const Eigen::Vector2d& p) {
+    finite_ = finite_ && p.allFinite();
     low_ = low_.cwiseMin(p);
     high_ = high_.cwiseMax(p);
   }
-  // Empty when nothing was added.
+  // Empty when nothing was added, or a point that is not finite.
   cv::Rect box(double margin) const {
-    if (!(low_.x() <= high_.x())) return {};
+    if (!finite_ || !(low_.x() <= high_.x())) return {};
     // Far outside any image; keeps the conversion to int defined.
     const auto bounded = [](double x) { return static_cast<int>(std::clamp(x, -1e6, 1e6)); };
     const cv::Point first(bounded(std::floor(low_.x() - margin)), bounded(std::floor(low_.y() - margin)));
@@ -54,6 +55,7 @@ class Bounds {
  private:
   Eigen::Vector2d low_ = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
   Eigen::Vector2d high_ = -low_;
+  bool finite_ = true;
 };
 
 }  // namespace

@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "laparoscope_servo/validation/error_report.h"
-
 #include "laparoscope_servo/servo/dead_zone.h"
+#include "laparoscope_servo/validation/error_report.h"
 
 namespace laparoscope_servo::servo {
 
@@ -174,8 +173,10 @@ ControllerOutput Controller::update(const ControllerInput& input) {
   correctDepth(input);
   watchRepetition(input.task_error);
   watchEffect(input);
+  // Of a time that is no number nothing is counted: the machine stops the scope, and what was done is not forgotten.
+  const bool has_clock = std::isfinite(input.time);
   const double told_for = std::clamp(input.time - last_time_, 0.0, config_.predictor.command_lifetime);
-  effect_.command(told_for * told_, task_ == Task::kHoldView);
+  if (has_clock) effect_.command(told_for * told_, task_ == Task::kHoldView);
   SafetyFacts known = facts(input);
   SafetyOutput safety = machine_.step(known);
   ControllerOutput output;
@@ -195,8 +196,8 @@ ControllerOutput Controller::update(const ControllerInput& input) {
   const bool noticed = (output.command.vector().cwiseAbs().array() > config_.dead_zone.width.vector().array()).any();
   if (!noticed) moves_since_.reset();
   if (noticed && !moves_since_) moves_since_ = input.time;
-  last_time_ = input.time;
-  has_time_ = true;
+  if (has_clock) last_time_ = input.time;
+  has_time_ = has_clock;
   task_changed_ = false;
   output.task = task_;
   output.state = safety.state;

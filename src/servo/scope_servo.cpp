@@ -199,7 +199,7 @@ scope::Velocity ScopeServo::command(const ServoInput& input, const ServoLimits& 
       {scaled(follow, limits.scale), scaled(wanted.turning, gain), centring, aside}, input.period, limits.scale);
   velocity.insertion = std::clamp(velocity.insertion, -limits.insertion, limits.insertion);
   velocity.spin = std::clamp(velocity.spin, -limits.spin, limits.spin);
-  if (!limits.insertion_allowed) velocity.insertion = std::min(0.0, velocity.insertion);
+  if (!limits.insertion_allowed) velocity.insertion = std::min(velocity.insertion, 0.0);
   return send(input, velocity);
 }
 

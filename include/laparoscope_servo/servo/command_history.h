@@ -16,7 +16,8 @@ class CommandHistory {
   CommandHistory(double span, double lifetime) : span_(span), lifetime_(lifetime) {}
 
   // From `time` [s] on, the robot is told to move by `velocity`: that of the shaft, after the robot's dead zone. Times
-  // must not decrease; an earlier one clears the history.
+  // must not decrease; an earlier one, or one that is not finite, clears the history. A velocity that is not finite
+  // counts as none: it is never sent.
   void add(double time, const scope::Velocity& velocity);
 
   // (pan, tilt, spin [rad], insertion [m]) that the robot executes from `begin` to `end` [s] when it does each thing

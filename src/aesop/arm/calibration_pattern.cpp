@@ -99,7 +99,7 @@ CalibrationPattern::Step CalibrationPattern::step(const JointVector& q, const Jo
   step.velocity.pan = config_.speed * towards.x();
   step.velocity.tilt = -config_.speed * towards.y();
   const double deeper = kDepthGain * (lever(base_T_end) - start_lever_);
-  step.velocity.insertion = std::max(-kDepthSpeed, std::min(kDepthSpeed, deeper));
+  step.velocity.insertion = std::clamp(deeper, -kDepthSpeed, kDepthSpeed);
   return step;
 }
 

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "laparoscope_servo/geometry/se3.h"
+#include "laparoscope_servo/robust/largest.h"
 #include "laparoscope_servo/scope/insertion_point.h"
 
 namespace laparoscope_servo::aesop {
@@ -45,11 +46,12 @@ class Brake {
   // `room`: what is left before the motion has to stand, `margin`: where slowing begins at the latest, `speed`: at
   // which the room becomes less. The room shrinks no faster than would take the stopping time to its end.
   void apply(double room, double margin, double speed, const std::string& what) {
-    limit(std::max(0.0, std::min(1.0, room / std::max(margin, stopping_time_ * speed))), what);
+    limit(room / robust::largest(margin, stopping_time_ * speed), what);
   }
   void limit(double scale, const std::string& what) {
-    if (!(scale < scale_)) return;
-    scale_ = scale;
+    const double bounded = scale > 0.0 ? scale : 0.0;  // 0 for NaN: what is not known holds
+    if (bounded >= scale_) return;
+    scale_ = bounded;
     what_ = what;
   }
   double scale() const { return scale_; }
@@ -155,6 +157,7 @@ JointMotion jointMotion(const Kinematics& kinematics, const MotionConfig& config
   twist.tail<3>() = base_R_end * twist.tail<3>().eval();
   const geometry::Vector6d solution = movingJacobian(kinematics, q).partialPivLu().solve(twist);
 
+  if (!solution.allFinite()) return refused("the joint velocities are not finite");
   JointMotion motion;
   const std::vector<int> joints = movingJoints(kinematics);
   for (int k = 0; k < 6; ++k) motion.velocity[joints[static_cast<std::size_t>(k)]] = solution[k];

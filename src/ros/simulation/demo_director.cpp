@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "laparoscope_servo/robust/largest.h"
 #include "ros/aesop/aesop_parameters.h"
 #include "ros/common/clocks.h"
 
@@ -95,7 +96,7 @@ void DemoDirector::onHomography(const Homography& message) {
   if (crossing_) {
     ++summary_.crossing_frames;
     summary_.crossing_tracked_frames += tracking ? 1 : 0;
-    if (tracking) summary_.crossing_error_px = std::max(summary_.crossing_error_px, error_.centre);
+    if (tracking) summary_.crossing_error_px = robust::largest(summary_.crossing_error_px, error_.centre);
     summary_.crossing_visible_fraction = std::min(summary_.crossing_visible_fraction, message.visible_fraction);
   }
 }

@@ -31,7 +31,7 @@ std::vector<cv::Point> drawable(const geometry::Quadrilateral& corners, const im
         if (!raw) return {};
         p = *raw;
       }
-      if (!(p.cwiseAbs().maxCoeff() < kFarAway)) return {};
+      if (!(p.array().abs() < kFarAway).all()) return {};  // also for NaN
       points.emplace_back(static_cast<int>(std::lround(p.x() * (1 << kShift))),
                           static_cast<int>(std::lround(p.y() * (1 << kShift))));
     }

@@ -12,14 +12,14 @@ namespace laparoscope_servo {
 namespace {
 
 cv::Rect boxOf(const geometry::Quadrilateral& corners) {
+  constexpr double kFar = 1e6;  // px: what lies further out fits no int, and is in no image
   Eigen::Vector2d low = corners[0];
   Eigen::Vector2d high = corners[0];
   for (const Eigen::Vector2d& corner : corners) {
+    if (!(corner.array().abs() < kFar).all()) return {};  // also for NaN
     low = low.cwiseMin(corner);
     high = high.cwiseMax(corner);
   }
-  constexpr double kFar = 1e6;  // px: what lies further out fits no int, and is in no image
-  if (!(low.cwiseAbs().maxCoeff() < kFar && high.cwiseAbs().maxCoeff() < kFar)) return {};
   return {cv::Point(static_cast<int>(low.x()), static_cast<int>(low.y())),
           cv::Point(static_cast<int>(high.x()), static_cast<int>(high.y()))};
 }

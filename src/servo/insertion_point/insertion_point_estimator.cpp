@@ -173,9 +173,9 @@ void InsertionPointEstimator::updateResidual(const Sample& sample) {
   const double keep = 1.0 - config_.residual_hysteresis;
   const double stop = config_.stop_residual * (level_ == ResidualLevel::kStop ? keep : 1.0);
   const double warning = config_.warning_residual * (level_ != ResidualLevel::kOk ? keep : 1.0);
-  level_ = residual_ >= stop      ? ResidualLevel::kStop
-           : residual_ >= warning ? ResidualLevel::kWarning
-                                  : ResidualLevel::kOk;
+  level_ = residual_ < warning && residual_ < stop ? ResidualLevel::kOk
+           : residual_ < stop                      ? ResidualLevel::kWarning
+                                                   : ResidualLevel::kStop;  // also for NaN
 }
 
 ShaftDepth shaftDepth(const InsertionPointEstimate& estimate, const Shaft& camera, double length) {
@@ -183,7 +183,7 @@ ShaftDepth shaftDepth(const InsertionPointEstimate& estimate, const Shaft& camer
   depth.d2 = camera.direction.dot(camera.point - estimate.point);
   depth.d1 = length - depth.d2;
   depth.lateral_offset = distanceFromLine(estimate.point, camera);
-  depth.stddev = std::sqrt(std::max(0.0, camera.direction.dot(estimate.covariance * camera.direction)));
+  depth.stddev = std::sqrt(std::max<double>(camera.direction.dot(estimate.covariance * camera.direction), 0.0));
   return depth;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "laparoscope_servo/robust/largest.h"
 #include "laparoscope_servo/validation/error_report.h"
 #include "laparoscope_servo/validation/range_checker.h"
 
@@ -97,7 +98,7 @@ void InsertionPointFitter::measure() {
   fit_.known = estimate.valid;
   fit_.point = estimate.point;
   fit_.covariance = estimate.valid ? estimate.covariance : Eigen::Matrix3d::Zero().eval();
-  fit_.stddev = std::sqrt(std::max(0.0, Eigen3d(fit_.covariance, Eigen::EigenvaluesOnly).eigenvalues()[2]));
+  fit_.stddev = std::sqrt(std::max(Eigen3d(fit_.covariance, Eigen::EigenvaluesOnly).eigenvalues()[2], 0.0));
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
   double squares = 0.0;
   fit_.largest_residual = 0.0;
@@ -107,12 +108,12 @@ void InsertionPointFitter::measure() {
     const double distance = a.cross(fit_.point - shaft.point).norm();
     const double along = a.dot(fit_.point - shaft.point);
     squares += distance * distance;
-    fit_.largest_residual = std::max(fit_.largest_residual, distance);
+    fit_.largest_residual = robust::largest(fit_.largest_residual, distance);
     fit_.nearest = &shaft == shafts_.data() ? along : std::min(fit_.nearest, along);
     fit_.farthest = &shaft == shafts_.data() ? along : std::max(fit_.farthest, along);
   }
   const double smallest = Eigen3d(spread, Eigen::EigenvaluesOnly).eigenvalues()[0];
-  fit_.cone = std::asin(std::sqrt(std::max(0.0, std::min(1.0, smallest))));
+  fit_.cone = std::asin(std::sqrt(std::clamp(smallest, 0.0, 1.0)));
   fit_.residual = std::sqrt(squares / static_cast<double>(fit_.poses));
 }
 

@@ -1,12 +1,17 @@
 #include "laparoscope_servo/servo/command_history.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace laparoscope_servo::servo {
 
 void CommandHistory::add(double time, const scope::Velocity& velocity) {
-  if (!commands_.empty() && time < commands_.back().time) commands_.clear();
-  commands_.push_back({time, velocity.vector()});
+  if (!std::isfinite(time)) {
+    clear();
+    return;
+  }
+  if (!commands_.empty() && time < commands_.back().time) clear();
+  commands_.push_back({time, velocity.isFinite() ? velocity.vector() : Eigen::Vector4d(Eigen::Vector4d::Zero())});
   // The command that was in force when the span began stays.
   while (commands_.size() > 1 && commands_[1].time <= time - span_) commands_.pop_front();
 }

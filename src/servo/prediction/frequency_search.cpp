@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace laparoscope_servo::servo {
 
@@ -46,7 +47,8 @@ class Window {
     const auto block = a.topLeftCorner(used, used);
     const RightSide right = b.topRows(used);
     const RightSide x = Eigen::LDLT<Block>(block.selfadjointView<Eigen::Lower>()).solve(right);
-    return std::max(0.0, squares - (x.array() * right.array()).sum());
+    const double left = squares - (x.array() * right.array()).sum();
+    return std::isfinite(left) ? std::max(left, 0.0) : std::numeric_limits<double>::infinity();
   }
 
  private:

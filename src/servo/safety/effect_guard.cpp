@@ -186,7 +186,8 @@ void EffectGuard::judge(const EffectObservation& image, const CommandHistory& co
 
 // How far the image is from the nearest of what was expected, square over variance.
 double EffectGuard::compare(const EffectObservation& image, const Eigen::Vector4d& pending) {
-  const double quality = std::min(kWorst, std::max(1.0, image.corner_error / kCornerError));  // 1 for NaN
+  double quality = kWorst;  // also where the corner error is NaN
+  if (image.corner_error < kWorst * kCornerError) quality = std::max(1.0, image.corner_error / kCornerError);
   Features variance, place_gain, velocity_gain;
   for (int k = 0; k < 4; ++k) {
     variance[k] = covariance_[k](0, 0) + quality * quality * noise_[k];
@@ -200,6 +201,8 @@ double EffectGuard::compare(const EffectObservation& image, const Eigen::Vector4
   for (const Track& track : tracks_) {
     Features innovation = track.seen(image.error) - track.moved - track.place;
     innovation[3] = std::remainder(innovation[3], 2.0 * M_PI);
+    // An explanation by which the picture is nowhere would stay without a likelihood, and the best of all with it.
+    if (!innovation.allFinite()) return std::numeric_limits<double>::infinity();
     innovations.push_back(innovation);
     nearest = std::min(nearest, innovation.cwiseAbs2().cwiseQuotient(variance).maxCoeff());
   }

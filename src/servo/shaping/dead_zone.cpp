@@ -17,7 +17,7 @@ scope::Velocity throughDeadZone(const scope::Velocity& wanted, const scope::Velo
 scope::Velocity afterDeadZone(const scope::Velocity& command, const scope::Velocity& width) {
   Eigen::Vector4d executed = command.vector();
   for (int k = 0; k < 4; ++k) {
-    executed[k] = std::copysign(std::max(0.0, std::abs(executed[k]) - width.vector()[k]), executed[k]);
+    executed[k] = std::copysign(std::max(std::abs(executed[k]) - width.vector()[k], 0.0), executed[k]);
   }
   return scope::Velocity::fromVector(executed);
 }

@@ -30,7 +30,7 @@ scope::Velocity Limiter::apply(std::initializer_list<scope::Velocity> parts, dou
   for (const scope::Velocity& part : parts) {
     if (common < 1.0)
       target += scaleWithin((1.0 - common) * part.vector(), limit, target) * (1.0 - common) * part.vector();
-    target = target.cwiseMax(-limit).cwiseMin(limit);  // of rounding
+    for (int k = 0; k < 4; ++k) target[k] = std::clamp(target[k], -limit[k], limit[k]);  // of rounding; keeps NaN
   }
   const Eigen::Vector4d change = target - last_.vector();
   const double scale = scaleWithin(change, dt * limits_.acceleration.vector());

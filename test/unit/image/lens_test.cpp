@@ -192,6 +192,18 @@ TEST(Lens, NoPointIsSeenFromNowhere) {
   }
 }
 
+TEST(SeenBox, IsEmptyWhereACornerIsNowhere) {
+  const geometry::Quadrilateral corners = {Eigen::Vector2d(20, 30), {60, 30}, {60, 50}, {20, 50}};
+  EXPECT_FALSE(seenBox(nullptr, corners, 1.0).empty());
+  for (std::size_t k = 0; k < 4; ++k) {
+    for (const double nowhere : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+      geometry::Quadrilateral broken = corners;
+      broken[k].x() = nowhere;
+      EXPECT_TRUE(seenBox(nullptr, broken, 1.0).empty()) << k;
+    }
+  }
+}
+
 TEST(RawBox, HoldsEveryPixelOfTheQuadrilateral) {
   const geometry::Quadrilateral corners = {Eigen::Vector2d(20, 30), {600, 60}, {580, 440}, {60, 400}};
   const Eigen::Matrix3d g = geometry::fromCorners(geometry::Rectangle{0, 0, 101, 101}.corners(), corners);

@@ -212,5 +212,22 @@ TEST(Controller, RestsAtTheTarget) {
   }
 }
 
+// The budget of the guard goes on counting after a clock that said no time.
+TEST(Controller, ATimeThatIsNoNumberStopsItAndBlindsNothing) {
+  for (const double time : {kNan, kInfinity}) {
+    Controller controller{ControllerConfig()};
+    EXPECT_EQ(controller.engage(good(0.0)), "");
+    EXPECT_EQ(controller.update(good(0.0)).state, ControllerState::kServo);
+    const ControllerOutput stopped = controller.update(good(time));
+    EXPECT_EQ(stopped.state, ControllerState::kFault) << time;
+    EXPECT_TRUE(isZero(stopped)) << time;
+    controller.disengage("test");
+    EXPECT_EQ(controller.engage(good(0.04)), "");
+    for (int k = 3; k < 20; ++k) controller.update(good(0.02 * k));
+    EXPECT_TRUE(controller.servo().history().displacement(0.0, 1.0, 0.0).allFinite()) << time;
+    EXPECT_GT(controller.effect().budget().spent(), 0.0) << time;
+  }
+}
+
 }  // namespace
 }  // namespace laparoscope_servo::servo

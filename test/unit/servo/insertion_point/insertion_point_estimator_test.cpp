@@ -243,5 +243,11 @@ TEST(D1FromVelocities, UndoesTheEndEffectorsTwist) {
   EXPECT_FALSE(d1FromVelocities({scope::endEffectorTwist({0.0, 0.0, 1.0, 0.02}, 0.17)}));
 }
 
+TEST(ShaftDepth, IsNotSureOfWhatIsNoNumber) {
+  InsertionPointEstimate estimate;
+  estimate.covariance.setConstant(std::numeric_limits<double>::quiet_NaN());
+  EXPECT_TRUE(std::isnan(shaftDepth(estimate, Shaft(), 0.3).stddev));
+}
+
 }  // namespace
 }  // namespace laparoscope_servo::servo

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <random>
 
 namespace laparoscope_servo::servo {
@@ -77,6 +78,18 @@ TEST(CommandHistory, ACommandEndsWithItsLifetime) {
   EXPECT_NEAR(history.displacement(1.0, 9.0, 0.16)[0], 0.02 + 0.06, 1e-15);
   EXPECT_NEAR(history.displacement(1.3, 1.7, 0.16)[0], 0.1 * 0.06 + 0.3 * 0.04, 1e-15);
   EXPECT_EQ(history.velocity(1.6, 0.16)[0], 0.0);
+}
+
+TEST(CommandHistory, KeepsNoNumberThatIsNone) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  CommandHistory history(3.0, 2.0);
+  history.add(1.0, {0.1, 0.0, 0.0, 0.0});
+  history.add(1.5, {nan, 0.1, 0.0, 0.0});
+  EXPECT_TRUE(history.displacement(1.0, 3.0, 0.0).isApprox(Eigen::Vector4d(0.05, 0.0, 0.0, 0.0)));
+  history.add(nan, {0.3, 0.0, 0.0, 0.0});
+  EXPECT_EQ(history.displacement(0.0, 9.0, 0.0), Eigen::Vector4d::Zero());
+  history.add(1.7, {0.2, 0.0, 0.0, 0.0});
+  EXPECT_NEAR(history.displacement(1.0, 1.8, 0.0)[0], 0.02, 1e-15);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <random>
 
 #include "unit/servo/plane_loop.h"
@@ -44,7 +45,7 @@ class Scene {
     image.error.alpha *= picture.determinant();
     image.scope = loop.scope();
     image.desired_depth = kZ;
-    image.corner_error = 0.1;
+    image.corner_error = corner_error;
     image.breath_known = breath_known;
     return image;
   }
@@ -56,6 +57,7 @@ class Scene {
   Eigen::Vector4d signs = Eigen::Vector4d::Ones();
   std::function<double(double)> tissue = [](double) { return 0.0; };  // normalised, along x
   bool frozen = false;
+  double corner_error = 0.1;  // px
   bool report = false;
   bool breath_known = false;
   double strongest = -100.0;
@@ -205,6 +207,37 @@ TEST(EffectGuard, SaysNothingWhenItIsOff) {
   scene.picture = rolled(180.0);
   scene.run(kMotion, 2.0);
   EXPECT_EQ(scene.guard.effect(), Effect::kAsCommanded);
+}
+
+// Where the scope is said to be nowhere, no explanation says where the picture should be: from the next image on the
+// guard sees again.
+TEST(EffectGuard, SeesAgainAfterAGeometryThatIsNone) {
+  for (const double d2 : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+    Scene scene;
+    scene.run(kMotion, 0.6);
+    EffectObservation bad = scene.image(scene.time + kStep);
+    bad.scope.d2 = d2;
+    scene.guard.observe(bad, scene.commands, kDelay);
+    scene.time += kStep;
+    scene.picture = rolled(180.0);
+    scene.run(kMotion, 3.0);
+    EXPECT_TRUE(std::isfinite(scene.guard.evidence())) << d2;
+    EXPECT_EQ(scene.guard.effect(), Effect::kWrong) << d2;
+  }
+}
+
+// As one that is worse than any that the tracker believes in.
+TEST(EffectGuard, ACornerErrorThatIsNoNumberIsABadOne) {
+  double evidence[3];
+  const double errors[] = {0.1, std::nan(""), 100.0};
+  for (int k = 0; k < 3; ++k) {
+    Scene scene;
+    scene.corner_error = errors[k];
+    scene.run(kMotion, 1.0);
+    evidence[k] = scene.guard.evidence();
+  }
+  EXPECT_NE(evidence[0], evidence[2]);
+  EXPECT_EQ(evidence[1], evidence[2]);
 }
 
 }  // namespace

@@ -60,5 +60,11 @@ TEST(DeadZone, WithoutWidthBothDoNothing) {
   }
 }
 
+TEST(DeadZone, WhatIsNoNumberStaysNone) {
+  const double nan = std::nan("");
+  EXPECT_TRUE(throughDeadZone(all(nan, nan), kWidth).vector().array().isNaN().all());
+  EXPECT_TRUE(afterDeadZone(all(nan, nan), kWidth).vector().array().isNaN().all());
+}
+
 }  // namespace
 }  // namespace laparoscope_servo::servo

@@ -118,5 +118,15 @@ TEST(Limiter, ResetIsAStopAtOnce) {
   EXPECT_EQ(limiter.apply(scope::Velocity(), 0.0).vector(), Eigen::Vector4d::Zero());
 }
 
+// Not made one of the limits: what is wrong must come out so.
+TEST(Limiter, WhatIsNoNumberStaysNone) {
+  for (int k = 0; k < 4; ++k) {
+    Limiter limiter(limits());
+    Eigen::Vector4d wanted = limits().velocity.vector();
+    wanted[k] = std::nan("");
+    EXPECT_FALSE(limiter.apply(scope::Velocity::fromVector(wanted), 0.02).isFinite()) << k;
+  }
+}
+
 }  // namespace
 }  // namespace laparoscope_servo::servo
