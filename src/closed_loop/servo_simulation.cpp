@@ -193,8 +193,9 @@ class Loop {
     s.t = time;
     s.command = output.command;
     s.moved = moved_;
-    s.evidence = controller_.effect().evidence();
-    s.unconfirmed = controller_.effect().budget().spent();
+    const servo::ControllerFigures figures = controller_.figures();
+    s.evidence = figures.evidence;
+    s.unconfirmed = figures.unconfirmed;
     const Eigen::Matrix3d h = seenHomography(time);
     const Eigen::Vector2d centre =
         geometry::apply(geometry::pixelsFromNormalised(h, config_.camera), config_.roi.centre());

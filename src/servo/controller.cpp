@@ -1,262 +1,44 @@
 #include "laparoscope_servo/servo/controller.h"
 
-#include <algorithm>
-#include <cmath>
-
-#include "laparoscope_servo/servo/dead_zone.h"
-#include "laparoscope_servo/validation/error_report.h"
+#include "servo/controller_implementation.h"
 
 namespace laparoscope_servo::servo {
 
-namespace {
-
-ControllerConfig checked(const ControllerConfig& config) {
-  validation::throwErrors("controller", validate(config));
-  return config;
-}
-
-// s, beyond the delay, after which a motion shows in the image: the command's acceleration, an image's exposure.
-constexpr double kShows = 0.1;
-
-// Of the motion before its effect was seen: at this share the scope stands. A step goes 4 % further. At once and not by
-// and by: a scope that stops shows more than one that creeps.
-constexpr double kUsedUp = 0.97;
-// Spin and insertion, which show nothing of a fault of pan and tilt, get slower from the one share on, down to the
-// other of their speed.
-constexpr double kSlowerAside = 0.8;
-constexpr double kSlowest = 0.1;
-
-// Of a tracker that nobody looks at.
-TrackerFacts nothingMissing() {
-  TrackerFacts facts;
-  facts.problem.clear();
-  facts.valid = true;
-  facts.age = facts.image_age = facts.corner_error = 0.0;
-  facts.visible_fraction = 1.0;
-  return facts;
-}
-
-std::optional<InsertionPointPrior> priorOf(const InsertionPointUse& config) {
-  if (!(config.prior_stddev > 0.0)) return std::nullopt;
-  return InsertionPointPrior{Eigen::Vector3d::Zero(), config.prior_stddev};
-}
-
-}  // namespace
-
-Controller::Controller(const ControllerConfig& config)
-    : config_(checked(config)),
-      servo_(config),
-      machine_(config.safety),
-      stick_(config.safety, config.limits.velocity),
-      repeats_(config.safety.max_repeated_errors),
-      effect_(config.effect, {config.target.centre_noise, config.target.depth_noise, config.target.orientation_noise}),
-      opposed_(config.dead_zone.width),
-      insertion_point_(config.insertion_point.estimator, priorOf(config.insertion_point)),
-      d2_correction_(config.insertion_point.correction_rate) {}
-
-SafetyFacts Controller::facts(const ControllerInput& input) const {
-  SafetyFacts facts;
-  facts.time = input.time;
-  facts.clock_jump = input.clock_jump;
-  facts.ended = input.ended;
-  facts.residual = insertion_point_.residualLevel();
-  facts.robot = input.robot;
-  facts.pose = {input.depth.problem, input.depth.age, d2(input), input.depth.lateral_offset,
-                std::abs(d2_correction_.wanted())};
-  facts.dead_man = input.dead_man;
-  if (task_ == Task::kManual) {
-    facts.tracker = nothingMissing();
-    return facts;
-  }
-  const TaskErrorInput& task = input.task_error;
-  facts.tracker = {task.problem,          task.age,         task.image_age, task.valid, task.region,
-                   task.visible_fraction, task.corner_error};
-  if (engaged() && config_.effect.enabled) facts.effect = effectFacts();
-  if (!task.problem.empty() || !task.valid) return facts;
-  facts.tracker.problem = implausible(task);
-  if (facts.tracker.problem.empty() && repeats_.repeats()) {
-    facts.tracker.problem =
-        "the picture repeats: the task error stays the same to the last digit while the scope moves";
-  }
-  return facts;
-}
-
-EffectFacts Controller::effectFacts() const {
-  if (!opposed_.words().empty()) return {Effect::kWrong, opposed_.words()};
-  if (effect_.effect() == Effect::kAsCommanded && effect_.budget().spent() >= kUsedUp)
-    return {Effect::kDoubted, "the picture has not yet shown what the motion of the scope does"};
-  return {effect_.effect(), effect_.words()};
-}
-
-// What is estimated takes the place of the calibration, which is its prior: where the poses tell nothing, they agree.
-double Controller::d2(const ControllerInput& input) const {
-  return input.depth.d2 + d2_correction_.value();
-}
-
-void Controller::correctDepth(const ControllerInput& input) {
-  const InsertionPointEstimate& estimate = insertion_point_.estimate();
-  double wanted = 0.0;
-  if (config_.insertion_point.use && input.depth.insertion_point_T_tip && estimate.valid) {
-    const Eigen::Isometry3d& tip = *input.depth.insertion_point_T_tip;
-    wanted = shaftDepth(estimate, {tip.translation(), tip.linear().col(2)}, 0.0).d2 - input.depth.d2;
-  }
-  d2_correction_.update(input.time, wanted);
-}
-
-// Whatever moves the scope is seen in the picture, also before it is engaged: the tissue's own motion is known then.
-void Controller::watchEffect(const ControllerInput& input) {
-  const TaskErrorInput& task = input.task_error;
-  if (task_ != Task::kHoldView || !task.problem.empty() || !task.valid || !task.image_time) return;
-  if (!implausible(task).empty() || !input.depth.problem.empty() || !(input.depth.d2 > 0.0)) return;
-  EffectObservation image;
-  image.time = *task.image_time;
-  image.error = task.error;
-  image.scope = {input.depth.camera_R_shaft, d2(input)};
-  image.desired_depth = config_.features.desired_depth;
-  image.corner_error = task.corner_error;
-  image.breath_known = servo_.breathingRate() > 0.0;
-  effect_.observe(image, servo_.history(), servo_.delay());
-}
+Controller::Controller(const ControllerConfig& config) : implementation_(std::make_unique<Implementation>(config)) {}
+Controller::~Controller() = default;
+Controller::Controller(Controller&&) noexcept = default;
+Controller& Controller::operator=(Controller&&) noexcept = default;
 
 std::string Controller::engage(const ControllerInput& input) {
-  if (engaged()) return "";
-  const std::string refusal = problem(input);
-  if (!refusal.empty()) return refusal;
-  SafetyFacts request = facts(input);
-  request.request = EngageRequest::kOn;
-  machine_.step(request);
-  effect_.rearm();
-  opposed_.restart();
-  has_time_ = false;  // the pause since the last step is no step
-  last_time_ = input.time;
-  servo_.reset();
-  stick_.restart();
-  return "";
+  return implementation_->engage(input);
 }
 
 void Controller::disengage(const std::string& reason) {
-  SafetyFacts request;
-  request.time = last_time_;
-  request.request = EngageRequest::kOff;
-  request.off_reason = reason;
-  machine_.step(request);
-  servo_.reset();
+  implementation_->disengage(reason);
 }
 
 void Controller::select(Task task) {
-  if (task == task_) return;
-  task_ = task;
-  task_changed_ = true;
-  stick_.restart();
-  servo_.restart(last_time_);
-}
-
-std::string Controller::problem(const ControllerInput& input) const {
-  return machine_.refusal(facts(input));
+  implementation_->select(task);
 }
 
 ControllerOutput Controller::update(const ControllerInput& input) {
-  if (input.robot_report.present) {
-    servo_.report(input.time - input.robot_report.age, input.robot_report.velocity);
-    effect_.report(input.time - input.robot_report.age, input.robot_report.velocity);
-    opposed_.report(input.time - input.robot_report.age, input.robot_report.velocity, servo_.history(), servo_.delay());
-  }
-  if (!input.clock_jump.empty()) insertion_point_.reset();
-  // A pose that is told again says nothing new, and one of a scope that is not in the body nothing at all.
-  const bool poses_count = input.depth.problem.empty() && input.depth.pose_is_new && input.depth.d2 > 0.0 &&
-                           input.depth.age <= config_.safety.max_depth_age &&
-                           input.depth.lateral_offset <= config_.safety.max_lateral_offset;
-  if (config_.insertion_point.use && poses_count && input.depth.insertion_point_T_tip) {
-    const Eigen::Isometry3d& tip = *input.depth.insertion_point_T_tip;
-    insertion_point_.update(input.time, {tip.translation(), tip.linear().col(2)});
-  }
-  correctDepth(input);
-  watchRepetition(input.task_error);
-  watchEffect(input);
-  // Of a time that is no number nothing is counted: the machine stops the scope, and what was done is not forgotten.
-  const bool has_clock = std::isfinite(input.time);
-  const double told_for = std::clamp(input.time - last_time_, 0.0, config_.predictor.command_lifetime);
-  if (has_clock) effect_.command(told_for * told_, task_ == Task::kHoldView);
-  SafetyFacts known = facts(input);
-  SafetyOutput safety = machine_.step(known);
-  ControllerOutput output;
-  const bool moves = safety.state == ControllerState::kServo && !task_changed_;
-  const std::string stick = stick_.update(input.manual, moves && task_ == Task::kManual, input.time);
-  if (moves) {
-    output.command =
-        task_ == Task::kManual ? drive(input, stick) : servo_.command(servoInput(input), limits(safety, input.time));
-    known.command_finite = output.command.vector().allFinite();
-    if (!known.command_finite) {
-      safety = machine_.step(known);
-      output.command = scope::Velocity();
-    }
-  }
-  if (safety.reset_history) servo_.stop(input.time);
-  told_ = afterDeadZone(output.command, config_.dead_zone.width).vector();
-  const bool noticed = (output.command.vector().cwiseAbs().array() > config_.dead_zone.width.vector().array()).any();
-  if (!noticed) moves_since_.reset();
-  if (noticed && !moves_since_) moves_since_ = input.time;
-  if (has_clock) last_time_ = input.time;
-  has_time_ = has_clock;
-  task_changed_ = false;
-  output.task = task_;
-  output.state = safety.state;
-  output.reason = safety.reason;
-  output.caution = caution(safety, stick);
-  output.speed_scale = safety.speed_scale;
-  return output;
+  return implementation_->update(input);
 }
 
-std::string Controller::caution(const SafetyOutput& safety, const std::string& stick) const {
-  if (safety.state != ControllerState::kServo) return safety.caution;
-  std::string text = safety.caution;
-  if (text.empty() && servo_.atBound()) text = "the scope is at a bound of its range: depths or cone";
-  if (text.empty() && servo_.blocked()) text = "the robot does not do what it is told";
-  if (!stick.empty()) text += (text.empty() ? "" : "; ") + stick;
-  return text;
+std::string Controller::problem(const ControllerInput& input) const {
+  return implementation_->problem(input);
 }
 
-void Controller::watchRepetition(const TaskErrorInput& task_error) {
-  if (!task_error.problem.empty() || !task_error.valid || !task_error.image_time) return;
-  const bool moves = moves_since_ && *task_error.image_time - *moves_since_ > servo_.delay() + kShows;
-  repeats_.take(*task_error.image_time, task_error.error, moves && task_ == Task::kHoldView);
+bool Controller::engaged() const {
+  return implementation_->engaged();
 }
 
-ServoLimits Controller::limits(const SafetyOutput& safety, double time) const {
-  ServoLimits limits{safety.speed_scale, safety.insertion_allowed};
-  if (!config_.effect.enabled) return limits;
-  constexpr double kSeen = 0.1;  // s, until what the robot does is seen and judged
-  if (!effect_.confirmed()) limits.insertion = 0.5 * config_.effect.unconfirmed_insertion / (servo_.delay() + kSeen);
-  // Where the region is at its place, nothing is wrong with pan and tilt that could show.
-  if (told_.head<2>().isZero(0.0)) return limits;
-  const double left = std::clamp((1.0 - effect_.budget().aside()) / (1.0 - kSlowerAside), kSlowest, 1.0);
-  if (!(left < 1.0)) return limits;
-  const double step = has_time_ ? std::min(time - last_time_, config_.safety.max_period) : 0.0;
-  const Eigen::Vector4d slowed = told_.cwiseAbs() - step * config_.limits.acceleration.vector();
-  limits.spin = std::max(slowed[2], left * config_.limits.velocity.spin);
-  limits.insertion = std::min(limits.insertion, std::max(slowed[3], left * config_.limits.velocity.insertion));
-  return limits;
+Task Controller::task() const {
+  return implementation_->task();
 }
 
-ServoInput Controller::servoInput(const ControllerInput& input) const {
-  ServoInput servo;
-  servo.time = input.time;
-  servo.image_time = input.task_error.image_time.value_or(input.time - input.task_error.image_age);
-  servo.error = input.task_error.error;
-  servo.scope = {input.depth.camera_R_shaft, d2(input)};
-  servo.d2_doubt = std::abs(d2_correction_.wanted());
-  servo.pose_time = input.time - input.depth.age;
-  servo.insertion_point_T_tip = input.depth.insertion_point_T_tip;
-  servo.period = has_time_ ? std::min(input.time - last_time_, config_.safety.max_period) : 0.0;
-  return servo;
-}
-
-scope::Velocity Controller::drive(const ControllerInput& input, const std::string& problem) {
-  if (!problem.empty()) {
-    servo_.stop(input.time);
-    return scope::Velocity();
-  }
-  return servo_.drive(servoInput(input), input.manual.velocity);
+ControllerFigures Controller::figures() const {
+  return implementation_->figures();
 }
 
 }  // namespace laparoscope_servo::servo

@@ -92,7 +92,7 @@ void checkDirection(const std::string& name, const std::vector<double>& v, Check
   check.add(name + " is no direction, expected three finite numbers that are not all zero");
 }
 
-void checkRange(const WorkRange& range, Checker& check) {
+void checkRange(const Workspace& range, Checker& check) {
   check.range("range/min_depth", range.min_depth, 0.005, 0.5, "m");
   check.range("range/max_depth", range.max_depth, 0.005, 0.5, "m");
   check.atLeast("range/max_depth", range.max_depth, "range/min_depth", range.min_depth);

@@ -1,11 +1,13 @@
-#include "laparoscope_servo/servo/scope_servo.h"
+#include "servo/scope_servo.h"
 
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
-#include "laparoscope_servo/servo/feature_law.h"
-#include "laparoscope_servo/servo/paper_law.h"
+#include "servo/law/feature_law.h"
+#include "servo/law/paper_law.h"
+#include "servo/shaping/dead_zone.h"
+#include "servo/shaping/workspace.h"
 #include "servo/task/horizon.h"
 #include "servo/task/scope_displacement.h"
 

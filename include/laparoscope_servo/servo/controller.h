@@ -1,22 +1,20 @@
 // The controller: from a task error and a depth, or from a manual command, to a command for the scope, or to zero with
 // a reason.
 //
-// The scope moves in the state SERVO only, see safety_machine.h; whatever is not SERVO commands exactly zero, at once.
+// The scope moves in the state SERVO only, see safety_facts.h; whatever is not SERVO commands exactly zero, at once.
 #pragma once
 
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 
+#include "laparoscope_servo/geometry/se3.h"
+#include "laparoscope_servo/scope/velocity.h"
 #include "laparoscope_servo/servo/controller_config.h"
-#include "laparoscope_servo/servo/effect_guard.h"
 #include "laparoscope_servo/servo/insertion_point_estimator.h"
-#include "laparoscope_servo/servo/manual_stick.h"
-#include "laparoscope_servo/servo/opposed_motion.h"
-#include "laparoscope_servo/servo/repeat_watch.h"
-#include "laparoscope_servo/servo/safety_machine.h"
-#include "laparoscope_servo/servo/scope_servo.h"
-#include "laparoscope_servo/servo/slow_correction.h"
+#include "laparoscope_servo/servo/manual_input.h"
+#include "laparoscope_servo/servo/safety_facts.h"
 #include "laparoscope_servo/servo/task_error_input.h"
 
 namespace laparoscope_servo::servo {
@@ -30,7 +28,7 @@ enum class Task {
 struct DepthInput {
   std::string problem = "depth d2 is unknown";  // why it cannot be used; empty: it can
   double d2 = 0.0;                              // m, along the shaft from the insertion point to the camera
-  Eigen::Matrix3d camera_R_shaft = Eigen::Matrix3d::Identity();  // the optics, see scope_geometry.h
+  Eigen::Matrix3d camera_R_shaft = Eigen::Matrix3d::Identity();  // the optics, see scope/geometry.h
   // Where the shaft's tip is in the insertion point's frame, with the shaft's axes; nothing: not known.
   std::optional<Eigen::Isometry3d> insertion_point_T_tip;
   bool pose_is_new = true;      // not the one of the last step again
@@ -50,7 +48,7 @@ struct ControllerInput {
   std::string clock_jump;  // which other clock jumped since the last step, in words; empty: none
   std::string ended;       // what has ended the engagement since the last step, in words; empty: nothing
   TaskErrorInput task_error;
-  ManualInput manual;  // see manual_stick.h: what cannot be used lets the scope stand, at once
+  ManualInput manual;  // what cannot be used lets the scope stand, at once
   DepthInput depth;
   RobotReport robot_report;
   RobotFacts robot;       // where the configuration requires it
@@ -69,10 +67,26 @@ struct ControllerOutput {
   bool engaged() const { return isEngaged(state); }
 };
 
+// What the controller has found out, for those who watch it.
+struct ControllerFigures {
+  // Where the shafts of the last poses meet, in the insertion point's frame: where it is not at the origin, the
+  // calibration is off.
+  InsertionPointEstimate insertion_point;
+  double insertion_point_residual = 0.0;  // m, root mean square distance of the last shafts from it
+  double delay = 0.0;                     // s, from a command to its execution
+  double breathing_rate = 0.0;            // Hz, of the breath that is followed; 0: none is
+  double gain_factor = 1.0;               // of the gains, 1 unless the loop has swung
+  double evidence = 0.0;                  // log of the ratio of likelihoods, a fault in the picture over none
+  double unconfirmed = 0.0;               // share of the motion that is allowed before its effect is seen
+};
+
 class Controller {
  public:
   // Throws std::invalid_argument with all errors when the configuration is not valid.
   explicit Controller(const ControllerConfig& config);
+  ~Controller();
+  Controller(Controller&&) noexcept;
+  Controller& operator=(Controller&&) noexcept;
 
   // Allows motion. Refused unless everything that motion relies on is there, but for the dead-man switch: returns why,
   // or nothing when engaged. Once engaged, it has no effect.
@@ -87,45 +101,18 @@ class Controller {
 
   ControllerOutput update(const ControllerInput& input);
 
-  // Where the shafts of the last poses meet, in the insertion point's frame: where it is not at the origin, the
-  // calibration is off.
-  const InsertionPointEstimator& insertionPoint() const { return insertion_point_; }
-  const ScopeServo& servo() const { return servo_; }
-  const EffectGuard& effect() const { return effect_; }
-
   // Why engage() would be refused, or motion ends; empty when nothing is missing.
   std::string problem(const ControllerInput& input) const;
 
-  bool engaged() const { return isEngaged(machine_.state()); }
-  Task task() const { return task_; }
+  bool engaged() const;
+  Task task() const;
+
+  // What it has found out.
+  ControllerFigures figures() const;
 
  private:
-  SafetyFacts facts(const ControllerInput& input) const;
-  double d2(const ControllerInput& input) const;
-  void correctDepth(const ControllerInput& input);
-  void watchEffect(const ControllerInput& input);
-  EffectFacts effectFacts() const;
-  ServoLimits limits(const SafetyOutput& safety, double time) const;
-  ServoInput servoInput(const ControllerInput& input) const;
-  void watchRepetition(const TaskErrorInput& task_error);
-  scope::Velocity drive(const ControllerInput& input, const std::string& problem);
-  std::string caution(const SafetyOutput& safety, const std::string& stick) const;
-
-  ControllerConfig config_;
-  ScopeServo servo_;
-  SafetyMachine machine_;
-  Task task_ = Task::kHoldView;
-  bool task_changed_ = false;  // since the last step
-  ManualStick stick_;
-  RepeatWatch repeats_;
-  EffectGuard effect_;
-  OpposedMotion opposed_;
-  std::optional<double> moves_since_;  // s; nothing: the command is within the dead zone
-  InsertionPointEstimator insertion_point_;
-  SlowCorrection d2_correction_;                    // m
-  Eigen::Vector4d told_ = Eigen::Vector4d::Zero();  // the robot in the last step, after its dead zone
-  bool has_time_ = false;
-  double last_time_ = 0.0;  // s, of the last step
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
 };
 
 }  // namespace laparoscope_servo::servo

@@ -4,33 +4,14 @@
 #include <string>
 #include <vector>
 
-#include "laparoscope_servo/servo/breathing.h"
-#include "laparoscope_servo/servo/dead_zone.h"
 #include "laparoscope_servo/servo/effect_config.h"
-#include "laparoscope_servo/servo/feature_law.h"
 #include "laparoscope_servo/servo/insertion_point_config.h"
-#include "laparoscope_servo/servo/limiter.h"
-#include "laparoscope_servo/servo/oscillation_guard.h"
-#include "laparoscope_servo/servo/paper_law.h"
-#include "laparoscope_servo/servo/rest_band.h"
+#include "laparoscope_servo/servo/law_config.h"
+#include "laparoscope_servo/servo/prediction_config.h"
 #include "laparoscope_servo/servo/safety_config.h"
-#include "laparoscope_servo/servo/target_motion.h"
-#include "laparoscope_servo/servo/work_range.h"
+#include "laparoscope_servo/servo/shaping_config.h"
 
 namespace laparoscope_servo::servo {
-
-enum class LawKind { kFeatures, kPaper };
-
-// What is known of the time from now to the execution of a command.
-struct PredictorConfig {
-  bool enabled = true;            // false: the law sees the task error of the last image as it is
-  double delay = 0.16;            // s, from a command to its execution, until it is measured
-  bool measure_delay = true;      // from the velocities that the robot reports
-  double min_delay = 0.0;         // s, nothing less is measured
-  double max_delay = 0.4;         // s, nor more
-  bool feed_forward = true;       // the target's own velocity is added to the law's
-  double command_lifetime = 0.2;  // s, for which the robot does what it was told last, before it stops by itself
-};
 
 // How what the poses of the shaft tell of the insertion point is used.
 struct InsertionPointUse {
@@ -57,7 +38,7 @@ struct ControllerConfig {
   OscillationConfig oscillation;
   DeadZoneConfig dead_zone;
   Limits limits;
-  WorkRange range;
+  Workspace range;
   InsertionPointUse insertion_point;
   HorizonConfig horizon;
   EffectConfig effect;

@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "laparoscope_servo/servo/safety_machine.h"
+#include "laparoscope_servo/servo/safety_facts.h"
 
 namespace laparoscope_servo::servo {
 

@@ -18,7 +18,7 @@ struct EffectConfig {
   double release = 3.0;        // below this it goes on,
   double certain = 9.0;        // and this, once it stands, is a fault
   double standing_time = 0.5;  // s, from the doubt until the scope stands and that is seen
-  // How far the scope may go before its effect was seen, see effect_budget.h.
+  // How far the scope may go before its effect was seen, see src/servo/safety/effect_budget.h.
   double unconfirmed_turn = 0.044;       // rad
   double unconfirmed_insertion = 0.004;  // m
 };

@@ -1,4 +1,4 @@
-#include "laparoscope_servo/servo/feature_law.h"
+#include "servo/law/feature_law.h"
 
 #include <Eigen/LU>
 #include <cmath>

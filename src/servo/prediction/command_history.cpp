@@ -1,4 +1,4 @@
-#include "laparoscope_servo/servo/command_history.h"
+#include "servo/prediction/command_history.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "laparoscope_servo/servo/delay_config.h"
+#include "servo/prediction/delay_config.h"
 
 #include "laparoscope_servo/validation/range_checker.h"
 

@@ -1,4 +1,4 @@
-#include "laparoscope_servo/servo/frequency_search.h"
+#include "servo/prediction/frequency_search.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>

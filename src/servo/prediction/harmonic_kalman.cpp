@@ -1,4 +1,4 @@
-#include "laparoscope_servo/servo/harmonic_kalman.h"
+#include "servo/prediction/harmonic_kalman.h"
 
 #include <algorithm>
 #include <cmath>

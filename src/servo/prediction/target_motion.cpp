@@ -1,4 +1,4 @@
-#include "laparoscope_servo/servo/target_motion.h"
+#include "servo/prediction/target_motion.h"
 
 #include <cmath>
 

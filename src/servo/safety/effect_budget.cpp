@@ -1,4 +1,4 @@
-#include "laparoscope_servo/servo/effect_budget.h"
+#include "servo/safety/effect_budget.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/SVD>

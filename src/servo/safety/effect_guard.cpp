@@ -1,4 +1,4 @@
-#include "laparoscope_servo/servo/effect_guard.h"
+#include "servo/safety/effect_guard.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "laparoscope_servo/servo/safety_machine.h"
+#include "servo/safety/safety_machine.h"
 
 #include <algorithm>
 #include <cmath>

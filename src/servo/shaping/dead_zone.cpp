@@ -1,4 +1,4 @@
-#include "laparoscope_servo/servo/dead_zone.h"
+#include "servo/shaping/dead_zone.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "laparoscope_servo/servo/oscillation_guard.h"
+#include "servo/shaping/oscillation_guard.h"
 
 #include <algorithm>
 #include <cmath>

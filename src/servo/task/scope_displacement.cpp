@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "laparoscope_servo/servo/feature_law.h"
+#include "servo/law/feature_law.h"
 
 namespace laparoscope_servo::servo {
 

@@ -145,7 +145,7 @@ TEST(Controller, ShaftsThatMissEachOtherAreAFault) {
     input.depth.insertion_point_T_tip = pose(0.0005);
     ASSERT_EQ(running.step(input).state, ControllerState::kServo) << running.last.reason;
   }
-  EXPECT_LT(running.controller.insertionPoint().estimate().point.norm(), 0.001);
+  EXPECT_LT(running.controller.figures().insertion_point.point.norm(), 0.001);
   for (int k = 0; k < 200 && running.last.state == ControllerState::kServo; ++k) {
     input.depth.insertion_point_T_tip = pose(0.05);
     running.step(input);

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "laparoscope_servo/servo/safety_machine.h"
+#include "servo/safety/safety_machine.h"
 
 namespace laparoscope_servo::servo::test {
 

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "laparoscope_servo/servo/scope_servo.h"
 #include "plane_loop.h"
+#include "servo/scope_servo.h"
 
 namespace laparoscope_servo::servo::test {
 

@@ -1,11 +1,11 @@
-#include "laparoscope_servo/servo/scope_servo.h"
+#include "servo/scope_servo.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "laparoscope_servo/servo/paper_law.h"
 #include "scope_loop.h"
+#include "servo/law/paper_law.h"
 #include "servo/task/scope_displacement.h"
 
 namespace laparoscope_servo::servo {

@@ -1,4 +1,4 @@
-#include "laparoscope_servo/servo/paper_law.h"
+#include "servo/law/paper_law.h"
 
 #include <gtest/gtest.h>
 

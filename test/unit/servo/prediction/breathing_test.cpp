@@ -1,4 +1,4 @@
-#include "laparoscope_servo/servo/breathing.h"
+#include "servo/prediction/breathing.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "laparoscope_servo/servo/delay_estimator.h"
+#include "servo/prediction/delay_estimator.h"
 
 #include <gtest/gtest.h>
 

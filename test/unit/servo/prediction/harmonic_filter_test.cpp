@@ -1,4 +1,4 @@
-#include "laparoscope_servo/servo/harmonic_filter.h"
+#include "servo/prediction/harmonic_filter.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "laparoscope_servo/servo/slow_correction.h"
+#include "servo/prediction/slow_correction.h"
 
 #include <gtest/gtest.h>
 

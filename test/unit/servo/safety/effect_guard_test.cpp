@@ -1,6 +1,6 @@
 // The guard of effect alone: a scope before a plane, moved by hand-made velocities, and what stands between it and the
 // picture.
-#include "laparoscope_servo/servo/effect_guard.h"
+#include "servo/safety/effect_guard.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "laparoscope_servo/servo/manual_stick.h"
+#include "servo/safety/manual_stick.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "laparoscope_servo/servo/opposed_motion.h"
+#include "servo/safety/opposed_motion.h"
 
 #include <gtest/gtest.h>
 

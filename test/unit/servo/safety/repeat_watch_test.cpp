@@ -1,4 +1,4 @@
-#include "laparoscope_servo/servo/repeat_watch.h"
+#include "servo/safety/repeat_watch.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <set>
 #include <utility>
 
-#include "laparoscope_servo/servo/safety_machine.h"
+#include "servo/safety/safety_machine.h"
 #include "unit/servo/safety_facts.h"
 
 namespace laparoscope_servo::servo {

@@ -18,9 +18,9 @@
 #include <optional>
 #include <vector>
 
-#include "laparoscope_servo/servo/frequency_search.h"
 #include "laparoscope_servo/servo/harmonic_filter_config.h"
-#include "laparoscope_servo/servo/harmonic_kalman.h"
+#include "servo/prediction/frequency_search.h"
+#include "servo/prediction/harmonic_kalman.h"
 
 namespace laparoscope_servo::servo {
 

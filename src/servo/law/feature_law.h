@@ -5,24 +5,10 @@
 // orientation is the mean over the ROI's directions.
 #pragma once
 
-#include "laparoscope_servo/servo/control_law.h"
+#include "laparoscope_servo/servo/law_config.h"
+#include "servo/law/control_law.h"
 
 namespace laparoscope_servo::servo {
-
-struct FeatureGains {
-  double centre = 8.0;       // 1/s, of x and y
-  double depth = 8.0;        // 1/s, of log depth
-  double orientation = 8.0;  // 1/s, of alpha
-  double desired_depth =
-      0.08;  // m, Z*: from the camera to the tissue at the reference; wrong by a factor, it changes how fast
-};
-
-// What becomes of the orientation.
-enum class SpinMode {
-  kServo,     // that of the ROI is servoed
-  kUpright,   // that of the picture is: what is up in space is up in it
-  kReleased,  // left as it comes: the scope does not spin
-};
 
 // The features' velocity per velocity of the scope: d(x, y, log depth, alpha)/dt = J (pan, tilt, spin, insertion).
 // `depth` Z [m] > 0 of the ROI's centre now, `x`, `y` normalised.

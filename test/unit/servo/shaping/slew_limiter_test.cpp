@@ -1,4 +1,4 @@
-#include "laparoscope_servo/servo/limiter.h"
+#include "servo/shaping/slew_limiter.h"
 
 #include <gtest/gtest.h>
 
@@ -21,20 +21,20 @@ double angleBetween(const Eigen::Vector4d& a, const Eigen::Vector4d& b) {
   return std::acos(std::min(1.0, a.dot(b) / a.norm() / b.norm()));
 }
 
-TEST(Limiter, LeavesWhatIsWithinTheLimits) {
-  Limiter limiter(limits());
+TEST(SlewLimiter, LeavesWhatIsWithinTheLimits) {
+  SlewLimiter limiter(limits());
   const scope::Velocity wanted{0.05, -0.04, 0.1, 0.01};
   EXPECT_EQ(limiter.apply(wanted, 1.0).vector(), wanted.vector());
   EXPECT_EQ(limiter.apply(scope::Velocity(), 1.0).vector(), Eigen::Vector4d::Zero());
 }
 
-TEST(Limiter, NeverExceedsTheLimits) {
+TEST(SlewLimiter, NeverExceedsTheLimits) {
   std::mt19937 random(2);
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> uniform;
   const Eigen::Vector4d velocity = limits().velocity.vector();
   const Eigen::Vector4d acceleration = limits().acceleration.vector();
-  Limiter limiter(limits());
+  SlewLimiter limiter(limits());
   Eigen::Vector4d last = Eigen::Vector4d::Zero();
   for (int k = 0; k < 20000; ++k) {
     const double size = std::pow(10.0, 4.0 * uniform(random) - 3.0);
@@ -52,12 +52,12 @@ TEST(Limiter, NeverExceedsTheLimits) {
   }
 }
 
-TEST(Limiter, KeepsTheDirection) {
+TEST(SlewLimiter, KeepsTheDirection) {
   std::mt19937 random(4);
   std::normal_distribution<double> normal;
   for (int k = 0; k < 200; ++k) {
     const scope::Velocity wanted{normal(random), normal(random), normal(random), normal(random)};
-    Limiter limiter(limits());
+    SlewLimiter limiter(limits());
     for (int step = 0; step < 30; ++step) {
       const Eigen::Vector4d command = limiter.apply(wanted, 0.02).vector();
       EXPECT_LT(angleBetween(command, wanted.vector()), 1e-7);
@@ -65,8 +65,8 @@ TEST(Limiter, KeepsTheDirection) {
   }
 }
 
-TEST(Limiter, ReachesTheScaledTargetStraight) {
-  Limiter limiter(limits());
+TEST(SlewLimiter, ReachesTheScaledTargetStraight) {
+  SlewLimiter limiter(limits());
   const scope::Velocity first{0.1, 0.0, 0.0, 0.0};
   for (int step = 0; step < 30; ++step) limiter.apply(first, 0.02);
   const scope::Velocity second{0.0, 0.16, 0.0, 0.0};  // twice its limit
@@ -83,9 +83,9 @@ TEST(Limiter, ReachesTheScaledTargetStraight) {
 }
 
 // The first parts have the room first, but none has to wait for another to finish.
-TEST(Limiter, PartsKeepTheirDirectionsAndShareTheRoom) {
+TEST(SlewLimiter, PartsKeepTheirDirectionsAndShareTheRoom) {
   const scope::Velocity turning{0.0, 0.0, 1.0, 0.0}, centring{0.2, 0.1, 0.0, 0.004};
-  Limiter limiter(limits());
+  SlewLimiter limiter(limits());
   const Eigen::Vector4d command = limiter.apply({turning, centring}, 10.0).vector();
   EXPECT_NEAR(command[2], 0.2, 1e-12);  // its limit
   EXPECT_NEAR(command[0], 0.1, 1e-12);  // its limit
@@ -99,29 +99,29 @@ TEST(Limiter, PartsKeepTheirDirectionsAndShareTheRoom) {
   EXPECT_GT(both[0], 0.004);
 }
 
-TEST(Limiter, PartsWithinTheLimitsAddUp) {
-  Limiter limiter(limits());
+TEST(SlewLimiter, PartsWithinTheLimitsAddUp) {
+  SlewLimiter limiter(limits());
   const Eigen::Vector4d command =
       limiter.apply({scope::Velocity{0.05, 0, 0, 0}, scope::Velocity{-0.02, 0.01, 0, 0}}, 10.0).vector();
   EXPECT_NEAR((command - Eigen::Vector4d(0.03, 0.01, 0.0, 0.0)).norm(), 0.0, 1e-15);
 }
 
-TEST(Limiter, DoesNotMoveWithoutTime) {
-  Limiter limiter(limits());
+TEST(SlewLimiter, DoesNotMoveWithoutTime) {
+  SlewLimiter limiter(limits());
   EXPECT_EQ(limiter.apply({1.0, 1.0, 1.0, 1.0}, 0.0).vector(), Eigen::Vector4d::Zero());
 }
 
-TEST(Limiter, ResetIsAStopAtOnce) {
-  Limiter limiter(limits());
+TEST(SlewLimiter, ResetIsAStopAtOnce) {
+  SlewLimiter limiter(limits());
   limiter.apply({0.1, 0.0, 0.0, 0.0}, 1.0);
   limiter.reset();
   EXPECT_EQ(limiter.apply(scope::Velocity(), 0.0).vector(), Eigen::Vector4d::Zero());
 }
 
 // Not made one of the limits: what is wrong must come out so.
-TEST(Limiter, WhatIsNoNumberStaysNone) {
+TEST(SlewLimiter, WhatIsNoNumberStaysNone) {
   for (int k = 0; k < 4; ++k) {
-    Limiter limiter(limits());
+    SlewLimiter limiter(limits());
     Eigen::Vector4d wanted = limits().velocity.vector();
     wanted[k] = std::nan("");
     EXPECT_FALSE(limiter.apply(scope::Velocity::fromVector(wanted), 0.02).isFinite()) << k;

@@ -8,20 +8,10 @@
 
 #include <array>
 
+#include "laparoscope_servo/servo/shaping_config.h"
 #include "laparoscope_servo/servo/task_function.h"
 
 namespace laparoscope_servo::servo {
-
-struct OscillationConfig {
-  bool enabled = true;
-  double half_period = 0.55;   // s: changes of sign further apart than this are no swinging
-  int changes = 5;             // in a row
-  double centre = 0.003;       // normalised: a swing reaches at least so far to each side
-  double depth = 0.01;         // of log depth
-  double orientation = 0.015;  // rad
-  double step = 0.7;           // no unit: of the gain
-  double least = 0.2;          // no unit: the gain is not lowered further
-};
 
 class OscillationGuard {
  public:

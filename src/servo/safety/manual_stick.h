@@ -5,18 +5,12 @@
 // last digit for too long is taken for that, until something changes.
 #pragma once
 
-#include <limits>
 #include <string>
 
-#include "laparoscope_servo/scope/velocity.h"
+#include "laparoscope_servo/servo/manual_input.h"
 #include "laparoscope_servo/servo/safety_config.h"
 
 namespace laparoscope_servo::servo {
-
-struct ManualInput {
-  scope::Velocity velocity;
-  double age = std::numeric_limits<double>::infinity();  // s
-};
 
 class ManualStick {
  public:

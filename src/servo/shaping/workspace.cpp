@@ -1,4 +1,4 @@
-#include "laparoscope_servo/servo/work_range.h"
+#include "servo/shaping/workspace.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,14 +15,14 @@ double share(double room, double margin) {
 
 }  // namespace
 
-scope::Velocity within(const WorkRange& range, const scope::Velocity& velocity, double d2) {
+scope::Velocity within(const Workspace& range, const scope::Velocity& velocity, double d2) {
   scope::Velocity result = velocity;
   const double room = velocity.insertion > 0.0 ? range.max_depth - d2 : d2 - range.min_depth;
   result.insertion *= share(room, range.depth_margin);
   return result;
 }
 
-scope::Velocity within(const WorkRange& range, const scope::Velocity& velocity, double d2,
+scope::Velocity within(const Workspace& range, const scope::Velocity& velocity, double d2,
                        const Eigen::Matrix3d& insertion_point_R_shaft) {
   scope::Velocity result = within(range, velocity, d2);
   const Eigen::Vector3d axis = Eigen::Vector3d(range.axis[0], range.axis[1], range.axis[2]).normalized();

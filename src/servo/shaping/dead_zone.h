@@ -8,11 +8,6 @@
 
 namespace laparoscope_servo::servo {
 
-struct DeadZoneConfig {
-  bool inverse = true;                                 // false: what the law asks for is passed on
-  scope::Velocity width{0.004, 0.004, 0.004, 0.0004};  // rad/s, rad/s, rad/s, m/s: the robot executes nothing below it
-};
-
 // What has to be commanded for `wanted` to be executed; below a tenth of the width less is added, so that what crosses
 // zero does not jump.
 scope::Velocity throughDeadZone(const scope::Velocity& wanted, const scope::Velocity& width);

@@ -10,18 +10,13 @@
 
 #include <initializer_list>
 
-#include "laparoscope_servo/scope/velocity.h"
+#include "laparoscope_servo/servo/shaping_config.h"
 
 namespace laparoscope_servo::servo {
 
-struct Limits {
-  scope::Velocity velocity{0.1, 0.1, 0.1, 0.02};     // rad/s, rad/s, rad/s, m/s
-  scope::Velocity acceleration{1.0, 1.0, 1.0, 0.2};  // rad/s², rad/s², rad/s², m/s²
-};
-
-class Limiter {
+class SlewLimiter {
  public:
-  explicit Limiter(const Limits& limits) : limits_(limits) {}
+  explicit SlewLimiter(const Limits& limits) : limits_(limits) {}
 
   // The velocity for a time `dt` [s] >= 0 after the last one. `parts` must be finite; they add up to what is wanted.
   // `scale`, 0 to 1: of the limits on velocity.

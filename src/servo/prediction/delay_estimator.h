@@ -14,7 +14,7 @@
 #include <deque>
 #include <vector>
 
-#include "laparoscope_servo/servo/delay_config.h"
+#include "servo/prediction/delay_config.h"
 
 namespace laparoscope_servo::servo {
 

@@ -1,18 +1,11 @@
 // The periodic part of the target's motion, in its features.
 #pragma once
 
-#include "laparoscope_servo/servo/harmonic_filter.h"
-#include "laparoscope_servo/servo/target_motion.h"
+#include "laparoscope_servo/servo/prediction_config.h"
+#include "servo/prediction/harmonic_filter.h"
+#include "servo/prediction/target_motion.h"
 
 namespace laparoscope_servo::servo {
-
-// The breath, as far as it moves the target.
-struct BreathingConfig {
-  bool enabled = true;
-  double rate = 0.0;           // Hz, of the ventilator; 0: not known, it is searched
-  double rate_stddev = 0.002;  // Hz, of that rate
-  HarmonicFilterConfig filter;
-};
 
 class Breathing {
  public:

@@ -23,11 +23,11 @@
 #include <vector>
 
 #include "laparoscope_servo/scope/geometry.h"
-#include "laparoscope_servo/servo/command_history.h"
-#include "laparoscope_servo/servo/effect.h"
-#include "laparoscope_servo/servo/effect_budget.h"
 #include "laparoscope_servo/servo/effect_config.h"
 #include "laparoscope_servo/servo/task_function.h"
+#include "servo/prediction/command_history.h"
+#include "servo/safety/effect.h"
+#include "servo/safety/effect_budget.h"
 
 namespace laparoscope_servo::servo {
 

@@ -1,4 +1,4 @@
-#include "laparoscope_servo/servo/limiter.h"
+#include "servo/shaping/slew_limiter.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,7 +21,7 @@ double scaleWithin(const Eigen::Vector4d& v, const Eigen::Vector4d& limit,
 
 }  // namespace
 
-scope::Velocity Limiter::apply(std::initializer_list<scope::Velocity> parts, double dt, double room) {
+scope::Velocity SlewLimiter::apply(std::initializer_list<scope::Velocity> parts, double dt, double room) {
   const Eigen::Vector4d limit = room * limits_.velocity.vector();
   Eigen::Vector4d sum = Eigen::Vector4d::Zero();
   for (const scope::Velocity& part : parts) sum += part.vector();

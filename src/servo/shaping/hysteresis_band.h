@@ -6,27 +6,14 @@
 // dead zone is not what the inverse takes it for -, and its band grows until it rests.
 #pragma once
 
+#include "laparoscope_servo/servo/shaping_config.h"
 #include "laparoscope_servo/servo/task_function.h"
 
 namespace laparoscope_servo::servo {
 
-struct RestConfig {
-  bool enabled = true;  // false: never at rest
-  // of the ROI's centre from where it should be, normalised image coordinates: px over the focal length
-  double centre_stop = 0.0004;
-  double centre_start = 0.0014;
-  double depth_stop = 0.0015;  // of log depth: 0.01 is 1 % of scale
-  double depth_start = 0.005;
-  double orientation_stop = 0.0015;  // rad
-  double orientation_start = 0.005;
-  double hunting_time = 1.5;  // s: a start so soon after a stop widens the band
-  double widening = 1.3;      // no unit, each time
-  double widest = 2.5;        // no unit, of the start's bound
-};
-
-class RestBand {
+class HysteresisBand {
  public:
-  explicit RestBand(const RestConfig& config) : config_(config) {}
+  explicit HysteresisBand(const RestConfig& config) : config_(config) {}
 
   // The error at `time` [s] with the features that rest at their desired values, for any law. Remembers which rest. A
   // feature that is not finite stays as it is.

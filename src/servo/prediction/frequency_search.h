@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "laparoscope_servo/servo/harmonic_kalman.h"
+#include "servo/prediction/harmonic_kalman.h"
 
 namespace laparoscope_servo::servo {
 

@@ -1,4 +1,4 @@
-// From task errors to velocities of the scope: law, predictor, target motion, rest band, limits, dead zone.
+// From task errors to velocities of the scope: law, predictor, target motion, hysteresis band, limits, dead zone.
 //
 // The task error of an image is rolled forward to the time when the command that is given now will be executed: by what
 // the robot has been told and not done yet, and by the target's own motion. The law sees that error. No safety here:
@@ -9,12 +9,15 @@
 #include <memory>
 #include <optional>
 
-#include "laparoscope_servo/servo/breathing.h"
-#include "laparoscope_servo/servo/command_history.h"
-#include "laparoscope_servo/servo/control_law.h"
 #include "laparoscope_servo/servo/controller_config.h"
-#include "laparoscope_servo/servo/delay_estimator.h"
-#include "laparoscope_servo/servo/target_motion.h"
+#include "servo/law/control_law.h"
+#include "servo/prediction/breathing.h"
+#include "servo/prediction/command_history.h"
+#include "servo/prediction/delay_estimator.h"
+#include "servo/prediction/target_motion.h"
+#include "servo/shaping/hysteresis_band.h"
+#include "servo/shaping/oscillation_guard.h"
+#include "servo/shaping/slew_limiter.h"
 
 namespace laparoscope_servo::servo {
 
@@ -89,9 +92,9 @@ class ScopeServo {
 
   ControllerConfig config_;
   std::unique_ptr<ControlLaw> law_;
-  RestBand band_;
+  HysteresisBand band_;
   OscillationGuard oscillation_;
-  Limiter limiter_;
+  SlewLimiter limiter_;
   CommandHistory history_;
   DelayEstimator delay_;
   TargetMotion target_;

@@ -7,7 +7,7 @@
 #include <array>
 #include <string>
 
-#include "laparoscope_servo/servo/command_history.h"
+#include "servo/prediction/command_history.h"
 
 namespace laparoscope_servo::servo {
 

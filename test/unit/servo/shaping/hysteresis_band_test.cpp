@@ -1,4 +1,4 @@
-#include "laparoscope_servo/servo/rest_band.h"
+#include "servo/shaping/hysteresis_band.h"
 
 #include <gtest/gtest.h>
 
@@ -23,9 +23,9 @@ bool centreMoves(const TaskError& error) {
   return error.x != error.desired_x || error.y != error.desired_y;
 }
 
-TEST(RestBand, StartsAtOneBoundAndStopsAtALowerOne) {
+TEST(HysteresisBand, StartsAtOneBoundAndStopsAtALowerOne) {
   const RestConfig config;
-  RestBand band(config);
+  HysteresisBand band(config);
   EXPECT_FALSE(centreMoves(band.apply(off(0.99 * config.centre_start, 0, 0, 0), 0.0)));
   EXPECT_TRUE(centreMoves(band.apply(off(0, -1.01 * config.centre_start, 0, 0), 0.0)));
   EXPECT_TRUE(centreMoves(band.apply(off(1.01 * config.centre_stop, 0, 0, 0), 0.0)));
@@ -33,9 +33,9 @@ TEST(RestBand, StartsAtOneBoundAndStopsAtALowerOne) {
   EXPECT_FALSE(centreMoves(band.apply(off(0.99 * config.centre_start, 0, 0, 0), 0.0)));
 }
 
-TEST(RestBand, FeaturesRestApart) {
+TEST(HysteresisBand, FeaturesRestApart) {
   const RestConfig config;
-  RestBand band(config);
+  HysteresisBand band(config);
   const TaskError error = band.apply(off(0.0, 0.0, 2.0 * config.depth_start, 0.5 * config.orientation_start), 0.0);
   EXPECT_FALSE(centreMoves(error));
   EXPECT_EQ(error.log_depth, 2.0 * config.depth_start);
@@ -45,8 +45,8 @@ TEST(RestBand, FeaturesRestApart) {
   EXPECT_EQ(error.e_w.norm(), 0.0);
 }
 
-TEST(RestBand, WhatMovesIsPassedOnAsItIs) {
-  RestBand band{RestConfig()};
+TEST(HysteresisBand, WhatMovesIsPassedOnAsItIs) {
+  HysteresisBand band{RestConfig()};
   const TaskError error = off(0.1, 0.2, 0.3, 0.4);
   const TaskError same = band.apply(error, 0.0);
   EXPECT_EQ(same.x, error.x);
@@ -54,18 +54,18 @@ TEST(RestBand, WhatMovesIsPassedOnAsItIs) {
   EXPECT_EQ(same.e_w, error.e_w);
 }
 
-TEST(RestBand, ResetIsRest) {
+TEST(HysteresisBand, ResetIsRest) {
   const RestConfig config;
-  RestBand band(config);
+  HysteresisBand band(config);
   band.apply(off(1.0, 1.0, 1.0, 1.0), 0.0);
   band.reset();
   EXPECT_FALSE(centreMoves(band.apply(off(0.9 * config.centre_start, 0, 0, 0), 0.0)));
 }
 
 // A robot that goes too far each time it is started.
-TEST(RestBand, GrowsUntilWhatIsHuntedRests) {
+TEST(HysteresisBand, GrowsUntilWhatIsHuntedRests) {
   const RestConfig config;
-  RestBand band(config);
+  HysteresisBand band(config);
   const double overshoot = 1.5 * config.centre_start;
   int starts = 0;
   double x = overshoot;
@@ -83,16 +83,16 @@ TEST(RestBand, GrowsUntilWhatIsHuntedRests) {
   EXPECT_TRUE(centreMoves(band.apply(off(1.01 * config.centre_start, 0, 0, 0), 110.0)));
 }
 
-TEST(RestBand, NotANumberIsNoRest) {
-  RestBand band{RestConfig()};
+TEST(HysteresisBand, NotANumberIsNoRest) {
+  HysteresisBand band{RestConfig()};
   EXPECT_TRUE(std::isnan(band.apply(off(std::nan(""), 0, 0, 0), 0.0).x));
   EXPECT_TRUE(std::isnan(band.apply(off(0, 0, std::nan(""), 0), 0.0).log_depth));
 }
 
-TEST(RestBand, SwitchedOffNothingRests) {
+TEST(HysteresisBand, SwitchedOffNothingRests) {
   RestConfig config;
   config.enabled = false;
-  RestBand band(config);
+  HysteresisBand band(config);
   EXPECT_TRUE(centreMoves(band.apply(off(1e-9, 0, 0, 0), 0.0)));
 }
 

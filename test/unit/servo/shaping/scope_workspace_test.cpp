@@ -1,4 +1,4 @@
-#include "laparoscope_servo/servo/work_range.h"
+#include "servo/shaping/workspace.h"
 
 #include <gtest/gtest.h>
 
@@ -15,18 +15,18 @@ Eigen::Matrix3d shaft(double tilt, double pan) {
   return geometry::so3Exp({M_PI, 0.0, 0.0}) * geometry::so3Exp({tilt, pan, 0.0});
 }
 
-double angleOf(const WorkRange& range, const Eigen::Matrix3d& r) {
+double angleOf(const Workspace& range, const Eigen::Matrix3d& r) {
   return std::acos(std::min(1.0, r.col(2).dot(Eigen::Vector3d(range.axis[0], range.axis[1], range.axis[2]))));
 }
 
-TEST(WorkRange, LeavesWhatIsFarFromItsBounds) {
+TEST(Workspace, LeavesWhatIsFarFromItsBounds) {
   const scope::Velocity velocity{0.1, -0.05, 0.3, 0.01};
-  EXPECT_EQ(within(WorkRange(), velocity, 0.1, shaft(0.0, 0.0)).vector(), velocity.vector());
-  EXPECT_EQ(within(WorkRange(), velocity, 0.1, shaft(0.4, -0.3)).vector(), velocity.vector());
+  EXPECT_EQ(within(Workspace(), velocity, 0.1, shaft(0.0, 0.0)).vector(), velocity.vector());
+  EXPECT_EQ(within(Workspace(), velocity, 0.1, shaft(0.4, -0.3)).vector(), velocity.vector());
 }
 
-TEST(WorkRange, SlowsTowardsTheDepthsAndStopsThereButLetsBack) {
-  const WorkRange range;
+TEST(Workspace, SlowsTowardsTheDepthsAndStopsThereButLetsBack) {
+  const Workspace range;
   const scope::Velocity deeper{0, 0, 0, 0.01}, out{0, 0, 0, -0.01};
   EXPECT_NEAR(within(range, deeper, range.max_depth - 0.5 * range.depth_margin).insertion, 0.005, 1e-12);
   EXPECT_EQ(within(range, deeper, range.max_depth).insertion, 0.0);
@@ -38,8 +38,8 @@ TEST(WorkRange, SlowsTowardsTheDepthsAndStopsThereButLetsBack) {
 }
 
 // Whatever is wanted, for long: the shaft does not leave the cone.
-TEST(WorkRange, KeepsTheShaftInTheCone) {
-  WorkRange range;
+TEST(Workspace, KeepsTheShaftInTheCone) {
+  Workspace range;
   range.cone = 0.5;
   std::mt19937 random(2);
   std::uniform_real_distribution<double> u(-1.0, 1.0);
@@ -54,16 +54,16 @@ TEST(WorkRange, KeepsTheShaftInTheCone) {
   }
 }
 
-TEST(WorkRange, DoesNotTurnWhereItLooksOutOfTheBodyOrNobodyKnowsWhere) {
+TEST(Workspace, DoesNotTurnWhereItLooksOutOfTheBodyOrNobodyKnowsWhere) {
   const scope::Velocity velocity{0.1, 0.1, 0.1, 0.0};
   const Eigen::Matrix3d out = Eigen::Matrix3d::Identity();  // against the axis
-  EXPECT_EQ(within(WorkRange(), velocity, 0.1, out).vector(), Eigen::Vector4d(0.0, 0.0, 0.1, 0.0));
+  EXPECT_EQ(within(Workspace(), velocity, 0.1, out).vector(), Eigen::Vector4d(0.0, 0.0, 0.1, 0.0));
   const Eigen::Matrix3d unknown = Eigen::Matrix3d::Constant(std::nan(""));
-  EXPECT_EQ(within(WorkRange(), velocity, 0.1, unknown).pan, 0.0);
+  EXPECT_EQ(within(Workspace(), velocity, 0.1, unknown).pan, 0.0);
 }
 
-TEST(WorkRange, LetsBackFromOutsideTheConeAndAlongIt) {
-  WorkRange range;
+TEST(Workspace, LetsBackFromOutsideTheConeAndAlongIt) {
+  Workspace range;
   range.cone = 0.5;
   const Eigen::Matrix3d outside = shaft(0.0, 0.7);  // panned too far
   EXPECT_EQ(within(range, {-0.1, 0.0, 0.0, 0.0}, 0.1, outside).pan, -0.1);

@@ -1,11 +1,11 @@
-#include "laparoscope_servo/servo/rest_band.h"
+#include "servo/shaping/hysteresis_band.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace laparoscope_servo::servo {
 
-bool RestBand::update(Band& band, double distance, double stop, double start, double time) const {
+bool HysteresisBand::update(Band& band, double distance, double stop, double start, double time) const {
   constexpr double kFar = 5.0;  // starts: a new way to go, not the old one
   if (distance > kFar * start) band.widened = 1.0;
   // NaN counts as off: what is wrong must not look like rest.
@@ -18,7 +18,7 @@ bool RestBand::update(Band& band, double distance, double stop, double start, do
   return moves;
 }
 
-TaskError RestBand::apply(const TaskError& error, double time) {
+TaskError HysteresisBand::apply(const TaskError& error, double time) {
   if (!config_.enabled) return error;
   const RestConfig& c = config_;
   const double centre = std::hypot(error.x - error.desired_x, error.y - error.desired_y);

@@ -9,28 +9,12 @@
 
 #include <Eigen/Core>
 
+#include "laparoscope_servo/servo/prediction_config.h"
+
 namespace laparoscope_servo::servo {
 
 // (x, y, log depth, alpha); x and y normalised, alpha in rad.
 using Features = Eigen::Vector4d;
-
-struct TargetMotionConfig {
-  // Standard deviations of what one image tells of the ROI's centre (normalised), log depth and orientation [rad].
-  double centre_noise = 0.0005;
-  double depth_noise = 0.003;
-  double orientation_noise = 0.003;
-  double centre_wander = 0.0003;  // 1/sqrt(s): random walk of the place
-  double depth_wander = 0.001;
-  double orientation_wander = 0.001;  // rad/sqrt(s)
-  double centre_acceleration = 0.03;  // 1/s/sqrt(s): random walk of the velocity
-  double depth_acceleration = 0.012;
-  double orientation_acceleration = 0.012;  // rad/s/sqrt(s)
-  double calibration = 0.3;  // no unit: share of the scope's own motion that its displacement may be wrong by
-  double significance =
-      3.0;            // standard deviations: a velocity is believed from here on, until it falls below a third of that
-  double jump = 8.0;  // standard deviations: what is seen further off is another target, not the old one in motion
-  double damping = 0.1;  // 1/s: a velocity that is not seen any more decays
-};
 
 struct TargetPrediction {
   Features place = Features::Zero();

@@ -1,0 +1,60 @@
+// What the controller consists of, and the order of one of its steps.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "laparoscope_servo/servo/controller.h"
+#include "servo/prediction/slow_correction.h"
+#include "servo/safety/effect_guard.h"
+#include "servo/safety/manual_stick.h"
+#include "servo/safety/opposed_motion.h"
+#include "servo/safety/repeat_watch.h"
+#include "servo/safety/safety_machine.h"
+#include "servo/scope_servo.h"
+
+namespace laparoscope_servo::servo {
+
+class Controller::Implementation {
+ public:
+  explicit Implementation(const ControllerConfig& config);
+
+  std::string engage(const ControllerInput& input);
+  void disengage(const std::string& reason);
+  void select(Task task);
+  ControllerOutput update(const ControllerInput& input);
+  std::string problem(const ControllerInput& input) const;
+  bool engaged() const { return isEngaged(machine_.state()); }
+  Task task() const { return task_; }
+  ControllerFigures figures() const;
+
+ private:
+  SafetyFacts facts(const ControllerInput& input) const;
+  double d2(const ControllerInput& input) const;
+  void correctDepth(const ControllerInput& input);
+  void watchEffect(const ControllerInput& input);
+  EffectFacts effectFacts() const;
+  ServoLimits limits(const SafetyOutput& safety, double time) const;
+  ServoInput servoInput(const ControllerInput& input) const;
+  void watchRepetition(const TaskErrorInput& task_error);
+  scope::Velocity drive(const ControllerInput& input, const std::string& problem);
+  std::string caution(const SafetyOutput& safety, const std::string& stick) const;
+
+  ControllerConfig config_;
+  ScopeServo servo_;
+  SafetyMachine machine_;
+  Task task_ = Task::kHoldView;
+  bool task_changed_ = false;  // since the last step
+  ManualStick stick_;
+  RepeatWatch repeats_;
+  EffectGuard effect_;
+  OpposedMotion opposed_;
+  std::optional<double> moves_since_;  // s; nothing: the command is within the dead zone
+  InsertionPointEstimator insertion_point_;
+  SlowCorrection d2_correction_;                    // m
+  Eigen::Vector4d told_ = Eigen::Vector4d::Zero();  // the robot in the last step, after its dead zone
+  bool has_time_ = false;
+  double last_time_ = 0.0;  // s, of the last step
+};
+
+}  // namespace laparoscope_servo::servo
