@@ -176,7 +176,7 @@ const TrackResult& RegionTracker::Implementation::track(const cv::Mat& image, do
     best = search(image, stamp);
   }
   decide(best, prior, stamp);
-  if (state_ == State::kTracking) search_.keepView(image, best.evidence, last_.g, aligner_);
+  if (state_ == State::kTracking) search_.keepKeyframe(image, best.evidence, last_.g, aligner_);
   aligner_.advance();
   last_stamp_ = stamp;
   return report(best);

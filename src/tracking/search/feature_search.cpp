@@ -100,21 +100,21 @@ double FeatureSearch::nextCost(const Keyframes& keyframes) const {
     const cv::Rect part = strip(strip_);
     return costOfPoints((part.width + 2.0 * kOverlap) * part.height, config_.max_features / strips_);
   }
-  const Keyframe& view = keyframes.at(asked_.back());
-  if (!view.described) {
-    return costOfPoints(static_cast<double>(view.crop.total()) / coarse_.scale / coarse_.scale,
+  const Keyframe& keyframe = keyframes.at(asked_.back());
+  if (!keyframe.described) {
+    return costOfPoints(static_cast<double>(keyframe.crop.total()) / coarse_.scale / coarse_.scale,
                         config_.max_features / 2);
   }
-  const double pairs = static_cast<double>(view.features.points.size()) * static_cast<double>(seen_.points.size());
+  const double pairs = static_cast<double>(keyframe.features.points.size()) * static_cast<double>(seen_.points.size());
   return pairs * nominal_cost::kPairCompared + nominal_cost::kMotionFitted;
 }
 
 void FeatureSearch::work(Keyframes& keyframes) {
   if (strip_ < strips_) return drawStrip();
-  Keyframe& view = keyframes.at(asked_.back());
-  if (!view.described) return describe(view, keyframes.roi());
+  Keyframe& keyframe = keyframes.at(asked_.back());
+  if (!keyframe.described) return describe(keyframe, keyframes.roi());
   asked_.pop_back();
-  match(view, keyframes.roi());
+  match(keyframe, keyframes.roi());
 }
 
 // Each strip gives its share, so that an instrument does not take all of them.
@@ -132,23 +132,24 @@ void FeatureSearch::drawStrip() {
   if (strip_ == strips_ && static_cast<int>(seen_.points.size()) < config_.min_inliers) asked_.clear();
 }
 
-// All that a view shows but what was covered in the ROI: what lies around the ROI moves with it, and small or smooth
-// regions are found by that.
-void FeatureSearch::describe(Keyframe& view, const geometry::Rectangle& roi) {
+// All that a keyframe shows but what was covered in the ROI: what lies around the ROI moves with it, and small or
+// smooth regions are found by that.
+void FeatureSearch::describe(Keyframe& keyframe, const geometry::Rectangle& roi) {
   Eigen::Matrix3d from_roi = Eigen::Matrix3d::Identity();
   from_roi.topRightCorner<2, 1>() << roi.x, roi.y;
   cv::Mat1b covered;
-  image::drawMask(view.trusted == 0, view.g * from_roi, lens_.get(), cv::Rect(view.first, view.crop.size()), covered);
-  const CoarseImage small = coarseImage(view.crop, coarse_.scale, weights_, saturation_);
-  view.described = true;
+  image::drawMask(keyframe.trusted == 0, keyframe.g * from_roi, lens_.get(),
+                  cv::Rect(keyframe.first, keyframe.crop.size()), covered);
+  const CoarseImage small = coarseImage(keyframe.crop, coarse_.scale, weights_, saturation_);
+  keyframe.described = true;
   if (small.grey.empty()) return;
   cv::Mat1b mask;
   cv::resize(covered, mask, small.grey.size(), 0.0, 0.0, cv::INTER_NEAREST);
   mask = (mask == 0) & small.usable;
-  const cv::Point2f first(view.first);
+  const cv::Point2f first(keyframe.first);
   append(
       drawPoints(small.grey, mask, config_.max_features / 2),
-      [&](const cv::Point2f& p) { return rectified(lens_.get(), small.inImage(p) + first); }, view.features);
+      [&](const cv::Point2f& p) { return rectified(lens_.get(), small.inImage(p) + first); }, keyframe.features);
 }
 
 std::vector<FeatureCandidate> FeatureSearch::found() const {
@@ -165,11 +166,11 @@ std::vector<FeatureCandidate> FeatureSearch::find(const cv::Mat& image, const im
   return found();
 }
 
-// Nearest and second nearest of the image's points for each of the view's, and the other way.
-void FeatureSearch::match(const Keyframe& view, const geometry::Rectangle& roi) {
-  const int count = static_cast<int>(view.features.points.size());
+// Nearest and second nearest of the image's points for each of the keyframe's, and the other way.
+void FeatureSearch::match(const Keyframe& keyframe, const geometry::Rectangle& roi) {
+  const int count = static_cast<int>(keyframe.features.points.size());
   if (count < config_.min_inliers) return;
-  const cv::Mat1f distance = descriptorDistances(view.features, seen_);
+  const cv::Mat1f distance = descriptorDistances(keyframe.features, seen_);
   std::vector<int> back(distance.cols, -1);
   for (int j = 0; j < distance.rows; ++j) {
     const float* row = distance[j];
@@ -185,20 +186,20 @@ void FeatureSearch::match(const Keyframe& view, const geometry::Rectangle& roi) 
     const double farthest = row[nearest] / config_.max_ratio;
     const auto rival = [&](const float& other) { return &other != row + nearest && !(farthest < other); };
     if (std::any_of(row, row + distance.cols, rival)) continue;
-    from.push_back(view.features.points[j]);
+    from.push_back(keyframe.features.points[j]);
     to.push_back(seen_.points[nearest]);
   }
-  fit(from, to, view.g, roi);
+  fit(from, to, keyframe.g, roi);
 }
 
 // Four parameters hold where few matches would let eight run away; what they miss of the tilt, the alignment mends.
 void FeatureSearch::fit(const std::vector<cv::Point2f>& from, const std::vector<cv::Point2f>& to,
-                        const Eigen::Matrix3d& view, const geometry::Rectangle& roi) {
+                        const Eigen::Matrix3d& keyframe_g, const geometry::Rectangle& roi) {
   if (static_cast<int>(from.size()) < config_.min_inliers) return;
   const auto offer = [&](const cv::Mat& motion, const cv::Mat& agree, int at_least) {
     if (motion.empty() || agree.empty()) return;
     const int inliers = cv::countNonZero(agree);
-    const Eigen::Matrix3d g = toEigen(motion) * view;
+    const Eigen::Matrix3d g = toEigen(motion) * keyframe_g;
     if (inliers >= at_least && plausible(g, roi)) found_.push_back({geometry::normaliseDeterminant(g), inliers});
   };
   cv::Mat agree;

@@ -7,7 +7,7 @@
 
 #include "laparoscope_servo/image/warp.h"
 #include "tracking/search/nominal_cost.h"
-#include "tracking/search/relocalisation.h"
+#include "tracking/search/template_search.h"
 
 namespace laparoscope_servo::tracking {
 
@@ -19,10 +19,10 @@ constexpr double kSlidingScale = 4.0;   // px of the image per pixel of that ove
 // Of 4,800 alignments on eight films, those that started where the ROI correlates with less led to one true place in
 // 3,200; half covered, it correlates with 0.3 or more (see bench_returns).
 constexpr double kWorthAligning = 0.25;
-// A view is worth storing that was seen nearly whole, and clearly.
+// A keyframe is worth storing that was seen nearly whole, and clearly.
 constexpr double kKeyframeVisible = 0.7;
 constexpr double kKeyframeZncc = 0.85;
-// The most recent view may be worse: tissue that has changed is what it is for.
+// The most recent keyframe may be worse: tissue that has changed is what it is for.
 constexpr double kRecentVisible = 0.5;
 constexpr int kRecentAge = 10;  // images
 
@@ -41,15 +41,15 @@ void RegionSearch::setReference(const cv::Mat& image, RegionAligner& aligner) {
   start_check_.setReference(image, aligner.roi(), aligner.channels().weights[0]);
 }
 
-void RegionSearch::keepView(const cv::Mat& image, const Evidence& seen, const Eigen::Matrix3d& g,
-                            RegionAligner& aligner) {
-  ++since_view_;
+void RegionSearch::keepKeyframe(const cv::Mat& image, const Evidence& seen, const Eigen::Matrix3d& g,
+                                RegionAligner& aligner) {
+  ++since_keyframe_;
   if (!config_.search.features) return;
   const bool clear = seen.visible_fraction >= kKeyframeVisible && seen.zncc >= kKeyframeZncc;
   if (clear && keyframes_.wants(g)) keyframes_.add(image, g, aligner.weights());
-  if (since_view_ < kRecentAge || !(seen.visible_fraction >= kRecentVisible)) return;
+  if (since_keyframe_ < kRecentAge || !(seen.visible_fraction >= kRecentVisible)) return;
   keyframes_.addRecent(image, g, aligner.weights());
-  since_view_ = 0;
+  since_keyframe_ = 0;
 }
 
 void RegionSearch::restart() {
@@ -230,8 +230,8 @@ void RegionSearch::slide(const RegionAligner& aligner) {
     seen = flat;
   }
   for (const Candidate& candidate :
-       searchByCorrelation(level.planes[0].value.view(), level.image_T_patch, seen, scale, aligner.roi(),
-                           offset.inverse() * last_.g, static_cast<int>(kCandidates))) {
+       templateSearch(level.planes[0].value.view(), level.image_T_patch, seen, scale, aligner.roi(),
+                      offset.inverse() * last_.g, static_cast<int>(kCandidates))) {
     suggest(offset * candidate.g, Suggestion::kCorrelation);
   }
 }

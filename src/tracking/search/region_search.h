@@ -51,7 +51,7 @@ class RegionSearch {
   void setReference(const cv::Mat& image, RegionAligner& aligner);
   // The ROI was tracked at `g`, as `aligner` has just seen it: stores what the image shows of it, when it is clear, and
   // new, or none was stored for some images.
-  void keepView(const cv::Mat& image, const Evidence& seen, const Eigen::Matrix3d& g, RegionAligner& aligner);
+  void keepKeyframe(const cv::Mat& image, const Evidence& seen, const Eigen::Matrix3d& g, RegionAligner& aligner);
 
   // The ROI has been lost: the search starts.
   void restart();
@@ -86,7 +86,7 @@ class RegionSearch {
   TrackerConfig config_;
   std::shared_ptr<const image::Lens> lens_;  // null: none
   Keyframes keyframes_;
-  int since_view_ = 0;  // images since the most recent view was stored
+  int since_keyframe_ = 0;  // images since the most recent keyframe was stored
   FeatureSearch feature_search_;
   StartCheck start_check_;
   Confirmation confirmation_;

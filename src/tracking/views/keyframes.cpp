@@ -19,7 +19,7 @@ constexpr double kMarginOfRoi = 0.5;  // of the ROI's, where that is more
 
 }  // namespace
 
-double viewDistance(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b, const geometry::Rectangle& roi) {
+double keyframeDistance(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b, const geometry::Rectangle& roi) {
   const Eigen::Vector2d middle(roi.x + 0.5 * roi.width, roi.y + 0.5 * roi.height);
   const Eigen::Matrix2d from = geometry::derivative(b, middle);
   const Eigen::Matrix2d to = geometry::derivative(a, middle);
@@ -33,16 +33,16 @@ double viewDistance(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b, const ge
 
 void Keyframes::setReference(const cv::Mat& image, const geometry::Rectangle& roi, const cv::Mat1f& weights) {
   roi_ = roi;
-  views_.clear();
+  keyframes_.clear();
   recent_ = Keyframe();
   recent_pixels_.release();
-  views_.push_back(cut(image, Eigen::Matrix3d::Identity(), weights));
+  keyframes_.push_back(cut(image, Eigen::Matrix3d::Identity(), weights));
 }
 
 double Keyframes::nearest(const Eigen::Matrix3d& g, int except) const {
   double distance = std::numeric_limits<double>::infinity();
   for (int k = 0; k < stored(); ++k) {
-    if (k != except) distance = std::min(distance, viewDistance(g, views_[k].g, roi_));
+    if (k != except) distance = std::min(distance, keyframeDistance(g, keyframes_[k].g, roi_));
   }
   return distance;
 }
@@ -50,27 +50,27 @@ double Keyframes::nearest(const Eigen::Matrix3d& g, int except) const {
 int Keyframes::leastSingular() const {
   int least = 1;
   for (int k = 2; k < stored(); ++k) {
-    if (nearest(views_[k].g, k) < nearest(views_[least].g, least)) least = k;
+    if (nearest(keyframes_[k].g, k) < nearest(keyframes_[least].g, least)) least = k;
   }
   return least;
 }
 
 bool Keyframes::wants(const Eigen::Matrix3d& g) const {
-  if (capacity_ == 0 || views_.empty()) return false;
+  if (capacity_ == 0 || keyframes_.empty()) return false;
   const double distance = nearest(g, -1);
   if (!(distance >= 1.0) || !std::isfinite(distance)) return false;
   if (stored() <= capacity_) return true;
   const int least = leastSingular();
-  return distance > nearest(views_[least].g, least);
+  return distance > nearest(keyframes_[least].g, least);
 }
 
 void Keyframes::add(const cv::Mat& image, const Eigen::Matrix3d& g, const cv::Mat1f& weights) {
-  Keyframe view = cut(image, g, weights);
-  if (view.crop.empty()) return;
+  Keyframe keyframe = cut(image, g, weights);
+  if (keyframe.crop.empty()) return;
   if (stored() <= capacity_) {
-    views_.push_back(std::move(view));
+    keyframes_.push_back(std::move(keyframe));
   } else {
-    views_[leastSingular()] = std::move(view);
+    keyframes_[leastSingular()] = std::move(keyframe);
   }
 }
 
@@ -98,13 +98,13 @@ cv::Rect Keyframes::boxOf(const cv::Mat& image, const Eigen::Matrix3d& g) const 
 
 Keyframe Keyframes::cut(const cv::Mat& image, const Eigen::Matrix3d& g, const cv::Mat1f& weights) const {
   const cv::Rect box = boxOf(image, g);
-  Keyframe view;
-  view.g = g;
-  if (box.empty()) return view;
-  view.crop = image(box).clone();
-  view.first = box.tl();
-  view.trusted = weights > 0.0f;
-  return view;
+  Keyframe keyframe;
+  keyframe.g = g;
+  if (box.empty()) return keyframe;
+  keyframe.crop = image(box).clone();
+  keyframe.first = box.tl();
+  keyframe.trusted = weights > 0.0f;
+  return keyframe;
 }
 
 }  // namespace laparoscope_servo::tracking

@@ -32,17 +32,17 @@ class KeyframesTest : public ::testing::Test {
 
 TEST_F(KeyframesTest, DistanceSeesLengthsAndTurnsButNotThePlace) {
   const Eigen::Matrix3d one = Eigen::Matrix3d::Identity();
-  EXPECT_NEAR(viewDistance(one, one, kRoi), 0.0, 1e-12);
-  EXPECT_NEAR(viewDistance(zoomAndTurn(1.0, 0.0, 0.0, {20.0, 30.0}), one, kRoi), 0.0, 1e-9);
-  EXPECT_NEAR(viewDistance(zoomAndTurn(1.3, 0.0), one, kRoi), 1.0, 1e-9);
-  EXPECT_NEAR(viewDistance(zoomAndTurn(1.0 / 1.3, 0.0), one, kRoi), 1.0, 1e-9);
-  EXPECT_NEAR(viewDistance(zoomAndTurn(1.0, -0.6), one, kRoi), 1.0, 1e-9);
-  EXPECT_NEAR(viewDistance(zoomAndTurn(1.0, 0.0, std::acos(1.0 / 1.3)), one, kRoi), 1.0, 1e-9);
+  EXPECT_NEAR(keyframeDistance(one, one, kRoi), 0.0, 1e-12);
+  EXPECT_NEAR(keyframeDistance(zoomAndTurn(1.0, 0.0, 0.0, {20.0, 30.0}), one, kRoi), 0.0, 1e-9);
+  EXPECT_NEAR(keyframeDistance(zoomAndTurn(1.3, 0.0), one, kRoi), 1.0, 1e-9);
+  EXPECT_NEAR(keyframeDistance(zoomAndTurn(1.0 / 1.3, 0.0), one, kRoi), 1.0, 1e-9);
+  EXPECT_NEAR(keyframeDistance(zoomAndTurn(1.0, -0.6), one, kRoi), 1.0, 1e-9);
+  EXPECT_NEAR(keyframeDistance(zoomAndTurn(1.0, 0.0, std::acos(1.0 / 1.3)), one, kRoi), 1.0, 1e-9);
   const Eigen::Matrix3d a = zoomAndTurn(1.4, 0.3, 0.5);
   const Eigen::Matrix3d b = zoomAndTurn(0.8, -1.0, 0.2);
-  EXPECT_NEAR(viewDistance(a, b, kRoi), viewDistance(b, a, kRoi), 1e-9);
+  EXPECT_NEAR(keyframeDistance(a, b, kRoi), keyframeDistance(b, a, kRoi), 1e-9);
   const Eigen::Matrix3d mirrored = Eigen::Vector3d(-1.0, 1.0, 1.0).asDiagonal();
-  EXPECT_TRUE(std::isinf(viewDistance(mirrored, one, kRoi)));
+  EXPECT_TRUE(std::isinf(keyframeDistance(mirrored, one, kRoi)));
 }
 
 TEST_F(KeyframesTest, TheReferenceIsFirstAndStays) {

@@ -18,8 +18,8 @@ struct Candidate {
 // returns the `count` best places that lie apart from each other, best first. `reference` is the ROI of the reference
 // at the pyramid's level `level` and `reference_T_patch` takes its pixels to the reference's; `image` is that level of
 // the whole current image, its first pixel on the image's.
-std::vector<Candidate> searchByCorrelation(const cv::Mat1f& reference, const Eigen::Matrix3d& reference_T_patch,
-                                           const cv::Mat1f& image, double scale, const geometry::Rectangle& roi,
-                                           const Eigen::Matrix3d& last, int count);
+std::vector<Candidate> templateSearch(const cv::Mat1f& reference, const Eigen::Matrix3d& reference_T_patch,
+                                      const cv::Mat1f& image, double scale, const geometry::Rectangle& roi,
+                                      const Eigen::Matrix3d& last, int count);
 
 }  // namespace laparoscope_servo::tracking

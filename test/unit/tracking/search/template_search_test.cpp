@@ -1,4 +1,4 @@
-#include "tracking/search/relocalisation.h"
+#include "tracking/search/template_search.h"
 
 #include <gtest/gtest.h>
 
@@ -23,8 +23,8 @@ class RelocalisationTest : public ::testing::Test {
   }
   std::vector<Candidate> search(const cv::Mat& image, const Eigen::Matrix3d& last, int count = 3) {
     const EsmLevel& level = esm_.level(2);
-    return searchByCorrelation(level.planes[0].value.view(), level.image_T_patch, pyramidOf(image).level(2),
-                               level.scale, kRoi, last, count);
+    return templateSearch(level.planes[0].value.view(), level.image_T_patch, pyramidOf(image).level(2), level.scale,
+                          kRoi, last, count);
   }
 };
 

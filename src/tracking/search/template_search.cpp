@@ -1,4 +1,4 @@
-#include "tracking/search/relocalisation.h"
+#include "tracking/search/template_search.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,9 +19,9 @@ Eigen::Matrix3d translation(const Eigen::Vector2d& t) {
 
 }  // namespace
 
-std::vector<Candidate> searchByCorrelation(const cv::Mat1f& reference, const Eigen::Matrix3d& reference_T_patch,
-                                           const cv::Mat1f& image, double scale, const geometry::Rectangle& roi,
-                                           const Eigen::Matrix3d& last, int count) {
+std::vector<Candidate> templateSearch(const cv::Mat1f& reference, const Eigen::Matrix3d& reference_T_patch,
+                                      const cv::Mat1f& image, double scale, const geometry::Rectangle& roi,
+                                      const Eigen::Matrix3d& last, int count) {
   // The ROI as the last image showed it, drawn into a box of its own: the part of its bounding box that it fills.
   const geometry::Quadrilateral corners = geometry::apply(last, roi.corners());
   Eigen::Vector2d low = corners[0];
