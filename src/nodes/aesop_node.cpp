@@ -5,10 +5,10 @@
 
 #include <exception>
 
+#include "nodes/robot_node.h"
 #include "ros/common/frame_names.h"
 #include "ros/common/network_exposure.h"
 #include "ros/common/stop_request.h"
-#include "ros/common/unblocked_output.h"
 
 namespace {
 
@@ -39,15 +39,5 @@ int run() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const laparoscope_servo::UnblockedOutput output;
-  // No handler of ROS: the arm has to be disabled while there is still a node to do it.
-  ros::init(argc, argv, "aesop", ros::init_options::NoSigintHandler);
-  int status = 1;
-  try {
-    status = run();
-  } catch (const std::exception& error) {
-    ROS_FATAL_STREAM(error.what());
-  }
-  ros::shutdown();
-  return status;
+  return laparoscope_servo::robotNode(argc, argv, "aesop", run);
 }

@@ -3,11 +3,9 @@
 
 #include <ros/ros.h>
 
-#include <exception>
-
+#include "nodes/robot_node.h"
 #include "ros/common/network_exposure.h"
 #include "ros/common/stop_request.h"
-#include "ros/common/unblocked_output.h"
 
 using namespace laparoscope_servo;
 
@@ -37,14 +35,5 @@ int run() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const UnblockedOutput output;
-  ros::init(argc, argv, "controller", ros::init_options::NoSigintHandler);
-  int status = 1;
-  try {
-    status = run();
-  } catch (const std::exception& error) {
-    ROS_FATAL_STREAM(error.what());
-  }
-  ros::shutdown();
-  return status;
+  return laparoscope_servo::robotNode(argc, argv, "controller", run);
 }
