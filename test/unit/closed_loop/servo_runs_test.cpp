@@ -191,6 +191,22 @@ TEST(SummariseRun, KeepsTheWorst) {
   EXPECT_EQ(run.final_state, servo::ControllerState::kLost);
 }
 
+// What was no number once is none of the worst: a small one would say that nothing went wrong.
+TEST(SummariseRun, WhatIsNoNumberIsNotSmall) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  std::vector<SimulationSample> samples = still(10);
+  samples[3].lateral_speed = samples[3].lateral_offset = samples[3].commanded_lateral_speed = nan;
+  samples[3].evidence = samples[3].unconfirmed = nan;
+  samples[3].moved.setConstant(nan);
+  const RunSummary run = summarised(samples);
+  for (const double figure : {run.max_lateral_speed, run.max_lateral_offset, run.max_commanded_lateral_speed,
+                              run.evidence, run.unconfirmed, run.turned, run.inserted})
+    EXPECT_TRUE(std::isnan(figure)) << figure;
+  const SimulationSummary summary = summarise(samples, SimulationConfig());
+  EXPECT_TRUE(std::isnan(summary.max_lateral_speed));
+  EXPECT_TRUE(std::isnan(summary.max_lateral_offset));
+}
+
 TEST(SummariseRun, TellsWhereTheScopeWentAndWhatStoppedIt) {
   std::vector<SimulationSample> samples = still(10);
   samples[1].moved << 0.03, -0.04, 0.01, 0.001;

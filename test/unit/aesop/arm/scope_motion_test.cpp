@@ -194,6 +194,22 @@ TEST(ScopeMotion, notFiniteIsRefused) {
   EXPECT_EQ(jointMotion(kKinematics, kConfig, nominalPose(), {nan, 0, 0}, {0.01, 0, 0, 0}).scale, 0.0);
 }
 
+// A velocity that overflows in the joints moves none, and makes no number that is none.
+TEST(ScopeMotion, overflowIsRefused) {
+  for (const double huge : {1e300, 1e308, -1e308}) {
+    for (int axis = 0; axis < 4; ++axis) {
+      Eigen::Vector4d velocity = Eigen::Vector4d::Zero();
+      velocity[axis] = huge;
+      const JointMotion motion = motionAt(nominalPose(), scope::Velocity::fromVector(velocity));
+      EXPECT_TRUE(motion.velocity.allFinite()) << axis << ' ' << huge;
+      for (int k = 0; k < kJoints; ++k) {
+        const double limit = kKinematics.config().joints[static_cast<std::size_t>(k)].max_speed;
+        EXPECT_LE(std::abs(motion.velocity[k]), limit * (1.0 + 1e-9)) << axis << ' ' << huge;
+      }
+    }
+  }
+}
+
 TEST(ScopeMotion, shaftOffTheTrocarIsRefused) {
   const Eigen::Vector3d elsewhere = nominalTrocar() + Eigen::Vector3d(0.03, 0.0, 0.0);
   const JointMotion motion = jointMotion(kKinematics, kConfig, nominalPose(), elsewhere, {0.01, 0, 0, 0});
