@@ -15,18 +15,20 @@ ControllerConfig checked(const ControllerConfig& config) {
   return config;
 }
 
-// s, beyond the delay, after which a motion shows in the image: the command's acceleration, an image's exposure.
+// s, beyond the delay, after which a motion has to show in the image. Derived: a command reaches the limit of 0.1 rad/s
+// by 1 rad/s^2 in 0.1 s (limits/), and in half of that it has moved the picture by 1 px at a focal length of 800 px.
 constexpr double kShows = 0.1;
 
-// Of the motion before its effect was seen: at this share the scope stands. A step goes 4 % further. At once and not by
-// and by: a scope that stops shows more than one that creeps.
+// The share of what the scope may go before its effect was seen, at which it stands. Derived: one more step, 0.02 s at
+// 0.1 rad/s, is 4 % of 0.044 rad (effect/unconfirmed_turn). It stops at once and does not slow down before: a scope
+// that stops shows more than one that creeps.
 constexpr double kUsedUp = 0.97;
-// Spin and insertion, which show nothing of a fault of pan and tilt, get slower from the one share on, down to the
-// other of their speed.
+// Spin and insertion show nothing of a fault of pan and tilt. From the share kSlowerAside of what they may go unseen
+// they are slowed down, to the share kSlowest of their speed, so that pan and tilt are shown first.
 constexpr double kSlowerAside = 0.8;
 constexpr double kSlowest = 0.1;
 
-// Of a tracker that nobody looks at.
+// In the task MANUAL the tracker does not count: nothing of it is missing.
 TrackerFacts nothingMissing() {
   TrackerFacts facts;
   facts.problem.clear();

@@ -16,8 +16,8 @@ namespace laparoscope_servo::servo {
 namespace {
 
 constexpr double kSameImage = 1e-6;  // s, rounding
-constexpr double kBlocked = 0.3;     // s, for which the robot does not do what it was told
-constexpr double kHistory = 5.0;     // s, more than the oldest image and the longest delay
+constexpr double kBlocked = 0.3;     // s: a robot that does not do what it was told for longer counts as blocked
+constexpr double kHistory = 5.0;     // s: an image of 1 s ago, a delay of 1 s and a command's lifetime of 2 s, at most
 
 std::unique_ptr<ControlLaw> lawOf(const ControllerConfig& config) {
   if (config.law == LawKind::kPaper) return std::make_unique<PaperLaw>(config.gains);
@@ -184,7 +184,7 @@ scope::Velocity ScopeServo::command(const ServoInput& input, const ServoLimits& 
     error = moved(error, displacement, input.scope, config_.features.desired_depth);
   }
   if (!follow.vector().allFinite()) return follow;
-  // Half a turn away both ways are as long: the one that was begun is gone on with.
+  // Where half a turn is left, both ways round are about as long: the scope keeps to the one on which it has begun.
   const double turn = error.alpha - error.desired_alpha;
   const double same_way = turn_ + std::remainder(turn - turn_, 2.0 * M_PI);
   turn_ = shortTurn(same_way);

@@ -83,7 +83,7 @@ bool InsertionPointFitter::insert(const Shaft& shaft, std::size_t number) {
 }
 
 void InsertionPointFitter::thinOut() {
-  spacing_ *= 1.4;
+  spacing_ *= 1.4;  // the root of 2: of directions that fill a cone, half are left
   estimator_.reset();
   const std::vector<Shaft> shafts = std::move(shafts_);
   const std::vector<std::size_t> numbers = std::move(kept_);

@@ -15,7 +15,8 @@ Eigen::Matrix4d featureJacobian(double x, double y, double depth, const scope::G
 }
 
 double shortTurn(double turn) {
-  constexpr double kLongest = 3.5;  // half a turn and what noise adds to it
+  // Half a turn, and 20 degrees that noise may add to it: a hundred times an image's noise (target/orientation_noise).
+  constexpr double kLongest = 3.5;
   return std::abs(turn) < kLongest ? turn : std::remainder(turn, 2.0 * M_PI);
 }
 

@@ -10,8 +10,8 @@ namespace laparoscope_servo::servo {
 
 namespace {
 
-constexpr double kGrid = 0.005;      // s
-constexpr double kCorrelated = 5.0;  // reports in a row whose errors count for one
+constexpr double kGrid = 0.005;      // s: the period of the fastest commands that a controller may be asked for, 200 Hz
+constexpr double kCorrelated = 0.1;  // s, within which the errors of reports count for one
 
 }  // namespace
 
@@ -144,7 +144,7 @@ DelayEstimator::Peak DelayEstimator::findPeak() {
   const double curvature = (2.0 * best[0] - best[-1] - best[1]) / (config_.step * config_.step);
   if (!(curvature > 0.0) || !(correlation_ > 0.0)) return {};
   const double offset = 0.5 * (best[1] - best[-1]) / (2.0 * best[0] - best[-1] - best[1]) * config_.step;
-  const double independent = static_cast<double>(reports_.size()) / kCorrelated;
+  const double independent = std::max(1.0, (reports_.back().time - reports_.front().time) / kCorrelated);
   stddev_ = std::sqrt((1.0 - correlation_ * correlation_) / (correlation_ * curvature * independent));
   return {true, config_.minimum + config_.step * static_cast<double>(best - correlations_.begin()) + offset};
 }

@@ -14,7 +14,9 @@ constexpr int kTrend = 3;
 constexpr int kHarmonics = 3;
 constexpr int kColumns = kTrend + 2 * kHarmonics;
 constexpr double kAboutAsDeep = 1.5;
-constexpr double kStep = 0.15;  // of the grid, over the resolution of the window
+// Of the grid, times the length T of the window. A frequency that is off by half a step d fits a sinusoid but for
+// 1 - sinc^2(pi d T) of its power: 2 %, so that no minimum falls between two points of the grid.
+constexpr double kStep = 0.15;
 
 using Row = Eigen::Matrix<double, kColumns, 1>;
 using Normal = Eigen::Matrix<double, kColumns, kColumns>;
@@ -145,7 +147,7 @@ FoundFrequency findFrequency(const std::vector<TimedChannels>& samples, const Fr
     if (one.left <= enough && one.frequency > best.frequency) best = one;
   }
   const double trend = window.left(0.0);
-  if (!(trend > 0.0)) return result;
+  if (!(trend > 0.0 && std::isfinite(trend))) return result;
   return {true, best.frequency, std::min(1.0, best.left / trend)};
 }
 

@@ -25,7 +25,7 @@ class SlowCorrection {
   double wanted() const { return wanted_; }
 
  private:
-  static constexpr double kLongestStep = 1.0;  // s
+  static constexpr double kLongestStep = 1.0;  // s, the default of safety/max_clock_step: a longer one ends the motion
   double rate_;
   double value_ = 0.0;
   double wanted_ = 0.0;

@@ -6,7 +6,8 @@ namespace laparoscope_servo::servo {
 
 namespace {
 
-// Sources that are remembered. One that is forgotten has to be seen released again.
+// Sources that are remembered: more than there are switches in a room, so that strangers who connect again and again do
+// not take memory. One that is forgotten has to be seen released again.
 constexpr std::size_t kSources = 16;
 
 }  // namespace

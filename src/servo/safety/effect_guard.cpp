@@ -11,13 +11,16 @@ namespace laparoscope_servo::servo {
 
 namespace {
 
-constexpr double kGap = 0.5;          // s without an image after which nothing is compared
-constexpr double kSpan = 3.0;         // s of reports that are kept: more than kGap and the latest explanation
-constexpr double kReportLife = 0.25;  // s for which a report stands for the motion; the robot reports at 10 Hz or more
-constexpr double kReports = 0.3;      // s without a report after which the robot is one that says nothing
-constexpr double kSameOptics = 0.05;  // rad, by which the camera may be turned about the shaft as before
-constexpr double kPatience = 0.2;     // s that an image waits for a report of its time
-constexpr double kCornerError = 0.3;  // px: the noise of an image that is worse grows with it
+// s without an image, after which nothing is compared: tissue may have gone by 12 px on its own by then (tissue_centre
+// of 0.06 a second, at a focal length of 400 px), more than the scope moves the picture while it is not confirmed.
+constexpr double kGap = 0.5;
+constexpr double kSpan = 3.0;  // s of reports that are kept: more than kGap, kPatience and the latest explanation
+constexpr double kReportLife = 0.25;  // s for which a report stands for the motion: one of a robot at 10 Hz may be lost
+constexpr double kReports = 0.3;  // s without a report after which the robot is one that says nothing: three at 10 Hz
+constexpr double kSameOptics = 0.05;  // rad, by which the camera may be turned about the shaft: a tenth of a roll step
+constexpr double kPatience = 0.2;     // s that an image waits for a report of its time: two at 10 Hz
+// px, the corner error of a good image (simulate_servo's corner_noise): the noise of one that is worse grows with it.
+constexpr double kCornerError = 0.3;
 // Times that noise: the tracker believes in nothing beyond 1.5 px, and no corner error may blind the guard.
 constexpr double kWorst = 5.0;
 // Of an innovation's square over its variance: more is no further evidence. Measured with
@@ -30,7 +33,8 @@ constexpr double kOther = 400.0;
 // Log of how much less likely it is that a fault begins in an image than that there is none. Chosen, not varied since:
 // less lets faults that explain nothing lie nearer to the doubt, more makes those that begin later be found later.
 constexpr double kOnset = 3.0;
-constexpr double kConfirmed = 0.5;  // so near to kOnset, no fault explains anything
+// Where the best fault is less likely than none by all but this much of kOnset, it explains nothing: confirmed.
+constexpr double kConfirmed = 0.5;
 // Where depths are so wrong that the picture moves by less than this of what they say, it is no doubt of the budget's,
 // but here it would pass for a frozen one.
 constexpr double kLeastReach = 0.5;

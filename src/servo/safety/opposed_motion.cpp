@@ -9,7 +9,7 @@ namespace {
 const char* const kAxes[] = {"pan", "tilt", "spin", "insertion"};
 constexpr double kLate = 0.1;    // s, by which the robot may be later than its delay: the guard's latest is 0.14 s
 constexpr double kLasts = 0.15;  // s, for longer than this an axis has to go the wrong way
-constexpr double kStep = 0.02;   // s, between the commands that are looked at
+constexpr double kStep = 0.02;   // s, between the commands that are looked at: the period of the commands at 50 Hz
 
 // Against everything that it was told since before its delay.
 bool isOpposed(double time, double done, const CommandHistory& told, double delay, int axis) {

@@ -13,11 +13,13 @@ namespace {
 // s, by which two stamps may be nearer to each other than the poses: the arm's node stamps what it has just read, and
 // under load it reads two answers at once.
 constexpr double kStampJitter = 0.05;
-constexpr double kLastingJump = 0.5;     // s: a stray message is followed by true ones at once
-constexpr int kJumps = 3;                // in a row, each not long after the one before
-constexpr double kForgotten = 10.0;      // s, after a jump
-constexpr double kSameOffset = 1e-4;     // m, by which rounding changes the optics
-constexpr double kSameDirection = 1e-3;  // rad, the same
+constexpr double kLastingJump = 0.5;  // s: a stray message is followed by true ones at once
+constexpr int kJumps = 3;             // in a row, each not long after the one before
+constexpr double kForgotten = 10.0;   // s, after a jump
+// By which the optics may differ from those at engaging and be the same: far more than rounding makes of a transform
+// that stands, 1e-7 m in single precision, and less than anybody places a camera by hand.
+constexpr double kSameOffset = 1e-4;     // m
+constexpr double kSameDirection = 1e-3;  // rad
 
 double angleOf(const Eigen::Matrix3d& rotation) {
   return geometry::so3Log(rotation).norm();

@@ -1,7 +1,7 @@
 // The robot's dead zone and its inverse.
 //
 // A robot that does not move below a certain velocity leaves an error behind that a law alone never removes. The
-// inverse adds the dead zone's width to what is wanted. Noise about zero becomes motion with it: see rest_band.h.
+// inverse adds the dead zone's width to what is wanted. Noise about zero becomes motion with it: see hysteresis_band.h.
 #pragma once
 
 #include "laparoscope_servo/scope/velocity.h"

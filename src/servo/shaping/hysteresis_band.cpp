@@ -6,7 +6,7 @@
 namespace laparoscope_servo::servo {
 
 bool HysteresisBand::update(Band& band, double distance, double stop, double start, double time) const {
-  constexpr double kFar = 5.0;  // starts: a new way to go, not the old one
+  constexpr double kFar = 5.0;  // times `start`: an error beyond it is a new way to go, and nothing that was hunted
   if (distance > kFar * start) band.widened = 1.0;
   // NaN counts as off: what is wrong must not look like rest.
   const bool moves = !(distance < (band.moves ? stop : band.widened * start));

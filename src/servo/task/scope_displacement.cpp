@@ -10,8 +10,9 @@ namespace laparoscope_servo::servo {
 
 namespace {
 
+// Newton's method: near the solution each step doubles the digits, and where it has not ended after 20 there is none.
 constexpr int kMaxSteps = 20;
-constexpr double kConverged = 1e-12;
+constexpr double kConverged = 1e-12;  // rad and m, the last step: 4 digits above a double's rounding
 
 // Change of the direction of `d` at the normalised point of `p`, in the image.
 double turnOf(const Eigen::Vector3d& d, const Eigen::Vector3d& p, double angle) {

@@ -42,8 +42,6 @@ TEST(Controller, FollowsTheLawOnceEngaged) {
   EXPECT_EQ(running.last.speed_scale, 1.0);
 }
 
-// A finite error may still overflow in the law.
-// The shafts of the poses pass beside the calibrated insertion point by more and more: that is no rigid set-up.
 // A calibration that is off: d2 comes from where the shafts meet.
 TEST(Controller, TheEstimateTakesThePlaceOfAWrongDepth) {
   ControllerConfig config;

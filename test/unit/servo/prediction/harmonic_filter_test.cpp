@@ -293,5 +293,18 @@ TEST(HarmonicFilter, ASeedMayBeTakenBack) {
   EXPECT_NEAR(filter.frequency(), 0.25, 0.002);
 }
 
+// Where sums overflow nothing is found: no fit leaves less than nothing.
+TEST(FrequencySearch, NumbersThatOverflowAreNoBreath) {
+  std::vector<TimedChannels> samples;
+  for (int k = 0; k < 100; ++k)
+    samples.push_back({0.2 * k, Channels::Constant(1, 1e200 * std::sin(2.0 * M_PI * 0.25 * 0.2 * k))});
+  EXPECT_FALSE(findFrequency(samples, FrequencyBand(), 1.0, 1.7).found);
+  for (TimedChannels& sample : samples) sample.z *= 1e-200;
+  const FoundFrequency found = findFrequency(samples, FrequencyBand(), 1e-3, 1.7);
+  EXPECT_TRUE(found.found);
+  EXPECT_NEAR(found.frequency, 0.25, 0.005);
+  EXPECT_LT(found.unexplained, 0.01);
+}
+
 }  // namespace
 }  // namespace laparoscope_servo::servo
