@@ -1,6 +1,8 @@
 // What ends an engagement from outside of ROS: a signal, a stop line, the end of the ROS master; and a terminal that
 // nobody reads, which must not. Not a rostest: the master is the test's own.
 #include <fcntl.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
 #include <fstream>
@@ -89,10 +91,33 @@ TEST_F(ControllerOutside, aTerminalThatNobodyReadsHoldsNothingUp) {
   for (const int end : ends) ::close(end);
 }
 
+// A socket of this test that listens to other machines.
+class OpenSocket {
+ public:
+  OpenSocket() : file_(::socket(AF_INET, SOCK_STREAM, 0)) {
+    sockaddr_in name{};
+    name.sin_family = AF_INET;
+    socklen_t size = sizeof(name);
+    ::bind(file_, reinterpret_cast<const sockaddr*>(&name), size);
+    ::listen(file_, 1);
+    ::getsockname(file_, reinterpret_cast<sockaddr*>(&name), &size);
+    port_ = ntohs(name.sin_port);
+  }
+  ~OpenSocket() { ::close(file_); }
+  OpenSocket(const OpenSocket&) = delete;
+  OpenSocket& operator=(const OpenSocket&) = delete;
+  std::string words() const { return "0.0.0.0 port " + std::to_string(port_); }
+
+ private:
+  int file_;
+  int port_ = 0;
+};
+
 // As in a shell that has not sourced this workspace: nobody has told it which address to listen on, so it listens on
-// all.
+// all. The sockets that it names are its own.
 TEST_F(ControllerOutside, whoListensToOtherMachinesUnaskedSaysSo) {
   const test_support::TemporaryFolder folder;
+  const OpenSocket of_this_test;
   const auto said = [&] {
     std::ostringstream text;
     text << std::ifstream(folder.file("output")).rdbuf();
@@ -102,6 +127,7 @@ TEST_F(ControllerOutside, whoListensToOtherMachinesUnaskedSaysSo) {
       "/usr/bin/env", std::vector<std::string>{"-u", "ROS_HOSTNAME", "-u", "ROS_IP", CONTROLLER},
       folder.file("output"));
   EXPECT_TRUE(waitFor([&] { return said().find("listens to other machines") != std::string::npos; }, 30.0)) << said();
+  EXPECT_EQ(said().find(of_this_test.words()), std::string::npos) << said();
 }
 
 TEST_F(ControllerOutside, itStandsWithoutAMasterAndEndsWhenThereIsAnother) {

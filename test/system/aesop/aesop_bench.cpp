@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "ros/common/parameters.h"
+#include "support/service_call.h"
 
 namespace laparoscope_servo::test {
 
@@ -119,8 +120,8 @@ void AesopBench::send(ScopeVelocity command) {
 
 std_srvs::Trigger::Response AesopBench::call(const std::string& service) {
   std_srvs::Trigger trigger;
-  if (!ros::service::call("aesop/" + service, trigger))
-    throw std::runtime_error("service " + service + " is not there");
+  if (!test_support::callWithin("aesop/" + service, trigger))
+    throw std::runtime_error("service " + service + " is not there, or does not answer");
   ros::spinOnce();
   return trigger.response;
 }

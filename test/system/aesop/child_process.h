@@ -1,6 +1,7 @@
 // A process that a test starts, may kill, and never leaves behind.
 #pragma once
 
+#include <dirent.h>
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/types.h>
@@ -8,6 +9,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cstdlib>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -27,6 +29,7 @@ class ChildProcess {
       ::dup2(file, STDOUT_FILENO);
       ::dup2(file, STDERR_FILENO);
     }
+    inheritNothing();
     std::vector<char*> argv{const_cast<char*>(program.c_str())};
     for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
     argv.push_back(nullptr);
@@ -60,6 +63,18 @@ class ChildProcess {
   }
 
  private:
+  // Sockets of the test would stay open in the child: it would listen where the test listens, and whoever the test
+  // closes a connection to would not hear of it.
+  static void inheritNothing() {
+    DIR* folder = ::opendir("/proc/self/fd");
+    if (folder == nullptr) ::_exit(127);
+    while (const dirent* entry = ::readdir(folder)) {
+      const int file = std::atoi(entry->d_name);
+      if (file > STDERR_FILENO) ::fcntl(file, F_SETFD, FD_CLOEXEC);
+    }
+    ::closedir(folder);
+  }
+
   pid_t pid_;
   bool ended_ = false;
   int status_ = 0;

@@ -1,6 +1,6 @@
 // What stops the arm, one fault after the other on the whole cart: each in the situations that its line names, see
 // fault_table.cpp. CART_FAULTS=all tries all situations, CART_FAULT_PAIRS=N as many random pairs, from CART_FAULT_SEED
-// on. It prints what happened, for doc/what_stops_the_arm.md.
+// on; CART_TIME_LIMIT=S gives it more than 900 s. It prints what happened, for doc/what_stops_the_arm.md.
 #include <gtest/gtest.h>
 
 #include <algorithm>

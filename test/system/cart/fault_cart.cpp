@@ -10,6 +10,7 @@
 #include "laparoscope_servo/geometry/se3.h"
 #include "laparoscope_servo/sim/arm.h"
 #include "ros/common/parameters.h"
+#include "support/service_call.h"
 
 namespace laparoscope_servo::test {
 
@@ -90,14 +91,16 @@ std::string FaultCart::waitWhileEngaged(const char* what, const std::function<bo
 std::string FaultCart::engage(bool on) {
   std_srvs::SetBool call;
   call.request.data = static_cast<std::uint8_t>(on);
-  if (!ros::service::call("controller/engage", call)) return "controller/engage is not there";
+  if (!test_support::callWithin("controller/engage", call)) return "controller/engage does not answer";
   ros::spinOnce();
   return call.response.success ? "" : call.response.message;
 }
 
 std::string FaultCart::robot(const std::string& service) {
-  const auto answer = bench.call(service);
-  return answer.success ? "" : answer.message;
+  std_srvs::Trigger call;
+  if (!test_support::callWithin("aesop/" + service, call)) return "aesop/" + service + " does not answer";
+  ros::spinOnce();
+  return call.response.success ? "" : call.response.message;
 }
 
 double FaultCart::offset() const {
@@ -168,7 +171,9 @@ std::string FaultCart::see() {
     select.request.roi.x_offset = kRoiX;
     select.request.roi.y_offset = kRoiY;
     select.request.roi.width = select.request.roi.height = kRoiSide;
-    const auto selected = [&] { return ros::service::call("tracker/select_roi", select) && select.response.success; };
+    const auto selected = [&] {
+      return test_support::callWithin("tracker/select_roi", select) && select.response.success;
+    };
     if (!bench.waitFor(selected, 20.0)) return "no region: " + select.response.message;
   }
   const std::string problem = waitFor("the region in its place", [this] { return offset() < 5.0; });
@@ -194,7 +199,8 @@ std::string FaultCart::go(Situation situation) {
   const bool manual = situation == Situation::kManual;
   SelectTask task;
   task.request.task = manual ? ControllerState::MANUAL : ControllerState::HOLD_VIEW;
-  if (!ros::service::call("controller/select_task", task) || !task.response.success) return task.response.message;
+  if (!test_support::callWithin("controller/select_task", task)) return "controller/select_task does not answer";
+  if (!task.response.success) return task.response.message;
   // A line that is up may be lost once more on a busy machine.
   std::string problem = waitFor("an enable", [this] { return robot("enable").empty(); });
   if (problem.empty()) problem = waitFor("ENABLED", [this] { return bench.stateIs("ENABLED"); });

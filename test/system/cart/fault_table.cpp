@@ -114,22 +114,28 @@ std::vector<FaultRow> ofInputs() {
   };
 }
 
+// Not for long: together with another fault it may never come.
+void awaitRobot(FaultCart& cart, const std::string& state) {
+  constexpr double kPatience = 5.0;  // s
+  cart.bench.waitFor([&] { return cart.bench.stateIs(state); }, kPatience);
+}
+
 void disableAndEnable(FaultCart& cart) {
   cart.robot("disable");
-  cart.bench.waitFor([&] { return cart.bench.stateIs("DISABLED"); });
+  awaitRobot(cart, "DISABLED");
   cart.robot("enable");
-  cart.bench.waitFor([&] { return cart.bench.stateIs("ENABLED"); });
+  awaitRobot(cart, "ENABLED");
 }
 
 // By the arm's own button, and back as fast as somebody can.
 void emergencyStopAndBack(FaultCart& cart) {
   cart.bench.truth().fault("bits", 4.0);
-  cart.bench.waitFor([&] { return cart.bench.stateIs("FAULT"); });
+  awaitRobot(cart, "FAULT");
   cart.bench.truth().fault("bits", 0.0);
   cart.robot("clear_fault");
-  cart.bench.waitFor([&] { return cart.bench.stateIs("DISABLED"); });
+  awaitRobot(cart, "DISABLED");
   cart.robot("enable");
-  cart.bench.waitFor([&] { return cart.bench.stateIs("ENABLED"); });
+  awaitRobot(cart, "ENABLED");
 }
 
 std::vector<FaultRow> ofRobot() {
