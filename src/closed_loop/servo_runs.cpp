@@ -55,7 +55,7 @@ class Reversals {
 // Where the scope goes, and what stops it.
 class Stopping {
  public:
-  explicit Stopping(double from) : from_(from) {}
+  Stopping(double from, const Eigen::Vector4d& start) : from_(from), place_(start) {}
   void add(const SimulationSample& s, RunSummary& run) {
     const bool ended = s.state == servo::ControllerState::kLost || s.state == servo::ControllerState::kFault;
     if (ended && run.stopped < 0.0) run.stopped = s.t;
@@ -65,14 +65,23 @@ class Stopping {
       run.unconfirmed = robust::largest(run.unconfirmed, s.unconfirmed);
     }
     before_ = s.state;
-    if (s.t <= from_) start_ = s.moved;
+    const Eigen::Vector4d place = place_ + s.moved;
+    if (s.t <= from_) {
+      start_ = s.moved;
+      off_ = place;
+    }
     const Eigen::Vector4d way = s.moved - start_;
     run.turned = robust::largest(robust::largest(run.turned, way.head<2>().norm()), std::abs(way[2]));
     run.inserted = robust::largest(run.inserted, std::abs(way[3]));
+    run.turned_away = robust::largest(run.turned_away, place.head<2>().norm() - off_.head<2>().norm());
+    run.turned_away = robust::largest(run.turned_away, std::abs(place[2]) - std::abs(off_[2]));
+    run.inserted_away = robust::largest(run.inserted_away, std::abs(place[3]) - std::abs(off_[3]));
   }
 
  private:
   double from_;
+  Eigen::Vector4d place_;                          // where it starts, from where it should be
+  Eigen::Vector4d off_ = Eigen::Vector4d::Zero();  // where it is from there at from_
   servo::ControllerState before_ = servo::ControllerState::kIdle;
   Eigen::Vector4d start_ = Eigen::Vector4d::Zero();
 };
@@ -140,7 +149,7 @@ RunSummary summariseRun(const std::vector<SimulationSample>& samples, const Simu
   Settling centre(bounds.centre), scale(bounds.scale), orientation(bounds.orientation);
   Reversals reversals;
   const bool freezes = config.picture.frozen_from < samples.back().t;
-  Stopping stopping(freezes ? config.picture.frozen_from : 0.0);
+  Stopping stopping(freezes ? config.picture.frozen_from : 0.0, config.start.vector());
   double count = 0.0;
   for (const SimulationSample& s : samples) {
     const double offset = (Eigen::Vector2d(s.u, s.v) - config.roi.centre()).norm();
@@ -174,7 +183,7 @@ void writeRuns(const std::vector<RunSummary>& runs, std::ostream& stream) {
   stream << "seed,start_pan,start_tilt,start_spin,start_insertion,refused_starts,settled,settled_centre,settled_scale,"
             "settled_orientation,left_image,centre_rms,scale_rms,orientation_rms,moving_share,reversals,"
             "max_commanded_lateral_speed,max_lateral_speed,max_lateral_offset,final_state,stopped,holds,"
-            "turned,inserted,evidence,unconfirmed\n";
+            "turned,inserted,turned_away,inserted_away,evidence,unconfirmed\n";
   stream.precision(9);
   for (const RunSummary& r : runs) {
     const scope::Velocity& start = r.drawn.start;
@@ -183,8 +192,8 @@ void writeRuns(const std::vector<RunSummary>& runs, std::ostream& stream) {
            << r.settled_orientation << ',' << (r.left_image ? 1 : 0) << ',' << r.centre_rms << ',' << r.scale_rms << ','
            << r.orientation_rms << ',' << r.moving_share << ',' << r.reversals << ',' << r.max_commanded_lateral_speed
            << ',' << r.max_lateral_speed << ',' << r.max_lateral_offset << ',' << name(r.final_state) << ','
-           << r.stopped << ',' << r.holds << ',' << r.turned << ',' << r.inserted << ',' << r.evidence << ','
-           << r.unconfirmed << '\n';
+           << r.stopped << ',' << r.holds << ',' << r.turned << ',' << r.inserted << ',' << r.turned_away << ','
+           << r.inserted_away << ',' << r.evidence << ',' << r.unconfirmed << '\n';
   }
 }
 
@@ -221,6 +230,8 @@ void printRuns(const std::vector<RunSummary>& runs, const RunBounds& bounds, std
   stream << "stopped: " << stopped << ", held: " << held << '\n';
   printSpread("  turned", all([](const RunSummary& r) { return r.turned / kDegree; }), " deg", stream);
   printSpread("  inserted", all([](const RunSummary& r) { return 1e3 * r.inserted; }), " mm", stream);
+  printSpread("  turned away", all([](const RunSummary& r) { return r.turned_away / kDegree; }), " deg", stream);
+  printSpread("  inserted away", all([](const RunSummary& r) { return 1e3 * r.inserted_away; }), " mm", stream);
   printSpread("  evidence of a fault", all([](const RunSummary& r) { return r.evidence; }), "", stream);
   printSpread("  share of the motion allowed unseen", all([](const RunSummary& r) { return r.unconfirmed; }), "",
               stream);

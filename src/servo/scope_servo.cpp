@@ -193,12 +193,14 @@ scope::Velocity ScopeServo::command(const ServoInput& input, const ServoLimits& 
   const LawVelocity wanted = law_->velocity(follows ? error : band_.apply(error, input.time), input.scope);
   if (!wanted.sum().vector().allFinite()) return wanted.sum();
   const double gain = limits.scale * gainFactor();
-  // Pan and tilt come first: where there is no room for spin and insertion, the centre need not wait for them.
-  scope::Velocity centring = scaled(wanted.centring, gain), aside;
-  std::swap(centring.spin, aside.spin);
-  std::swap(centring.insertion, aside.insertion);
-  scope::Velocity velocity = limiter_.apply(
-      {scaled(follow, limits.scale), scaled(wanted.turning, gain), centring, aside}, input.period, limits.scale);
+  // Pan and tilt come first: where there is no room for spin and insertion, the centre need not wait for them. Nor need
+  // they wait for each other: an axis that creeps shows too late what it does.
+  scope::Velocity centring = scaled(wanted.centring, gain), spin, insertion;
+  std::swap(centring.spin, spin.spin);
+  std::swap(centring.insertion, insertion.insertion);
+  scope::Velocity velocity =
+      limiter_.apply({scaled(follow, limits.scale), scaled(wanted.turning, gain), centring, spin, insertion},
+                     input.period, limits.scale);
   velocity.insertion = std::clamp(velocity.insertion, -limits.insertion, limits.insertion);
   velocity.spin = std::clamp(velocity.spin, -limits.spin, limits.spin);
   if (!limits.insertion_allowed) velocity.insertion = std::min(velocity.insertion, 0.0);

@@ -48,6 +48,9 @@ struct RunSummary {
   // How far the scope went from the start, or from when the picture froze: rad, pan and tilt together or spin; m.
   double turned = 0.0;
   double inserted = 0.0;
+  // The same, of how far it went away from where the region is in its place.
+  double turned_away = 0.0;
+  double inserted_away = 0.0;
   double evidence = 0.0;  // of the guard of effect, the most while it was engaged; see src/servo/safety/effect_guard.h
   double unconfirmed = 0.0;  // share of the motion that it allows unseen, the most
 };

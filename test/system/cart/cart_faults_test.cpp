@@ -18,6 +18,7 @@ namespace {
 
 constexpr double kCalm = 0.6;     // s of rest that are taken for standing: longer than the arm's delay
 constexpr double kWatched = 4.0;  // s; nothing that stops the arm takes so long
+constexpr double kGoingOn = 1.5;  // s, for which one that may go on is watched
 
 struct Case {
   const FaultRow* row;
@@ -105,6 +106,16 @@ class OneCart : public testing::Environment {
   }
 };
 
+// Whether it does what it was engaged for, in spite of the fault. A scope that was held may go on, too: a fault of the
+// pictures takes the cover away.
+bool goesOn(const FaultRow& row, Situation situation, const Reaction& r) {
+  if (row.outcome == Outcome::kStands) return false;
+  if (situation == Situation::kManual)
+    return r.state == "SERVO" && r.travel.degrees < 1.2 * kStick * kGoingOn * 180.0 / M_PI;
+  if (r.state == "SERVO") return r.nearer >= 0.0;
+  return row.outcome == Outcome::kEither && r.nearer > 0.0;
+}
+
 class CartFaults : public testing::TestWithParam<Case> {};
 
 TEST_P(CartFaults, LeaveTheArmWhereItIsOrToItsTask) {
@@ -115,13 +126,11 @@ TEST_P(CartFaults, LeaveTheArmWhereItIsOrToItsTask) {
   ASSERT_EQ(cart.bringTo(situation), "");
   cart.mark();
   trial.begin();
-  const bool may_go_on = row.outcome != Outcome::kStands && situation == Situation::kServo;
-  const Reaction reaction = cart.watch(may_go_on ? 1.5 : kWatched, kCalm);
+  const Reaction reaction = cart.watch(row.outcome == Outcome::kStands ? kWatched : kGoingOn, kCalm);
   print(row.name, situation, reaction);
-  const bool goes_on =
-      may_go_on && reaction.nearer > 0.0 && (reaction.state == "SERVO" || row.outcome == Outcome::kEither);
-  if (goes_on) return;
-  EXPECT_NE(row.outcome, Outcome::kGoesOn) << reaction.nearer << " degrees nearer";
+  if (goesOn(row, situation, reaction)) return;
+  EXPECT_FALSE(row.outcome == Outcome::kGoesOn && situation == Situation::kServo)
+      << reaction.nearer << " degrees nearer";
   EXPECT_LT(reaction.stood, kWatched - kCalm) << "it goes on";
   EXPECT_LE(reaction.travel.degrees, row.degrees);
   EXPECT_LE(reaction.travel.millimetres, row.millimetres);

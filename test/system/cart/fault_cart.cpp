@@ -18,7 +18,6 @@ namespace {
 
 constexpr int kRoiX = 260, kRoiY = 180, kRoiSide = 120;  // px
 constexpr double kPan = 0.16;                            // rad, from where the region is seen in its place
-constexpr double kStick = 0.08;                          // rad/s
 constexpr double kHand = 0.4;                            // s, that a hand takes
 
 XmlRpc::XmlRpcValue config(const std::string& name) {

@@ -17,6 +17,8 @@ namespace laparoscope_servo::test {
 
 enum class Situation : unsigned { kServo = 1, kHold = 2, kManual = 4 };
 
+constexpr double kStick = 0.08;  // rad/s, of pan, in MANUAL
+
 const char* name(Situation situation);
 
 // What happened after a fault.

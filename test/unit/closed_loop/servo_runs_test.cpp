@@ -234,6 +234,23 @@ TEST(SummariseRun, CountsTheWayFromWhenThePictureFroze) {
   EXPECT_NEAR(summariseRun(samples, config, RunBounds()).turned, 0.05, 1e-12);
 }
 
+// Towards the place and beyond it is no way away before it is as far on the other side.
+TEST(SummariseRun, TellsHowFarTheScopeWentAwayFromItsPlace) {
+  std::vector<SimulationSample> samples = still(10);
+  SimulationConfig config;
+  config.start = {0.03, 0.04, 0.01, -0.002};
+  samples[1].moved << -0.06, -0.08, 0.0, 0.004;
+  EXPECT_NEAR(summariseRun(samples, config, RunBounds()).turned_away, 0.0, 1e-12);
+  EXPECT_NEAR(summariseRun(samples, config, RunBounds()).inserted_away, 0.0, 1e-12);
+  samples[2].moved << -0.09, -0.12, 0.0, 0.005;
+  EXPECT_NEAR(summariseRun(samples, config, RunBounds()).turned_away, 0.05, 1e-12);
+  EXPECT_NEAR(summariseRun(samples, config, RunBounds()).inserted_away, 0.001, 1e-12);
+  samples[3].moved << 0.0, 0.0, 0.07, 0.0;
+  EXPECT_NEAR(summariseRun(samples, config, RunBounds()).turned_away, 0.07, 1e-12);
+  config.picture.frozen_from = samples[2].t;
+  EXPECT_NEAR(summariseRun(samples, config, RunBounds()).inserted_away, 0.0, 1e-12) << "from there, it came nearer";
+}
+
 TEST(WriteRuns, AColumnForEachFigure) {
   RunSummary run;
   run.seed = 2;
@@ -256,16 +273,18 @@ TEST(WriteRuns, AColumnForEachFigure) {
   run.holds = 21;
   run.turned = 22.0;
   run.inserted = 23.0;
-  run.evidence = 24.0;
-  run.unconfirmed = 25.0;
+  run.turned_away = 24.0;
+  run.inserted_away = 25.0;
+  run.evidence = 26.0;
+  run.unconfirmed = 27.0;
   std::ostringstream stream;
   writeRuns({run}, stream);
   EXPECT_EQ(stream.str(),
             "seed,start_pan,start_tilt,start_spin,start_insertion,refused_starts,settled,settled_centre,settled_scale,"
             "settled_orientation,left_image,centre_rms,scale_rms,orientation_rms,moving_share,reversals,"
             "max_commanded_lateral_speed,max_lateral_speed,max_lateral_offset,final_state,stopped,holds,"
-            "turned,inserted,evidence,unconfirmed\n"
-            "2,3,4,5,6,7,8,9,10,11,1,12,13,14,15,16,17,18,19,HOLD,20,21,22,23,24,25\n");
+            "turned,inserted,turned_away,inserted_away,evidence,unconfirmed\n"
+            "2,3,4,5,6,7,8,9,10,11,1,12,13,14,15,16,17,18,19,HOLD,20,21,22,23,24,25,26,27\n");
 }
 
 TEST(PrintRuns, NamesTheSeedsThatDidNotSettle) {

@@ -90,6 +90,20 @@ TEST(ScopeServo, KeepsToItsLimits) {
   EXPECT_TRUE(turned);
 }
 
+// Each goes as fast as it may, however far the other has to go.
+TEST(ScopeServo, SpinAndInsertionDoNotWaitForEachOther) {
+  Loop both(withoutDeadZone(), 0.16), insertion(withoutDeadZone(), 0.16);
+  both.loop.offset({0.0, 0.0, 0.6, -0.005});
+  insertion.loop.offset({0.0, 0.0, 0.0, -0.005});
+  for (int k = 0; k < 100; ++k) {
+    both.step();
+    insertion.step();
+  }
+  EXPECT_GT(std::abs(both.loop.error().alpha), 0.3) << "still far to spin";
+  EXPECT_NEAR(both.loop.error().log_depth, insertion.loop.error().log_depth, 0.002);
+  EXPECT_LT(std::abs(both.loop.error().log_depth), 0.005);
+}
+
 TEST(ScopeServo, IsSlowerWhenItHasTo) {
   Loop full(ControllerConfig(), 0.16), slow(ControllerConfig(), 0.16);
   full.loop.offset({0.02, 0.0, 0.0, 0.0});

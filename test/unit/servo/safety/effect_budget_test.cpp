@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 
 #include "servo/safety/effect_explanations.h"
@@ -20,11 +21,12 @@ class Seen {
     for (const EffectExplanation& e : effectExplanations()) {
       likelihoods.push_back(!e.fault.empty() && against(e) ? -ratio : 0.0);
     }
-    budget.see(dt, likelihoods, pending, 0.0, breath_known);
+    budget.see(dt, likelihoods, pending, turned, breath_known);
   }
 
   EffectConfig config;
   EffectBudget budget{config};
+  double turned = 0.0;  // rad
   bool breath_known = false;
 };
 
@@ -66,7 +68,42 @@ TEST(EffectBudget, AFaultIsSpentByTheMotionThatGoesWrongUnderIt) {
   EXPECT_NEAR(spentBy("mirrored, up for down", tilt), 0.02, 1e-9);
   EXPECT_NEAR(spentBy("frozen, or another camera's", tilt), 0.02, 1e-9);
   EXPECT_NEAR(spentBy("frozen, or another camera's", spin), 0.02, 1e-9);
-  EXPECT_NEAR(spentBy("moved by an arm whose pan is reversed", pan), 0.0, 1e-9) << "one axis alone shows too little";
+}
+
+TEST(EffectBudget, AnAxisThatIsReversedIsSpentByItsOwnMotion) {
+  const std::vector<std::string> axes{"pan", "tilt", "spin", "insertion"};
+  for (int axis = 0; axis < 4; ++axis) {
+    Seen seen;
+    const double most = axis == 3 ? seen.config.unconfirmed_insertion : seen.config.unconfirmed_turn;
+    const std::string fault = "moved by an arm whose " + axes[static_cast<std::size_t>(axis)] + " is reversed";
+    seen.see([&](const EffectExplanation& e) { return e.fault != fault; });
+    Eigen::Vector4d others = Eigen::Vector4d::Constant(0.02);
+    others[axis] = 0.0;
+    seen.budget.command(others, true);
+    EXPECT_NEAR(seen.budget.spent(), 0.0, 1e-9) << fault;
+    seen.budget.command(0.7 * most * Eigen::Vector4d::Unit(axis), true);
+    EXPECT_NEAR(seen.budget.spent(), 0.7, 1e-9) << fault;
+    EXPECT_NEAR(seen.budget.aside(), 0.0, 1e-9) << "its own motion shows it";
+  }
+}
+
+TEST(EffectBudget, AnAxisThatDoesNotMoveSpendsNothing) {
+  Seen seen;
+  seen.see([](const EffectExplanation& e) { return !e.still() || e.frozen(); });
+  seen.budget.command({0.1, 0.1, 0.1, 0.01}, true);
+  EXPECT_EQ(seen.budget.spent(), 0.0);
+}
+
+// The share that goes wrong does not depend on which way the camera is turned about the shaft; which motion it is,
+// does.
+TEST(EffectBudget, AMirrorTurnsWithTheCamera) {
+  Seen seen;
+  seen.turned = 0.5 * M_PI;
+  seen.see([](const EffectExplanation& e) { return e.fault != "mirrored, left for right"; });
+  seen.budget.command({0.03, 0.0, 0.0, 0.0}, true);
+  EXPECT_NEAR(seen.budget.spent(), 0.0, 1e-9);
+  seen.budget.command({0.0, 0.03, 0.0, 0.0}, true);
+  EXPECT_NEAR(seen.budget.spent(), 0.03 / seen.config.unconfirmed_turn, 1e-9);
 }
 
 TEST(EffectBudget, AnInterruptionOpensEveryFaultAndForgivesNothing) {
@@ -116,7 +153,7 @@ TEST(EffectBudget, AFrozenPictureIsNotOpenWhileABreathIsFollowed) {
 
 TEST(EffectBudget, SpinAndInsertionWaitForPanAndTilt) {
   Seen seen;
-  seen.see([](const EffectExplanation& e) { return e.picture.isIdentity(); });  // a frozen one is not open
+  seen.see([](const EffectExplanation& e) { return e.picture.isIdentity(); });  // no frozen one, no arm is open
   seen.budget.command({0.0, 0.0, 0.5 * seen.config.unconfirmed_turn, 0.75 * seen.config.unconfirmed_insertion}, true);
   EXPECT_NEAR(seen.budget.aside(), 0.75, 1e-9);
   seen.see(all);
