@@ -175,8 +175,13 @@ void EffectGuard::judge(const EffectObservation& image, const CommandHistory& co
     start(image, true);
     return;
   }
+  // Those that come equally late stand beside each other.
+  double late = std::numeric_limits<double>::quiet_NaN();
+  Eigen::Vector4d displacement;
   for (Track& track : tracks_) {
-    track.moved += predicted(track.explanation, executed(image.time, track.explanation.late, commands, delay));
+    if (track.explanation.late != late) displacement = executed(image.time, track.explanation.late, commands, delay);
+    late = track.explanation.late;
+    track.moved += predicted(track.explanation, displacement);
   }
   advance(dt);
   const double off = compare(image, commands.displacement(image.time, image.time + kSpan, delay));
