@@ -53,9 +53,6 @@ struct EffectBudget::Fault {
     const Eigen::Vector4d of_axes = of_arm.cwiseProduct(displacement).cwiseAbs();
     return {std::max({(of_picture * seen).norm(), of_axes.head<2>().norm(), of_axes[2]}), of_axes[3]};
   }
-  // What an axis that does not move leaves undone harms nobody, and shows so late that one healthy loop in six would
-  // use up what it may go. Measured with simulate_servo, 200 starts of large_starts.
-  bool counts() const { return explanation.frozen() || !explanation.still(); }
   bool ofPicture() const { return !of_picture.isZero() || explanation.frozen(); }
   double closed() const { return ofPicture() ? kClosed : kClosedAxis; }
   double opened() const { return ofPicture() ? kOpened : kOpenedAxis; }
@@ -117,7 +114,7 @@ double EffectBudget::spent() const {
   const Eigen::Matrix2d turned = Eigen::Rotation2Dd(turned_).toRotationMatrix();
   double most = 0.0;
   for (const Fault& fault : faults_) {
-    if (!fault.open || !fault.counts()) continue;
+    if (!fault.open) continue;
     const Eigen::Vector2d wrong = fault.wrong(moved_ - fault.since, turned);
     most = std::max({most, wrong[0] / config_.unconfirmed_turn, wrong[1] / config_.unconfirmed_insertion});
   }
@@ -127,7 +124,7 @@ double EffectBudget::spent() const {
 double EffectBudget::aside() const {
   double most = 0.0;
   for (const Fault& fault : faults_) {
-    if (!fault.open || !fault.counts() || !fault.ofPicture()) continue;
+    if (!fault.open || !fault.ofPicture()) continue;
     const Eigen::Vector4d moved = (moved_ - fault.since).cwiseAbs();
     most = std::max({most, moved[2] / config_.unconfirmed_turn, moved[3] / config_.unconfirmed_insertion});
   }

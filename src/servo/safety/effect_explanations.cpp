@@ -59,10 +59,6 @@ std::vector<EffectExplanation> effectExplanations() {
   all.push_back(arm("moved by an arm whose pan and tilt are reversed", {-1.0, -1.0, 1.0, 1.0}));
   all.push_back(arm("moved by an arm whose spin is reversed", {1.0, 1.0, -1.0, 1.0}));
   all.push_back(arm("moved by an arm whose insertion is reversed", {1.0, 1.0, 1.0, -1.0}));
-  all.push_back(arm("moved by an arm that does not pan", {0.0, 1.0, 1.0, 1.0}));
-  all.push_back(arm("moved by an arm that does not tilt", {1.0, 0.0, 1.0, 1.0}));
-  all.push_back(arm("moved by an arm that does not spin", {1.0, 1.0, 0.0, 1.0}));
-  all.push_back(arm("moved by an arm that does not go in or out", {1.0, 1.0, 1.0, 0.0}));
   all.push_back(arm("frozen, or another camera's", Eigen::Vector4d::Zero()));
   return all;
 }

@@ -11,10 +11,9 @@ namespace laparoscope_servo::servo {
 struct EffectExplanation {
   std::string fault;                                      // in words that follow "as if it were"; empty: none
   Eigen::Matrix2d picture = Eigen::Matrix2d::Identity();  // of the picture over what it should be, orthogonal
-  Eigen::Vector4d arm = Eigen::Vector4d::Ones();          // over what it should do: pan, tilt, spin, insertion
+  Eigen::Vector4d arm = Eigen::Vector4d::Ones();          // signs of what it does: pan, tilt, spin, insertion
   double late = 0.0;                                      // s, by which what is known of its motion comes late
   double reach = 1.0;                                     // of the motion in the picture, over what depths say
-  bool still() const { return (arm.array() == 0.0).any(); }  // it lets a motion of the scope leave no trace
   bool frozen() const { return arm.isZero(); }
 };
 

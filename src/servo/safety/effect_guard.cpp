@@ -267,7 +267,7 @@ void EffectGuard::judge() {
   for (Track& track : tracks_) {
     if (track.explanation.fault.empty()) continue;
     // A breath that is followed as it was learnt does not move in the picture, no more than a frozen one does.
-    const bool alike = track.explanation.still() && last_.breath_known;
+    const bool alike = track.explanation.frozen() && last_.breath_known;
     if (alike || track.log_likelihood < good->log_likelihood - kOnset) begin(track, *good);
     if (fault == nullptr || track.log_likelihood > fault->log_likelihood) fault = &track;
   }

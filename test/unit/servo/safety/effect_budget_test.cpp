@@ -87,13 +87,6 @@ TEST(EffectBudget, AnAxisThatIsReversedIsSpentByItsOwnMotion) {
   }
 }
 
-TEST(EffectBudget, AnAxisThatDoesNotMoveSpendsNothing) {
-  Seen seen;
-  seen.see([](const EffectExplanation& e) { return !e.still() || e.frozen(); });
-  seen.budget.command({0.1, 0.1, 0.1, 0.01}, true);
-  EXPECT_EQ(seen.budget.spent(), 0.0);
-}
-
 // The share that goes wrong does not depend on which way the camera is turned about the shaft; which motion it is,
 // does.
 TEST(EffectBudget, AMirrorTurnsWithTheCamera) {
