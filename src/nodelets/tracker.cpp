@@ -20,8 +20,9 @@ namespace laparoscope_servo::nodelets {
 
 namespace {
 
-constexpr double kAhead = 1.0;     // s, of tf to this machine's clock
-constexpr double kThrottle = 5.0;  // s between two lines of the log about the same kind of trouble
+constexpr double kAhead = 1.0;        // s, of tf to this machine's clock
+constexpr double kStatePeriod = 0.2;  // s between two looks whether images come
+constexpr double kThrottle = 5.0;     // s between two lines of the log about the same kind of trouble
 
 template <class Message>
 void publishIfHeard(const ros::Publisher& publisher, Message (*make)(const Processed&), const Processed& processed) {
@@ -66,6 +67,7 @@ Tracker::~Tracker() {
 void Tracker::onInit() {
   // Nothing that is wrong here may take the manager, and the camera driver in it, along.
   try {
+    state_publisher_ = getPrivateNodeHandle().advertise<TrackerState>("state", 5, true);
     diagnostics_ = std::make_unique<diagnostic_updater::Updater>(getNodeHandle(), getPrivateNodeHandle(), getName());
     diagnostics_->setHardwareID("none");
     diagnostics_->add("tracking", this, &Tracker::diagnose);
@@ -85,6 +87,7 @@ void Tracker::onInit() {
 
 void Tracker::standAside(const std::string& why) {
   why_aside_ = why;
+  state_publisher_.publish(notStarted(why));
   NODELET_ERROR("the tracker does not start: %s", why.c_str());
 }
 
@@ -102,6 +105,10 @@ void Tracker::start(const TrackerParameters& parameters) {
   roi_publisher_ = private_node.advertise<geometry_msgs::PolygonStamped>("roi", 10);
   mask_publisher_ = private_node.advertise<sensor_msgs::Image>("occlusion_mask", 2);
   overlay_publisher_ = private_node.advertise<sensor_msgs::Image>("overlay", 2);
+  preview_publisher_ = private_node.advertise<sensor_msgs::Image>("preview", 2);
+  state_timer_ = node.createWallTimer(ros::WallDuration(kStatePeriod), [this](const ros::WallTimerEvent&) {
+    publishState(state_report_.tick(steadyNow()));
+  });
   reset_server_ = private_node.advertiseService("reset", &Tracker::reset, this);
 
   camera_info_subscriber_ = node.subscribe("camera_info", 2, &Tracker::cameraInfoCallback, this);
@@ -222,8 +229,12 @@ void Tracker::publish(const Processed& processed) {
   publishIfHeard(task_error_publisher_, taskErrorMessage, processed);
   publishIfHeard(areas_publisher_, areaSelectionMessage, processed);
   publishIfHeard(roi_publisher_, roiMessage, processed);
+  publishState(state_report_.processed(steadyNow(), processed));
   if (mask_publisher_.getNumSubscribers() > 0) {
     mask_publisher_.publish(imageMessage(processed.header, session_->occlusionMask()));
+  }
+  if (preview_publisher_.getNumSubscribers() > 0 && preview_.due(steadyNow())) {
+    preview_publisher_.publish(imageMessage(processed.header, preview_.of(processed.image, processed.lens)));
   }
   if (overlay_publisher_.getNumSubscribers() > 0) {
     overlay_publisher_.publish(
@@ -231,7 +242,12 @@ void Tracker::publish(const Processed& processed) {
   }
 }
 
+void Tracker::publishState(const std::optional<TrackerState>& state) {
+  if (state) state_publisher_.publish(*state);
+}
+
 void Tracker::refuse(const std::string& error, Refusal cause) {
+  state_report_.refused(error);
   statistics_->refused(steadyNow(), error, cause);
   NODELET_ERROR_THROTTLE(kThrottle, "image refused: %s", error.c_str());
 }

@@ -13,13 +13,16 @@
 #include <std_srvs/Trigger.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "ros/common/owned_transforms.h"
 #include "ros/tracker/feed_owner.h"
+#include "ros/tracker/preview.h"
 #include "ros/tracker/tracker_diagnostics.h"
 #include "ros/tracker/tracker_request.h"
 #include "ros/tracker/tracker_session.h"
+#include "ros/tracker/tracker_state_report.h"
 #include "ros/tracker/view_library.h"
 
 namespace laparoscope_servo::nodelets {
@@ -53,6 +56,7 @@ class Tracker : public nodelet::Nodelet {
 
   void process(const sensor_msgs::ImageConstPtr& message);
   void publish(const Processed& processed);
+  void publishState(const std::optional<TrackerState>& state);
   void refuse(const std::string& error, Refusal cause = Refusal::kData);
 
   std::unique_ptr<OwnedTransforms> transforms_;  // with robot_motion only
@@ -60,6 +64,8 @@ class Tracker : public nodelet::Nodelet {
   std::unique_ptr<TrackerDiagnostics> statistics_;
   std::unique_ptr<diagnostic_updater::Updater> diagnostics_;
   std::string why_aside_;
+  TrackerStateReport state_report_;
+  Preview preview_;
 
   TrackerRequest request_;
   ros::CallbackQueue request_queue_;
@@ -81,11 +87,14 @@ class Tracker : public nodelet::Nodelet {
   ros::Publisher roi_publisher_;
   ros::Publisher mask_publisher_;
   ros::Publisher overlay_publisher_;
+  ros::Publisher preview_publisher_;
+  ros::Publisher state_publisher_;
   ros::ServiceServer select_server_;
   ros::ServiceServer store_server_;
   ros::ServiceServer recall_server_;
   ros::ServiceServer reset_server_;
   ros::WallTimer diagnostics_timer_;
+  ros::WallTimer state_timer_;
 };
 
 }  // namespace laparoscope_servo::nodelets

@@ -1,11 +1,14 @@
 // The tracker nodelet in a manager that it shares with others.
 #include <gtest/gtest.h>
+#include <laparoscope_servo/TrackerState.h>
+#include <ros/topic.h>
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cmath>
 #include <limits>
+#include <mutex>
 
 #include "camera_bench.h"
 
@@ -368,10 +371,52 @@ TEST_F(TrackerNodelet, DrawsForWhoListens) {
   EXPECT_EQ(rois.at(stamp)->polygon.points.size(), 4u);
 }
 
+TEST_F(TrackerNodelet, TellsPeopleItsState) {
+  ros::NodeHandle& node = left().node();
+  std::mutex mutex;
+  TrackerState last;
+  const ros::Subscriber states = node.subscribe<TrackerState>("tracker/state", 10, [&](const TrackerStateConstPtr& m) {
+    const std::lock_guard<std::mutex> lock(mutex);
+    last = *m;
+  });
+  const auto state = [&] {
+    const std::lock_guard<std::mutex> lock(mutex);
+    return last;
+  };
+  const ros::Time stamp = nextStamp();
+  ASSERT_TRUE(left().track(image_, stamp));
+  EXPECT_TRUE(waitFor([&] { return state().state == TrackerState::IDLE && state().width == 320; })) << state();
+  ASSERT_TRUE(selectWhileRunning(image_, kRoi).success);
+  EXPECT_TRUE(waitFor([&] { return state().state == TrackerState::TRACKING; })) << state();
+  EXPECT_EQ(state().region[0], 100.0);
+  EXPECT_EQ(state().region[4], 199.0);
+  // Nobody sends an image now.
+  EXPECT_TRUE(waitFor([&] { return state().state == TrackerState::NO_IMAGE; })) << state();
+  EXPECT_NE(state().reason.find("before: TRACKING"), std::string::npos) << state();
+}
+
+TEST_F(TrackerNodelet, ShowsAPreviewToWhoListens) {
+  Inbox<sensor_msgs::Image> previews(left().node(), "tracker/preview");
+  ros::Time stamp;
+  ASSERT_TRUE(waitFor([&] {
+    stamp = nextStamp();
+    left().track(image_, stamp);
+    return waitFor([&] { return previews.at(stamp) != nullptr; }, 0.2);
+  }));
+  EXPECT_EQ(previews.at(stamp)->encoding, "bgr8");
+  EXPECT_EQ(previews.at(stamp)->width, 320u);
+  EXPECT_EQ(previews.at(stamp)->header.frame_id, "optical_of_the_test");
+}
+
 TEST_F(TrackerNodelet, StandsAsideWithWrongParametersAndNamesThemAll) {
   DiagnosticsListener diagnostics(left().node(), "wrong/tracker");
   ASSERT_TRUE(diagnostics.waitForMessage(diagnostic_msgs::DiagnosticStatus::ERROR, "not started"))
       << diagnostics.last();
+  const TrackerStateConstPtr state =
+      ros::topic::waitForMessage<TrackerState>("/wrong/tracker/state", ros::Duration(20.0));
+  ASSERT_TRUE(state) << "who comes later is told, too";
+  EXPECT_EQ(state->state, TrackerState::NOT_STARTED);
+  EXPECT_NE(state->reason.find("/wrong/tracker/roi"), std::string::npos) << state->reason;
   for (const char* part : {"/wrong/tracker/roi", "/wrong/tracker/tracking/esm/levels", "99", "lvels"}) {
     EXPECT_NE(diagnostics.last().message.find(part), std::string::npos) << part << ": " << diagnostics.last().message;
   }
