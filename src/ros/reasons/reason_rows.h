@@ -1,0 +1,14 @@
+// The rows of the table of reasons, a file for each speaker.
+#pragma once
+
+#include <vector>
+
+#include "ros/reasons/reason_table.h"
+
+namespace laparoscope_servo {
+
+const std::vector<ReasonRow>& trackerReasons();
+const std::vector<ReasonRow>& controllerReasons();
+const std::vector<ReasonRow>& robotReasons();
+
+}  // namespace laparoscope_servo
