@@ -1,0 +1,102 @@
+#include "screen/band_text.h"
+
+#include <cmath>
+
+#include "ros/reasons/reason_table.h"
+
+namespace laparoscope_servo::screen {
+
+namespace {
+
+// s without a word after which a node that is connected is taken for hung. The tracker repeats its state once a second,
+// the others theirs, or their commands, ten times a second and more.
+constexpr double kTrackerSilence = 2.5;
+constexpr double kSilence = 1.0;
+
+// What stands before the node has been heard; empty when it speaks.
+BandText absence(const Facts& facts, const std::string& who, bool connected, double heard_at, double patience,
+                 double now) {
+  if (!facts.master) return {"NO MASTER", "There is no ROS master.", "Start a launch file; the screen waits.", "", {}};
+  if (!connected && heard_at < 0.0)
+    return {"ABSENT", "No " + who + " is running.", "Start one by a launch file.", "", {}};
+  if (!connected) return {"GONE", "The " + who + " has ended.", "Start it again.", "", Level::kBad};
+  if (heard_at < 0.0) return {"WAITING", "The " + who + " has not spoken yet.", "Wait.", "", {}};
+  if (!(now - heard_at <= patience))
+    return {"SILENT", "The " + who + " does not speak any more.", "Look at its terminal; start it again.", "",
+            Level::kBad};
+  return {};
+}
+
+void explainTo(BandText& band, Speaker speaker, const std::string& reason) {
+  band.detail = reason;
+  const ReasonRow* row = explain(speaker, reason);
+  band.sentence = row != nullptr ? row->sentence : reason;
+  band.cure = row != nullptr ? row->cure : reason.empty() ? "" : "See doc/troubleshooting.md.";
+}
+
+std::string percent(double share) {
+  return std::isfinite(share) ? std::to_string(std::lround(100.0 * share)) + " %" : "?";
+}
+
+}  // namespace
+
+BandText trackerBand(const Facts& facts, double now) {
+  const TrackerFacts& tracker = facts.tracker;
+  BandText band = absence(facts, "tracker", tracker.connected, tracker.heard_at, kTrackerSilence, now);
+  if (!band.word.empty()) return band;
+  band.word = tracker.state;
+  for (char& letter : band.word) letter = letter == '_' ? ' ' : letter;
+  explainTo(band, Speaker::kTracker, tracker.reason);
+  band.level = Level::kBad;
+  if (tracker.state == "IDLE") band.level = Level::kResting;
+  if (tracker.state == "SEARCHING") band.level = Level::kWaiting;
+  if (tracker.state == "TRACKING") {
+    band.level = Level::kGood;
+    band.sentence = "The region is followed.";
+    if (facts.result) band.sentence += " " + percent(facts.result->visible_fraction) + " of it is visible.";
+    band.cure.clear();
+  }
+  if (!tracker.view.empty()) band.cure += (band.cure.empty() ? "" : " ") + ("View: " + tracker.view + ".");
+  return band;
+}
+
+BandText controllerBand(const Facts& facts, double now) {
+  const ControllerFacts& controller = facts.controller;
+  BandText band = absence(facts, "controller", controller.connected, controller.heard_at, kSilence, now);
+  if (!band.word.empty()) return band;
+  if (controller.state.empty()) return {"WAITING", "The controller has not told its state yet.", "Wait.", "", {}};
+  const bool by_hand = controller.task == "MANUAL";
+  band.word = controller.state;
+  explainTo(band, Speaker::kController, controller.reason);
+  band.level = Level::kBad;
+  if (controller.state == "IDLE") band.level = Level::kResting;
+  if (controller.state == "ARMED" || controller.state == "HOLD") band.level = Level::kWaiting;
+  if (controller.state == "SERVO") {
+    band.level = Level::kGood;
+    band.sentence = by_hand ? "The scope is driven by hand." : "The scope follows the region.";
+    band.cure.clear();
+    if (!controller.caution.empty()) {
+      explainTo(band, Speaker::kController, controller.caution);
+      band.level = Level::kWaiting;
+    }
+  }
+  return band;
+}
+
+BandText robotBand(const Facts& facts, double now) {
+  const RobotFacts& robot = facts.robot;
+  BandText band = absence(facts, "robot's node", robot.connected, robot.heard_at, kSilence, now);
+  if (!band.word.empty()) return band;
+  band.word = robot.state;
+  explainTo(band, Speaker::kRobot, robot.reason);
+  band.level = Level::kBad;
+  if (robot.state == "DISABLED") band.level = Level::kResting;
+  if (robot.state == "PAUSED") band.level = Level::kWaiting;
+  if (robot.state == "ENABLED") {
+    band.level = robot.reason.empty() ? Level::kGood : Level::kWaiting;
+    if (robot.reason.empty()) band.sentence = "The arm does what it is told.";
+  }
+  return band;
+}
+
+}  // namespace laparoscope_servo::screen

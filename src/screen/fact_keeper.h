@@ -1,0 +1,43 @@
+// Collects what the nodes say; thread-safe. Finds to each picture what the tracker has said of its image.
+#pragma once
+
+#include <laparoscope_servo/AreaSelection.h>
+#include <laparoscope_servo/ControllerState.h>
+#include <laparoscope_servo/Homography.h>
+#include <laparoscope_servo/OperatingState.h>
+#include <laparoscope_servo/TrackerState.h>
+#include <sensor_msgs/Image.h>
+
+#include <deque>
+#include <functional>
+#include <mutex>
+
+#include "screen/facts.h"
+
+namespace laparoscope_servo::screen {
+
+class FactKeeper {
+ public:
+  // `age`: s, of the image by its stamp when it came; 0 where the clocks do not tell.
+  void take(const sensor_msgs::Image& preview, double age, double now);
+  void take(const Homography& homography);
+  void take(const AreaSelection& areas);
+  void take(const TrackerState& state, double now);
+  void take(const ControllerState& state);
+  void takeCommand(double now);
+  void take(const OperatingState& state, double now);
+  void take(const Answer& answer);
+  void change(const std::function<void(Facts&)>& change);
+
+  Facts facts() const;
+
+ private:
+  void match();
+
+  mutable std::mutex mutex_;
+  Facts facts_;
+  std::deque<Result> results_;
+  std::deque<Areas> areas_;
+};
+
+}  // namespace laparoscope_servo::screen

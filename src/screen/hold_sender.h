@@ -1,0 +1,50 @@
+// Says on the topics, 20 times a second, what the dead-man switch and the sliders are held at. In a thread of its own,
+// which nothing else can keep from saying that they were let go.
+#pragma once
+
+#include <ros/node_handle.h>
+#include <ros/publisher.h>
+
+#include <array>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+
+#include "screen/facts.h"
+#include "screen/held_control.h"
+
+namespace laparoscope_servo::screen {
+
+class HoldSender {
+ public:
+  HoldSender(ros::NodeHandle& node, HeldControl& dead_man, HeldControl& slider);
+  ~HoldSender();
+  HoldSender(const HoldSender&) = delete;
+  HoldSender& operator=(const HoldSender&) = delete;
+
+  // -1 to 1 of the limits; counts while the slider is held.
+  void setShares(const std::array<double, 4>& shares);
+  void setLimits(const Limits& limits);
+  // Something was taken or let go: it is said at once.
+  void wake();
+  bool isDeadManWanted() const { return dead_man_publisher_.getNumSubscribers() > 0; }
+
+ private:
+  void run();
+
+  HeldControl& dead_man_;
+  HeldControl& slider_;
+  ros::Publisher dead_man_publisher_;
+  ros::Publisher manual_publisher_;
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool woken_ = false;
+  bool ends_ = false;
+  std::array<double, 4> shares_{};
+  Limits limits_{};  // zero until they are known: nothing moves
+
+  std::thread thread_;
+};
+
+}  // namespace laparoscope_servo::screen

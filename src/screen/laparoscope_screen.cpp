@@ -1,0 +1,52 @@
+// The screen in a window of its own.
+#include <ros/init.h>
+
+#include <QApplication>
+#include <QTimer>
+#include <csignal>
+#include <exception>
+#include <iostream>
+
+#include "ros/common/unblocked_output.h"
+#include "screen/screen_widget.h"
+
+namespace {
+
+// An exception that leaves an event's handler would end the program, and with it the only STOP in reach.
+class SturdyApplication : public QApplication {
+ public:
+  using QApplication::QApplication;
+  bool notify(QObject* object, QEvent* event) override {
+    try {
+      return QApplication::notify(object, event);
+    } catch (const std::exception& error) {
+      std::cerr << "the screen: " << error.what() << std::endl;
+      return false;
+    }
+  }
+};
+
+// Nothing else may be done within a signal; a timer looks at it.
+volatile std::sig_atomic_t asked_to_end = 0;
+void askToEnd(int) {
+  asked_to_end = 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const laparoscope_servo::UnblockedOutput output;
+  ros::init(argc, argv, "laparoscope_screen", ros::init_options::AnonymousName | ros::init_options::NoSigintHandler);
+  SturdyApplication application(argc, argv);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, askToEnd);
+  QTimer look;
+  QObject::connect(&look, &QTimer::timeout, &application, [] {
+    if (asked_to_end != 0 || !ros::ok()) QApplication::quit();
+  });
+  look.start(100);
+  laparoscope_servo::screen::ScreenWidget screen;
+  screen.setWindowTitle("Laparoscope");
+  screen.resize(1280, 800);
+  screen.show();
+  return SturdyApplication::exec();
+}

@@ -1,0 +1,148 @@
+#include "screen/overlay_painter.h"
+
+#include <laparoscope_servo/Homography.h>
+
+#include <QPolygonF>
+#include <algorithm>
+#include <cmath>
+
+namespace laparoscope_servo::screen {
+
+namespace {
+
+const QColor kPresent(0xff, 0xe0, 0x30);
+const QColor kTarget(0x40, 0xe0, 0xff);
+const QColor kCasing(0, 0, 0, 200);  // about every line, so that it is seen over anything
+constexpr double kFarAway = 1e5;     // px: further out nothing is drawn
+
+using Corners = std::array<double, 8>;
+
+// Empty when a corner is nowhere.
+QPolygonF polygonOf(const Corners& corners, const Letterbox& letterbox) {
+  QPolygonF polygon;
+  for (std::size_t k = 0; k < 8; k += 2) {
+    if (!(std::abs(corners[k]) < kFarAway && std::abs(corners[k + 1]) < kFarAway)) return {};
+    polygon << letterbox.fromCentre({corners[k], corners[k + 1]});
+  }
+  return polygon;
+}
+
+void drawOutline(QPainter& painter, const QPolygonF& polygon, const QColor& colour, Qt::PenStyle style, double width) {
+  painter.setBrush(Qt::NoBrush);
+  painter.setPen(QPen(kCasing, width + 3.0));
+  painter.drawPolygon(polygon);
+  QPen pen(colour, width, style, Qt::FlatCap);
+  if (style == Qt::CustomDashLine) pen.setDashPattern({4.0, 3.0});
+  painter.setPen(pen);
+  painter.drawPolygon(polygon);
+}
+
+void drawTarget(QPainter& painter, const QPolygonF& polygon) {
+  drawOutline(painter, polygon, kTarget, Qt::CustomDashLine, 2.0);
+  painter.setPen(QPen(kCasing, 1));
+  painter.setBrush(kTarget);
+  for (const QPointF& corner : polygon) painter.drawRect(QRectF(corner - QPointF(4, 4), QSizeF(8, 8)));
+}
+
+QBrush hatching() {
+  return {QColor(255, 255, 255, 210), Qt::BDiagPattern};
+}
+
+// As in the tracker: each area is the same share of the region.
+void drawAreas(QPainter& painter, const Areas& areas, const Result& result, const Corners& region,
+               const Letterbox& letterbox) {
+  const double left = region[0] - 0.5;
+  const double top = region[1] - 0.5;
+  const double width = (region[4] + 0.5 - left) / areas.columns;
+  const double height = (region[5] + 0.5 - top) / areas.rows;
+  painter.setPen(Qt::NoPen);
+  for (int row = 0; row < areas.rows; ++row) {
+    for (int column = 0; column < areas.columns; ++column) {
+      if (!areas.covered[static_cast<std::size_t>(row) * areas.columns + column]) continue;
+      QPolygonF cell;
+      for (const auto& [u, v] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}}) {
+        const double x = left + (column + u) * width;
+        const double y = top + (row + v) * height;
+        const double w = result.g[6] * x + result.g[7] * y + result.g[8];
+        const QPointF p((result.g[0] * x + result.g[1] * y + result.g[2]) / w,
+                        (result.g[3] * x + result.g[4] * y + result.g[5]) / w);
+        if (std::abs(p.x()) < kFarAway && std::abs(p.y()) < kFarAway) cell << letterbox.fromCentre(p);
+      }
+      if (cell.size() != 4) continue;
+      painter.setBrush(QColor(0x30, 0x40, 0xd0, 110));
+      painter.drawPolygon(cell);
+      painter.setBrush(hatching());
+      painter.drawPolygon(cell);
+    }
+  }
+}
+
+bool hasPresent(const Facts& facts) {
+  return facts.result && (facts.result->state == Homography::TRACKING || facts.result->state == Homography::SEARCHING);
+}
+
+}  // namespace
+
+void drawOverlay(QPainter& painter, const Facts& facts, const Letterbox& letterbox) {
+  if (!facts.result || !letterbox.isValid()) return;
+  const Result& result = *facts.result;
+  const bool known = result.reference_stamp != 0 && result.reference_stamp == facts.tracker.reference_stamp;
+  painter.save();
+  painter.setClipRect(letterbox.area());
+  painter.setRenderHint(QPainter::Antialiasing);
+  if (known && facts.areas && hasPresent(facts)) {
+    drawAreas(painter, *facts.areas, result, facts.tracker.region, letterbox);
+  }
+  if (known) drawTarget(painter, polygonOf(facts.tracker.region, letterbox));
+  if (hasPresent(facts)) {
+    const bool sure = result.state == Homography::TRACKING;
+    drawOutline(painter, polygonOf(result.corners, letterbox), kPresent, sure ? Qt::SolidLine : Qt::DotLine, 3.0);
+  }
+  painter.restore();
+}
+
+void drawLegend(QPainter& painter, const QRectF& canvas) {
+  constexpr double kLine = 18.0, kSample = 34.0, kWidth = 190.0;
+  const QRectF box(canvas.left() + 6, canvas.bottom() - 4 * kLine - 12, kWidth, 4 * kLine + 8);
+  painter.save();
+  painter.setRenderHint(QPainter::Antialiasing);
+  painter.fillRect(box, QColor(0, 0, 0, 170));
+  QFont font = painter.font();
+  font.setPixelSize(12);
+  painter.setFont(font);
+  const auto place = [&](int line) { return QRectF(box.left() + 8, box.top() + 4 + line * kLine, kSample, kLine); };
+  const auto words = [&](int line, const QString& text) {
+    painter.setPen(Qt::white);
+    painter.drawText(QRectF(box.left() + kSample + 16, place(line).top(), kWidth, kLine),
+                     Qt::AlignLeft | Qt::AlignVCenter, text);
+  };
+  const auto sample = [&](int line, const QColor& colour, Qt::PenStyle style, double width) {
+    const QRectF at = place(line);
+    drawOutline(painter, QPolygonF(QVector<QPointF>{{at.left(), at.center().y()}, {at.right(), at.center().y()}}),
+                colour, style, width);
+  };
+  sample(0, kPresent, Qt::SolidLine, 3.0);
+  words(0, "where the region is");
+  sample(1, kPresent, Qt::DotLine, 3.0);
+  words(1, "where it is looked for");
+  sample(2, kTarget, Qt::CustomDashLine, 2.0);
+  painter.setBrush(kTarget);
+  painter.drawRect(QRectF(place(2).left() - 3, place(2).center().y() - 4, 8, 8));
+  words(2, "where it shall be");
+  painter.setPen(Qt::NoPen);
+  painter.fillRect(place(3).adjusted(0, 3, 0, -3), QColor(0x30, 0x40, 0xd0, 160));
+  painter.fillRect(place(3).adjusted(0, 3, 0, -3), hatching());
+  words(3, "covered");
+  painter.restore();
+}
+
+std::optional<QRectF> presentRegion(const Facts& facts, const Letterbox& letterbox) {
+  if (!hasPresent(facts) || !letterbox.isValid()) return std::nullopt;
+  const QPolygonF polygon = polygonOf(facts.result->corners, letterbox);
+  if (polygon.isEmpty()) return std::nullopt;
+  // From the centres of the outermost pixels to their edges.
+  const double half = 0.5 * letterbox.scale();
+  return polygon.boundingRect().adjusted(-half, -half, half, half) & letterbox.area();
+}
+
+}  // namespace laparoscope_servo::screen

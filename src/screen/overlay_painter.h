@@ -1,0 +1,21 @@
+// Draws over the picture what the tracker has said of that very image: where the region is (a solid outline), where it
+// shall be (a dashed one with marked corners), and which of its areas are covered (hatched). Each has a form of its
+// own, not only a colour, and a line in the legend.
+#pragma once
+
+#include <QPainter>
+
+#include "screen/facts.h"
+#include "screen/letterbox.h"
+
+namespace laparoscope_servo::screen {
+
+void drawOverlay(QPainter& painter, const Facts& facts, const Letterbox& letterbox);
+
+// At the bottom left of `canvas`.
+void drawLegend(QPainter& painter, const QRectF& canvas);
+
+// The box about the region where it is now, in the widget; empty when it is not known.
+std::optional<QRectF> presentRegion(const Facts& facts, const Letterbox& letterbox);
+
+}  // namespace laparoscope_servo::screen

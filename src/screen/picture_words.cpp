@@ -1,0 +1,28 @@
+#include "screen/picture_words.h"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace laparoscope_servo::screen {
+
+namespace {
+
+std::string seconds(double value) {
+  char text[32];
+  std::snprintf(text, sizeof(text), value < 9.95 ? "%.1f s" : "%.0f s", std::min(value, 1e6));
+  return text;
+}
+
+}  // namespace
+
+PictureWords pictureWords(const Picture& picture, double now) {
+  if (picture.image.isNull() || picture.arrived_at < 0.0)
+    return {false, "NO PICTURE", "The tracker has sent none yet."};
+  const double age = now - picture.arrived_at + std::max(0.0, picture.age_at_arrival);
+  if (!(age <= kOldest)) return {false, "NOT LIVE", "This picture is " + seconds(age) + " old."};
+  const double still = picture.arrived_at - picture.changed_at;
+  if (!(still <= kOldest)) return {false, "STANDS STILL", "The same picture comes again for " + seconds(still) + "."};
+  return {true, "", ""};
+}
+
+}  // namespace laparoscope_servo::screen

@@ -1,0 +1,222 @@
+#include "screen/screen_widget.h"
+
+#include <QApplication>
+#include <QGridLayout>
+#include <QKeyEvent>
+#include <QVBoxLayout>
+
+#include "ros/common/clocks.h"
+#include "screen/band_text.h"
+
+namespace laparoscope_servo::screen {
+
+namespace {
+
+constexpr int kBeat = 50;           // ms
+constexpr int kColumnWidth = 410;   // px
+constexpr int kActionsHeight = 96;  // px
+constexpr int kAnswerHeight = 40;   // px
+
+const char* const kStyle = R"(
+  laparoscope_servo--screen--ScreenWidget { background: #10131a; }
+  QPushButton { background: #333a46; color: white; border: 1px solid #6a7280; border-radius: 5px; padding: 4px;
+                font-size: 15px; font-weight: bold; }
+  QPushButton:hover { background: #414a58; }
+  QPushButton:pressed { background: #5b6678; }
+  QPushButton#stop { background: #c01818; color: white; border: 3px solid white; font-size: 40px; }
+  QPushButton#stop:hover { background: #d02020; }
+  QPushButton#stop:pressed { background: #ff3030; }
+  QLabel { color: white; font-size: 14px; }
+)";
+
+}  // namespace
+
+ScreenWidget::ScreenWidget(QWidget* parent) : QWidget(parent) {
+  setObjectName("laparoscope_screen");
+  setAttribute(Qt::WA_StyledBackground);
+  setStyleSheet(kStyle);
+  setFocusPolicy(Qt::ClickFocus);
+  // From the link's threads: what is drawn is drawn by this one.
+  link_ = std::make_unique<RosLink>([this] {
+    QMetaObject::invokeMethod(
+        this, [this] { refresh(); }, Qt::QueuedConnection);
+  });
+  image_ = new ImageView([this](const QRect& pixels) { link_->selectRegion(pixels); }, this);
+  auto* layout = new QGridLayout(this);
+  layout->setContentsMargins(6, 6, 6, 6);
+  layout->setSpacing(6);
+  layout->addWidget(image_, 0, 0);
+  layout->addWidget(makeActions(), 1, 0);
+  layout->addWidget(makeColumn(), 0, 1, 2, 1);
+  layout->setColumnStretch(0, 1);
+  layout->setRowStretch(0, 1);
+  qApp->installEventFilter(this);
+  connect(qApp, &QApplication::focusChanged, this, [this] {
+    if (!hasFocusWithin()) dead_man_->letGo();
+  });
+  connect(&beat_timer_, &QTimer::timeout, this, [this] { beat(); });
+  beat_timer_.start(kBeat);
+  beat();
+}
+
+ScreenWidget::~ScreenWidget() {
+  qApp->removeEventFilter(this);
+  dead_man_->letGo();
+  for (VelocitySlider* slider : sliders_) slider->letGo();
+  link_.reset();
+}
+
+QPushButton* ScreenWidget::makeButton(const QString& text, const QString& tip, const std::function<void()>& act) {
+  auto* button = new QPushButton(text, this);
+  button->setObjectName(text.toLower().replace(' ', '_'));
+  button->setToolTip(tip);
+  button->setFocusPolicy(Qt::NoFocus);  // or the space bar would press it
+  button->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Expanding);
+  connect(button, &QPushButton::clicked, this, [act] { act(); });
+  return button;
+}
+
+QWidget* ScreenWidget::makeActions() {
+  auto* actions = new QWidget(this);
+  actions->setFixedHeight(kActionsHeight);
+  auto* grid = new QGridLayout(actions);
+  grid->setContentsMargins(0, 0, 0, 0);
+  grid->setSpacing(6);
+  grid->addWidget(makeButton("Enable", "The arm may move when it is told to", [this] { link_->enable(); }), 0, 0);
+  grid->addWidget(makeButton("Disable", "The arm stands, and may be moved by hand", [this] { link_->disable(); }), 1,
+                  0);
+  grid->addWidget(makeButton("Engage", "The controller moves the scope", [this] { link_->engage(true); }), 0, 1);
+  grid->addWidget(makeButton("Disengage", "The controller stands", [this] { link_->engage(false); }), 1, 1);
+  grid->addWidget(makeButton("Hold", "The arm pauses", [this] { link_->pause(); }), 0, 2);
+  grid->addWidget(makeButton("Resume", "A paused arm goes on", [this] { link_->resume(); }), 1, 2);
+  grid->addWidget(makeButton("Clear region", "The tracker forgets its region", [this] { link_->clearRegion(); }), 0, 3);
+  grid->addWidget(makeButton("Clear fault", "After its cause was removed", [this] { link_->clearFault(); }), 1, 3);
+  auto* stop = makeButton("STOP", "Disengages and disables: also by Escape or Pause", [] {});
+  // When it is pressed, and not when it is let go.
+  connect(stop, &QPushButton::pressed, this, [this] { this->stop(); });
+  stop->setMinimumWidth(150);
+  grid->addWidget(stop, 0, 4, 2, 1);
+  for (int column = 0; column < 4; ++column) grid->setColumnStretch(column, 2);
+  grid->setColumnStretch(4, 3);
+  return actions;
+}
+
+QWidget* ScreenWidget::makeColumn() {
+  auto* column = new QWidget(this);
+  column->setFixedWidth(kColumnWidth);
+  auto* layout = new QVBoxLayout(column);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->setSpacing(6);
+  layout->addWidget(tracker_ = new StateBand("Tracker", column));
+  layout->addWidget(controller_ = new StateBand("Controller", column));
+  layout->addWidget(robot_ = new StateBand("Robot", column));
+  const auto said = [this] { link_->said(); };
+  layout->addWidget(dead_man_ = new DeadManButton(link_->deadMan(), said, column));
+  auto* tasks = new QHBoxLayout;
+  auto* follow =
+      makeButton("Follow", "The scope keeps the region where it was", [this] { link_->selectTask("HOLD_VIEW"); });
+  auto* drive = makeButton("Drive by hand", "The scope follows the sliders", [this] { link_->selectTask("MANUAL"); });
+  for (QPushButton* button : {follow, drive}) {
+    button->setFixedHeight(32);
+    tasks->addWidget(button);
+  }
+  layout->addLayout(tasks);
+  const char* const names[4][3] = {
+      {"Pan", "left", "right"}, {"Tilt", "down", "up"}, {"Spin", "left", "right"}, {"Insertion", "out", "deeper"}};
+  const auto shares = [this] {
+    std::array<double, 4> values{};
+    for (std::size_t k = 0; k < values.size(); ++k) values[k] = sliders_[k] != nullptr ? sliders_[k]->share() : 0.0;
+    link_->setShares(values);
+    link_->said();
+  };
+  for (std::size_t k = 0; k < sliders_.size(); ++k) {
+    sliders_[k] = new VelocitySlider(names[k][0], names[k][1], names[k][2], link_->slider(), shares, said, column);
+    layout->addWidget(sliders_[k]);
+  }
+  answer_ = new QLabel(column);
+  answer_->setObjectName("answer");
+  answer_->setTextFormat(Qt::PlainText);
+  answer_->setWordWrap(true);
+  answer_->setAlignment(Qt::AlignLeft | Qt::AlignTop);
+  answer_->setFixedHeight(kAnswerHeight);
+  layout->addStretch(1);
+  layout->addWidget(answer_);
+  return column;
+}
+
+void ScreenWidget::refresh() {
+  const Facts facts = link_->facts();
+  const double now = steadyNow();
+  image_->show(facts, now);
+  tracker_->show(trackerBand(facts, now));
+  controller_->show(controllerBand(facts, now));
+  robot_->show(robotBand(facts, now));
+  dead_man_->setWanted(facts.dead_man_wanted);
+  showSliders(facts);
+  showAnswer(facts.answer);
+}
+
+void ScreenWidget::showSliders(const Facts& facts) {
+  const bool by_hand = facts.controller.connected && facts.controller.task == "MANUAL" && facts.limits.has_value();
+  for (std::size_t k = 0; k < sliders_.size(); ++k) {
+    sliders_[k]->setEnabled(by_hand);
+    if (!facts.limits) continue;
+    const double limit = (*facts.limits)[k];
+    sliders_[k]->setLimit(k < 3 ? QString::number(limit, 'g', 3) + " rad/s"
+                                : QString::number(1e3 * limit, 'g', 3) + " mm/s");
+  }
+}
+
+void ScreenWidget::showAnswer(const Answer& answer) {
+  if (answer.what.empty()) return;
+  const QString text = QString::fromStdString(answer.text);
+  const QString words = QString::fromStdString(answer.what) +
+                        (answer.waiting ? " ..." : (answer.success ? ": done. " : ": REFUSED. ") + text);
+  if (words == answer_->toolTip()) return;
+  answer_->setText(words);
+  answer_->setToolTip(words);
+}
+
+void ScreenWidget::beat() {
+  dead_man_->beat();
+  for (VelocitySlider* slider : sliders_) slider->beat();
+  refresh();
+}
+
+void ScreenWidget::stop() {
+  link_->stop();
+  dead_man_->letGo();
+  for (VelocitySlider* slider : sliders_) slider->letGo();
+  image_->cancelDrag();
+}
+
+bool ScreenWidget::hasFocusWithin() const {
+  const QWidget* focus = QApplication::focusWidget();
+  return focus != nullptr && (focus == this || isAncestorOf(focus));
+}
+
+bool ScreenWidget::handleKey(int key, bool pressed) {
+  if (key == Qt::Key_Escape || key == Qt::Key_Pause) {
+    if (pressed) stop();
+    return false;  // it may mean something to others as well
+  }
+  if (key != Qt::Key_F9) return false;
+  if (!pressed) {
+    dead_man_->keyReleased();
+  } else if (hasFocusWithin()) {
+    dead_man_->keyPressed();
+  }
+  return hasFocusWithin();
+}
+
+// Of the whole program. Keys come to its windows first, whatever has the focus, and are given on from there.
+bool ScreenWidget::eventFilter(QObject* object, QEvent* event) {
+  const QEvent::Type type = event->type();
+  if ((type == QEvent::KeyPress || type == QEvent::KeyRelease) && object->isWindowType()) {
+    const auto* key = static_cast<QKeyEvent*>(event);
+    if (handleKey(key->key(), type == QEvent::KeyPress)) return true;
+  }
+  return QWidget::eventFilter(object, event);
+}
+
+}  // namespace laparoscope_servo::screen

@@ -1,0 +1,44 @@
+#include "screen/service_calls.h"
+
+#include <exception>
+#include <thread>
+
+namespace laparoscope_servo::screen {
+
+ServiceCalls::~ServiceCalls() {
+  const std::lock_guard<std::mutex> lock(shared_->mutex);
+  shared_->told = nullptr;
+}
+
+void ServiceCalls::Shared::tell(const Answer& answer) {
+  const std::lock_guard<std::mutex> lock(mutex);
+  if (told) told(answer);
+}
+
+void ServiceCalls::start(const std::string& service, const std::string& what, const std::function<void(Answer&)>& ask) {
+  {
+    const std::lock_guard<std::mutex> lock(shared_->mutex);
+    if (!shared_->waiting.insert(service).second) return;  // the answer that is waited for is on the screen
+  }
+  shared_->tell({what, "", false, true});
+  try {
+    std::thread([shared = shared_, service, what, ask] {
+      Answer answer{what, "", false, false};
+      try {
+        ask(answer);
+      } catch (const std::exception& error) {
+        answer = {what, error.what(), false, false};
+      }
+      {
+        const std::lock_guard<std::mutex> lock(shared->mutex);
+        shared->waiting.erase(service);
+      }
+      shared->tell(answer);
+    }).detach();
+  } catch (const std::exception& error) {  // no thread is left
+    const std::lock_guard<std::mutex> lock(shared_->mutex);
+    shared_->waiting.erase(service);
+  }
+}
+
+}  // namespace laparoscope_servo::screen

@@ -1,0 +1,51 @@
+// Calls services, each in a thread of its own: one that hangs keeps nobody waiting. Of each service one call at a time.
+#pragma once
+
+#include <ros/node_handle.h>
+#include <ros/service.h>
+
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <string>
+
+#include "screen/facts.h"
+
+namespace laparoscope_servo::screen {
+
+class ServiceCalls {
+ public:
+  using Told = std::function<void(const Answer&)>;
+
+  // `told` is called from any thread: when a call begins, and when it has ended.
+  explicit ServiceCalls(const Told& told) : shared_(std::make_shared<Shared>()) { shared_->told = told; }
+  // Nothing is told any more; a call that hangs is left to itself.
+  ~ServiceCalls();
+  ServiceCalls(const ServiceCalls&) = delete;
+  ServiceCalls& operator=(const ServiceCalls&) = delete;
+
+  // `service`: resolved. `what`: in words. A response has `success` and `message`.
+  template <class Service>
+  void call(const std::string& service, const std::string& what, const Service& request) {
+    start(service, what, [service, request](Answer& answer) {
+      Service call = request;
+      answer.success = ros::service::call(service, call) && call.response.success;
+      answer.text = call.response.message;
+      if (!answer.success && answer.text.empty()) answer.text = "no answer from " + service;
+    });
+  }
+
+ private:
+  struct Shared {
+    std::mutex mutex;
+    std::set<std::string> waiting;
+    Told told;
+    void tell(const Answer& answer);
+  };
+  void start(const std::string& service, const std::string& what, const std::function<void(Answer&)>& ask);
+
+  std::shared_ptr<Shared> shared_;  // with the threads
+};
+
+}  // namespace laparoscope_servo::screen

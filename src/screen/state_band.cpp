@@ -1,0 +1,132 @@
+#include "screen/state_band.h"
+
+#include <QPainter>
+
+namespace laparoscope_servo::screen {
+
+namespace {
+
+constexpr int kStripe = 44;    // px, with the symbol
+constexpr int kWordSize = 56;  // px of the font: its capitals are 41 px high
+constexpr int kWordTop = 14;   // px, of the band to the word's line
+constexpr int kWordHeight = 56;
+constexpr int kTextSize = 13;  // px of the font
+constexpr int kLine = 16;      // px
+
+const QColor kBackground(0x16, 0x1a, 0x20);
+const QColor kText(0xff, 0xff, 0xff);
+const QColor kQuiet(0xb4, 0xbc, 0xc8);
+
+QColor colourOf(Level level) {
+  switch (level) {
+    case Level::kGood:
+      return {0x2e, 0xb8, 0x5c};
+    case Level::kWaiting:
+      return {0xf2, 0xa9, 0x1e};
+    case Level::kBad:
+      return {0xe5, 0x3a, 0x3a};
+    case Level::kResting:
+      return {0x5b, 0x8d, 0xd6};
+    case Level::kUnknown:
+      break;
+  }
+  return {0x7a, 0x80, 0x8a};
+}
+
+// Each level has its own form, for who does not tell the colours apart.
+void drawSymbol(QPainter& painter, Level level, const QPointF& centre) {
+  constexpr double r = 13.0;
+  painter.setPen(QPen(Qt::black, 2));
+  painter.setBrush(Qt::white);
+  switch (level) {
+    case Level::kGood:
+      painter.drawPolygon(
+          QPolygonF({centre + QPointF(-r * 0.8, -r), centre + QPointF(r, 0), centre + QPointF(-r * 0.8, r)}));
+      break;
+    case Level::kWaiting:
+      painter.drawRect(QRectF(centre + QPointF(-r * 0.8, -r), QSizeF(r * 0.6, 2 * r)));
+      painter.drawRect(QRectF(centre + QPointF(r * 0.2, -r), QSizeF(r * 0.6, 2 * r)));
+      break;
+    case Level::kBad:
+      painter.setPen(QPen(Qt::white, 6, Qt::SolidLine, Qt::RoundCap));
+      painter.drawLine(centre + QPointF(-r * 0.7, -r * 0.7), centre + QPointF(r * 0.7, r * 0.7));
+      painter.drawLine(centre + QPointF(-r * 0.7, r * 0.7), centre + QPointF(r * 0.7, -r * 0.7));
+      break;
+    case Level::kResting:
+      painter.drawRect(QRectF(centre + QPointF(-r * 0.85, -r * 0.85), QSizeF(1.7 * r, 1.7 * r)));
+      break;
+    case Level::kUnknown:
+      painter.setBrush(Qt::NoBrush);
+      painter.setPen(QPen(Qt::white, 4));
+      painter.drawEllipse(centre, r * 0.8, r * 0.8);
+      break;
+  }
+}
+
+}  // namespace
+
+StateBand::StateBand(const QString& title, QWidget* parent) : QWidget(parent), title_(title) {
+  setObjectName(title);
+  setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
+}
+
+QSize StateBand::sizeHint() const {
+  return {400, kWordTop + kWordHeight + 4 * kLine + 4};
+}
+
+void StateBand::show(const BandText& text) {
+  const bool same = text.word == text_.word && text.sentence == text_.sentence && text.cure == text_.cure &&
+                    text.detail == text_.detail && text.level == text_.level;
+  if (same) return;
+  text_ = text;
+  // Plain text: what a node says may look like markup.
+  setToolTip(QString::fromStdString(text.detail).toHtmlEscaped());
+  update();
+}
+
+void StateBand::paintEvent(QPaintEvent*) {
+  QPainter painter(this);
+  painter.setRenderHint(QPainter::Antialiasing);
+  painter.fillRect(rect(), kBackground);
+  painter.fillRect(QRect(0, 0, kStripe, height()), colourOf(text_.level));
+  drawSymbol(painter, text_.level, QPointF(kStripe / 2.0, kWordTop + kWordHeight / 2.0));
+  painter.setBrush(Qt::NoBrush);
+  painter.setPen(QPen(QColor(0x40, 0x46, 0x50), 1));
+  painter.drawRect(rect().adjusted(0, 0, -1, -1));
+
+  const int left = kStripe + 10;
+  const int width = this->width() - left - 6;
+  QFont font = this->font();
+  font.setPixelSize(12);
+  font.setBold(true);
+  painter.setFont(font);
+  painter.setPen(kQuiet);
+  painter.drawText(QRect(left, 2, width, 15), Qt::AlignLeft | Qt::AlignVCenter, title_.toUpper());
+
+  font.setPixelSize(kWordSize);
+  const QString word = QString::fromStdString(text_.word);
+  // A long word becomes narrower, never lower.
+  const int natural = QFontMetrics(font).horizontalAdvance(word);
+  if (natural > width) font.setStretch(std::max(40, 100 * width / natural));
+  painter.setFont(font);
+  painter.setPen(kText);
+  painter.drawText(QRect(left, kWordTop, width, kWordHeight), Qt::AlignLeft | Qt::AlignVCenter, word);
+
+  font = this->font();
+  font.setPixelSize(kTextSize);
+  const int top = kWordTop + kWordHeight + 2;
+  const int half = 2 * kLine;
+  font.setBold(true);
+  painter.setFont(font);
+  painter.setClipRect(QRect(left, top, width, half));
+  painter.drawText(QRect(left, top, width, half), Qt::AlignLeft | Qt::AlignTop | Qt::TextWordWrap,
+                   QString::fromStdString(text_.sentence));
+  font.setBold(false);
+  painter.setFont(font);
+  painter.setPen(kQuiet);
+  painter.setClipRect(QRect(left, top + half, width, half));
+  painter.drawText(QRect(left, top + half, width, half), Qt::AlignLeft | Qt::AlignTop | Qt::TextWordWrap,
+                   QString::fromStdString(text_.cure));
+}
+
+}  // namespace laparoscope_servo::screen

@@ -1,0 +1,96 @@
+#include "screen/band_text.h"
+
+#include <gtest/gtest.h>
+
+namespace laparoscope_servo::screen {
+namespace {
+
+constexpr double kNow = 1000.0;
+
+Facts facts() {
+  Facts facts;
+  facts.master = true;
+  facts.tracker.connected = facts.controller.connected = facts.robot.connected = true;
+  facts.tracker.heard_at = facts.controller.heard_at = facts.robot.heard_at = kNow - 0.1;
+  facts.tracker.state = "TRACKING";
+  facts.controller.state = "SERVO";
+  facts.controller.task = "HOLD_VIEW";
+  facts.controller.reason = "engaged, nothing is missing";
+  facts.robot.state = "ENABLED";
+  return facts;
+}
+
+TEST(BandText, AllIsWell) {
+  Facts all = facts();
+  all.result = Result();
+  all.result->visible_fraction = 0.874;
+  EXPECT_EQ(trackerBand(all, kNow).word, "TRACKING");
+  EXPECT_EQ(trackerBand(all, kNow).level, Level::kGood);
+  EXPECT_EQ(trackerBand(all, kNow).sentence, "The region is followed. 87 % of it is visible.");
+  EXPECT_EQ(controllerBand(all, kNow).word, "SERVO");
+  EXPECT_EQ(controllerBand(all, kNow).sentence, "The scope follows the region.");
+  EXPECT_EQ(robotBand(all, kNow).word, "ENABLED");
+  EXPECT_EQ(robotBand(all, kNow).level, Level::kGood);
+}
+
+TEST(BandText, EachStateHasItsWordReasonAndCure) {
+  Facts all = facts();
+  all.tracker.state = "NO_IMAGE";
+  all.tracker.reason = "no image for more than 1 s; before: TRACKING";
+  EXPECT_EQ(trackerBand(all, kNow).word, "NO IMAGE");
+  EXPECT_EQ(trackerBand(all, kNow).level, Level::kBad);
+  EXPECT_EQ(trackerBand(all, kNow).sentence, "The camera has stopped sending.");
+  EXPECT_FALSE(trackerBand(all, kNow).cure.empty());
+  EXPECT_EQ(trackerBand(all, kNow).detail, all.tracker.reason);
+  all.controller.state = "HOLD";
+  all.controller.reason = "the robot is paused";
+  EXPECT_EQ(controllerBand(all, kNow).level, Level::kWaiting);
+  EXPECT_EQ(controllerBand(all, kNow).cure, "Press Resume.");
+  all.robot.state = "FAULT";
+  all.robot.reason = "fault: joint limit";
+  EXPECT_EQ(robotBand(all, kNow).level, Level::kBad);
+  EXPECT_EQ(robotBand(all, kNow).sentence, "The arm's controller has a fault.");
+}
+
+TEST(BandText, ACautionIsSaidWhileItMoves) {
+  Facts all = facts();
+  all.controller.caution = "slow: visible fraction below 0.5";
+  EXPECT_EQ(controllerBand(all, kNow).word, "SERVO");
+  EXPECT_EQ(controllerBand(all, kNow).level, Level::kWaiting);
+  EXPECT_NE(controllerBand(all, kNow).sentence.find("slower"), std::string::npos);
+}
+
+TEST(BandText, AStateDoesNotOutliveItsNode) {
+  Facts all = facts();
+  EXPECT_EQ(trackerBand(all, kNow + 10.0).word, "SILENT");
+  EXPECT_EQ(controllerBand(all, kNow + 10.0).word, "SILENT");
+  EXPECT_EQ(robotBand(all, kNow + 10.0).word, "SILENT");
+  all.tracker.connected = all.controller.connected = all.robot.connected = false;
+  EXPECT_EQ(trackerBand(all, kNow).word, "GONE");
+  EXPECT_EQ(controllerBand(all, kNow).word, "GONE");
+  EXPECT_EQ(robotBand(all, kNow).word, "GONE");
+  EXPECT_EQ(robotBand(all, kNow).level, Level::kBad);
+}
+
+TEST(BandText, SaysWhatIsNotThere) {
+  Facts none;
+  EXPECT_EQ(trackerBand(none, kNow).word, "NO MASTER");
+  none.master = true;
+  EXPECT_EQ(controllerBand(none, kNow).word, "ABSENT");
+  none.robot.connected = true;
+  EXPECT_EQ(robotBand(none, kNow).word, "WAITING");
+  none.controller.connected = true;
+  none.controller.heard_at = kNow;
+  EXPECT_EQ(controllerBand(none, kNow).word, "WAITING") << "its state has not come yet";
+}
+
+TEST(BandText, AReasonThatNobodyKnowsIsShownAsItIs) {
+  Facts all = facts();
+  all.robot.state = "PAUSED";
+  all.robot.reason = "<b>something</b> new";
+  EXPECT_EQ(robotBand(all, kNow).sentence, "<b>something</b> new");
+  EXPECT_NE(robotBand(all, kNow).cure.find("troubleshooting"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace laparoscope_servo::screen

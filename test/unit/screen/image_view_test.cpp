@@ -1,0 +1,179 @@
+#include "screen/image_view.h"
+
+#include <gtest/gtest.h>
+#include <laparoscope_servo/Homography.h>
+
+#include <QtTest>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "screen/overlay_painter.h"
+
+namespace laparoscope_servo::screen {
+namespace {
+
+constexpr double kNow = 100.0;
+
+// A camera of 1280x720, whose preview is half as large; the region has moved by (200, 100) px.
+Facts tracked() {
+  Facts facts;
+  facts.master = true;
+  facts.picture.image = QImage(640, 360, QImage::Format_RGB32);
+  facts.picture.image.fill(QColor(180, 70, 60));
+  facts.picture.arrived_at = facts.picture.changed_at = kNow;
+  facts.tracker.width = 1280;
+  facts.tracker.height = 720;
+  facts.tracker.reference_stamp = 5;
+  facts.tracker.region = {300, 200, 499, 200, 499, 349, 300, 349};
+  Result result;
+  result.reference_stamp = 5;
+  result.state = Homography::TRACKING;
+  result.g = {1, 0, 200, 0, 1, 100, 0, 0, 1};
+  result.corners = {500, 300, 699, 300, 699, 449, 500, 449};
+  facts.result = result;
+  facts.areas = Areas{0, 2, 2, {false, false, true, false}};
+  return facts;
+}
+
+class ImageViewTest : public testing::Test {
+ protected:
+  QImage drawn(const Facts& facts, double now = kNow) {
+    view_.show(facts, now);
+    QImage image(view_.size(), QImage::Format_RGB32);
+    view_.render(&image);
+    return image;
+  }
+  // Pixels near this place of the original image that have nearly this colour.
+  int near(const QImage& image, double u, double v, const QColor& colour) {
+    const Letterbox box(QSize(1280, 720), QRectF(view_.rect()));
+    const QPoint at = box.fromCentre({u, v}).toPoint();
+    int found = 0;
+    for (int y = at.y() - 3; y <= at.y() + 3; ++y) {
+      for (int x = at.x() - 3; x <= at.x() + 3; ++x) {
+        if (!image.rect().contains(x, y)) continue;
+        const QColor c = image.pixelColor(x, y);
+        if (std::abs(c.red() - colour.red()) + std::abs(c.green() - colour.green()) +
+                std::abs(c.blue() - colour.blue()) <
+            60)
+          ++found;
+      }
+    }
+    return found;
+  }
+  void drag(const QPoint& from, const QPoint& to) {
+    QTest::mousePress(&view_, Qt::LeftButton, {}, from);
+    QMouseEvent move(QEvent::MouseMove, 0.5 * QPointF(from + to), Qt::NoButton, Qt::LeftButton, Qt::NoModifier);
+    QApplication::sendEvent(&view_, &move);
+    QTest::mouseRelease(&view_, Qt::LeftButton, {}, to);
+  }
+
+  std::vector<QRect> regions_;
+  ImageView view_{[this](const QRect& region) { regions_.push_back(region); }, nullptr};
+};
+
+const QColor kPresent(0xff, 0xe0, 0x30);
+const QColor kTarget(0x40, 0xe0, 0xff);
+
+TEST_F(ImageViewTest, DrawsTheRegionWhereItIsAndWhereItShallBe) {
+  for (const QSize& size : {QSize(1000, 700), QSize(640, 700)}) {
+    view_.resize(size);
+    const QImage image = drawn(tracked());
+    EXPECT_GT(near(image, 600, 300, kPresent), 0) << "top edge, " << size.width();
+    EXPECT_GT(near(image, 699, 370, kPresent), 0) << "right edge";
+    EXPECT_EQ(near(image, 600, 370, kPresent), 0) << "inside";
+    EXPECT_GT(near(image, 300, 200, kTarget), 5) << "marked corner";
+    EXPECT_GT(near(image, 300, 349, kTarget), 5);
+  }
+}
+
+TEST_F(ImageViewTest, HatchesCoveredAreasWhereTheyAreNow) {
+  view_.resize(1280, 720);
+  const QImage image = drawn(tracked());
+  const QColor tissue(180, 70, 60);
+  EXPECT_EQ(near(image, 550, 412, tissue), 0) << "bottom left of the region";
+  EXPECT_EQ(near(image, 650, 412, tissue), 49) << "bottom right";
+  EXPECT_EQ(near(image, 350, 312, tissue), 49) << "and not in the reference";
+}
+
+TEST_F(ImageViewTest, DrawsNoResultOfAnotherImageOrRegion) {
+  view_.resize(1280, 720);
+  Facts other = tracked();
+  other.result->reference_stamp = 6;
+  EXPECT_EQ(near(drawn(other), 300, 200, kTarget), 0) << "the reference of another selection";
+  other = tracked();
+  other.result.reset();
+  EXPECT_EQ(near(drawn(other), 600, 300, kPresent), 0);
+  other = tracked();
+  other.result->state = Homography::LOST;
+  EXPECT_EQ(near(drawn(other), 600, 300, kPresent), 0) << "lost: nobody knows where it is";
+  other = tracked();
+  other.result->corners[0] = std::numeric_limits<double>::quiet_NaN();
+  other.result->g[8] = 0.0;
+  drawn(other);
+}
+
+TEST_F(ImageViewTest, AnOldPictureIsGreyAndSaysSo) {
+  view_.resize(1280, 720);
+  const QImage live = drawn(tracked());
+  EXPECT_GT(live.pixelColor(900, 100).saturation(), 100);
+  const QImage old = drawn(tracked(), kNow + 2.0);
+  EXPECT_EQ(old.pixelColor(900, 100).saturation(), 0);
+  int white = 0;
+  for (int y = 0; y < old.height(); ++y) {
+    for (int x = 0; x < old.width(); ++x) white += old.pixel(x, y) == qRgb(255, 255, 255) ? 1 : 0;
+  }
+  EXPECT_GT(white, 2000) << "the words";
+  EXPECT_EQ(near(old, 600, 300, kPresent), 0) << "what was there is no word on what is there";
+}
+
+TEST_F(ImageViewTest, ARegionIsDrawnInPixelsOfTheOriginalImageAtAnySize) {
+  Facts facts = tracked();
+  facts.result.reset();
+  for (const QSize& size : {QSize(1280, 720), QSize(500, 700), QSize(1900, 400)}) {
+    view_.resize(size);
+    view_.show(facts, kNow);
+    const Letterbox box(QSize(1280, 720), QRectF(view_.rect()));
+    const QRect wanted(320, 180, 400, 300);
+    drag(box.fromEdge(wanted.topLeft()).toPoint(), box.fromEdge(wanted.topLeft() + QPoint(400, 300)).toPoint());
+    ASSERT_FALSE(regions_.empty());
+    const double pixel = 1.0 / box.scale() + 1.0;
+    EXPECT_NEAR(regions_.back().x(), wanted.x(), pixel);
+    EXPECT_NEAR(regions_.back().y(), wanted.y(), pixel);
+    EXPECT_NEAR(regions_.back().width(), wanted.width(), 2 * pixel);
+    EXPECT_NEAR(regions_.back().height(), wanted.height(), 2 * pixel);
+  }
+  EXPECT_EQ(regions_.size(), 3u);
+}
+
+TEST_F(ImageViewTest, AClickDrawsNothingNorDoesAPictureThatIsNotLive) {
+  view_.resize(1280, 720);
+  view_.show(tracked(), kNow);
+  QTest::mouseClick(&view_, Qt::LeftButton, {}, QPoint(100, 100));
+  QTest::mouseDClick(&view_, Qt::LeftButton, {}, QPoint(100, 100));
+  QTest::mouseClick(&view_, Qt::RightButton, {}, QPoint(100, 100));
+  EXPECT_TRUE(regions_.empty());
+  view_.show(tracked(), kNow + 1.0);
+  drag({100, 100}, {300, 300});
+  EXPECT_TRUE(regions_.empty());
+  Facts unknown = tracked();
+  unknown.tracker.width = 0;
+  view_.show(unknown, kNow);
+  drag({100, 100}, {300, 300});
+  EXPECT_TRUE(regions_.empty()) << "of which size is the image?";
+}
+
+TEST_F(ImageViewTest, TheRegionThatThereIsIsMovedFromItsInside) {
+  view_.resize(1280, 720);
+  view_.show(tracked(), kNow);
+  drag({600, 370}, {580, 390});
+  ASSERT_EQ(regions_.size(), 1u);
+  EXPECT_EQ(regions_[0], QRect(480, 320, 200, 150));
+  view_.show(tracked(), kNow);
+  drag({700, 450}, {760, 470});
+  ASSERT_EQ(regions_.size(), 2u);
+  EXPECT_EQ(regions_[1], QRect(500, 300, 260, 170)) << "resized by its corner";
+}
+
+}  // namespace
+}  // namespace laparoscope_servo::screen

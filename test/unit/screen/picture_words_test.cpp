@@ -1,0 +1,54 @@
+#include "screen/picture_words.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace laparoscope_servo::screen {
+namespace {
+
+Picture picture(double arrived_at, double changed_at, double age = 0.0) {
+  Picture picture;
+  picture.image = QImage(4, 4, QImage::Format_RGB32);
+  picture.arrived_at = arrived_at;
+  picture.changed_at = changed_at;
+  picture.age_at_arrival = age;
+  return picture;
+}
+
+TEST(PictureWords, AFreshPictureIsLive) {
+  EXPECT_TRUE(pictureWords(picture(100.0, 100.0, 0.05), 100.1).live);
+  EXPECT_TRUE(pictureWords(picture(100.0, 100.0, 0.05), 100.1).words.empty());
+}
+
+TEST(PictureWords, AnOldOneSaysItsAge) {
+  const PictureWords words = pictureWords(picture(100.0, 100.0), 103.24);
+  EXPECT_FALSE(words.live);
+  EXPECT_EQ(words.words, "NOT LIVE");
+  EXPECT_EQ(words.detail, "This picture is 3.2 s old.");
+  EXPECT_EQ(pictureWords(picture(100.0, 100.0), 160.0).detail, "This picture is 60 s old.");
+  EXPECT_FALSE(pictureWords(picture(100.0, 100.0), 100.26).live);
+}
+
+TEST(PictureWords, OneThatCameLateIsOldAtOnce) {
+  EXPECT_FALSE(pictureWords(picture(100.0, 100.0, 0.4), 100.0).live);
+  EXPECT_TRUE(pictureWords(picture(100.0, 100.0, -5.0), 100.0).live) << "clocks that differ make nothing fresh or old";
+}
+
+TEST(PictureWords, OneThatRepeatsStandsStill) {
+  const PictureWords words = pictureWords(picture(101.5, 100.0), 101.51);
+  EXPECT_FALSE(words.live);
+  EXPECT_EQ(words.words, "STANDS STILL");
+  EXPECT_TRUE(pictureWords(picture(100.2, 100.0), 100.2).live) << "a few repeated ones are a codec's";
+}
+
+TEST(PictureWords, NoPictureIsSaid) {
+  EXPECT_EQ(pictureWords(Picture(), 100.0).words, "NO PICTURE");
+}
+
+TEST(PictureWords, AClockThatIsNoneMakesNothingLive) {
+  EXPECT_FALSE(pictureWords(picture(100.0, 100.0), std::numeric_limits<double>::quiet_NaN()).live);
+}
+
+}  // namespace
+}  // namespace laparoscope_servo::screen
