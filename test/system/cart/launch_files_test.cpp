@@ -36,6 +36,8 @@ using Nodes = std::set<std::string>;
 TEST(LaunchFiles, ReplayStartsNoNodeOfTheRobot) {
   EXPECT_EQ(nodesOf("replay.launch bag:=x.bag"), (Nodes{"/player", "/tracker", "/rviz"}));
   EXPECT_EQ(nodesOf("replay.launch video:=x.mp4 rviz:=false"), (Nodes{"/player", "/tracker"}));
+  EXPECT_EQ(nodesOf("replay.launch video:=x.mp4 screen:=window"),
+            (Nodes{"/player", "/tracker", "/laparoscope_screen"}));
 }
 
 TEST(LaunchFiles, CartAndDemoStartWhatTheySay) {
@@ -44,6 +46,16 @@ TEST(LaunchFiles, CartAndDemoStartWhatTheySay) {
   demo.insert({"/aesop_emulator", "/simulated_camera"});
   EXPECT_EQ(nodesOf("cart.launch port:=/dev/ttyX rviz:=false"), cart);
   EXPECT_EQ(nodesOf("demo.launch rviz:=false"), demo);
+  Nodes with_screen = cart;
+  with_screen.insert("/laparoscope_screen");
+  EXPECT_EQ(nodesOf("cart.launch port:=/dev/ttyX screen:=window"), with_screen);
+  Nodes with_panel = cart;
+  with_panel.insert({"/rviz", "/scope_markers"});
+  EXPECT_EQ(nodesOf("cart.launch port:=/dev/ttyX rviz:=false screen:=rviz"), with_panel);
+  EXPECT_EQ(nodesOf("cart.launch port:=/dev/ttyX screen:=none"), cart);
+  EXPECT_EQ(nodesOf("cart.launch port:=/dev/ttyX"), with_panel) << "rviz as ever";
+  EXPECT_NE(outputOf("roslaunch --nodes laparoscope_servo cart.launch port:=/dev/ttyX screen:=tv").find("tv"),
+            std::string::npos);
   EXPECT_EQ(nodesOf("calibrate.launch port:=/dev/ttyX file:=/x.yaml"), Nodes{"/aesop"});
   EXPECT_EQ(nodesOf("tracker.launch"), Nodes{"/tracker"});
   EXPECT_EQ(nodesOf("tracker.launch manager:=camera_manager"), Nodes{"/tracker"});

@@ -1,0 +1,48 @@
+// The screen's window in front of the simulated cart: from the first picture to the stop, by mouse alone.
+#include <laparoscope_servo/ScopeVelocity.h>
+
+#include <atomic>
+#include <cmath>
+
+#include "system/screen/screen_fixture.h"
+
+namespace laparoscope_servo {
+namespace {
+
+using test_support::waitFor;
+
+class ScreenCart : public test_support::ScreenFixture {};
+
+TEST_F(ScreenCart, SelectsEnablesEngagesAndStops) {
+  ros::NodeHandle node;
+  std::atomic<int> zeros{0};
+  const ros::Subscriber commands =
+      node.subscribe<ScopeVelocity>("servo_command", 10, [&](const ScopeVelocityConstPtr& command) {
+        const bool zero =
+            command->pan == 0.0 && command->tilt == 0.0 && command->spin == 0.0 && command->insertion == 0.0;
+        zeros = zero ? zeros + 1 : 0;
+      });
+  show({1280, 800});
+  ASSERT_TRUE(waitFor([this] { return word("Tracker") == "IDLE" && isColoured(); }, 90.0)) << word("Tracker");
+  ASSERT_TRUE(waitFor([this] { return word("Robot") == "DISABLED" && word("Controller") == "IDLE"; }));
+  const QSize shown = image().size();
+  drag(image().mapToGlobal(QPoint(shown.width() * 2 / 5, shown.height() * 2 / 5)),
+       image().mapToGlobal(QPoint(shown.width() * 3 / 5, shown.height() * 3 / 5)));
+  ASSERT_TRUE(waitFor([this] { return word("Tracker") == "TRACKING"; })) << word("Tracker");
+  click("enable");
+  ASSERT_TRUE(waitFor([this] { return word("Robot") == "ENABLED"; })) << word("Robot");
+  click("engage");
+  ASSERT_TRUE(waitFor([this] { return word("Controller") == "SERVO"; })) << word("Controller");
+  click("stop");
+  EXPECT_TRUE(waitFor([this] { return word("Robot") == "DISABLED" && word("Controller") != "SERVO"; }))
+      << word("Robot") << word("Controller");
+  zeros = 0;
+  EXPECT_TRUE(waitFor([&] { return zeros >= 5; }));
+}
+
+}  // namespace
+}  // namespace laparoscope_servo
+
+int main(int argc, char** argv) {
+  return laparoscope_servo::test_support::runScreenTests(argc, argv, "screen_cart_test");
+}

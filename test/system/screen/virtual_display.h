@@ -1,0 +1,59 @@
+// A display of the test's own, and hands on its mouse and keyboard: Xvfb and xdotool. No window manager is needed.
+#pragma once
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <QPoint>
+#include <cstdlib>
+#include <stdexcept>
+#include <string>
+
+namespace laparoscope_servo::test_support {
+
+class VirtualDisplay {
+ public:
+  // Sets DISPLAY; to be made before the QApplication.
+  VirtualDisplay() {
+    int pipe_ends[2];
+    if (::pipe(pipe_ends) != 0) throw std::runtime_error("no pipe");
+    process_ = ::fork();
+    if (process_ == 0) {
+      const int null = ::open("/dev/null", O_WRONLY);
+      ::dup2(null, STDERR_FILENO);
+      const std::string descriptor = std::to_string(pipe_ends[1]);
+      ::execlp("Xvfb", "Xvfb", "-displayfd", descriptor.c_str(), "-screen", "0", "1600x1000x24", "-nolisten", "tcp",
+               nullptr);
+      ::_exit(127);
+    }
+    ::close(pipe_ends[1]);
+    std::string number;
+    for (char letter = 0; ::read(pipe_ends[0], &letter, 1) == 1 && letter != '\n';) number += letter;
+    ::close(pipe_ends[0]);
+    if (number.empty()) throw std::runtime_error("Xvfb does not start; is it installed?");
+    ::setenv("DISPLAY", (":" + number).c_str(), 1);
+    ::setenv("QT_QPA_PLATFORM", "xcb", 1);
+  }
+  ~VirtualDisplay() {
+    ::kill(process_, SIGTERM);
+    ::waitpid(process_, nullptr, 0);
+  }
+  VirtualDisplay(const VirtualDisplay&) = delete;
+  VirtualDisplay& operator=(const VirtualDisplay&) = delete;
+
+ private:
+  pid_t process_ = -1;
+};
+
+// Real events of the X server. Each returns when xdotool has ended.
+inline void hands(const std::string& commands) {
+  if (std::system(("xdotool " + commands).c_str()) != 0) throw std::runtime_error("xdotool failed: " + commands);
+}
+
+inline std::string moveTo(const QPoint& at) {
+  return "mousemove " + std::to_string(at.x()) + " " + std::to_string(at.y()) + " ";
+}
+
+}  // namespace laparoscope_servo::test_support
