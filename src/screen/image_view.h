@@ -19,7 +19,7 @@ class ImageView : public QWidget {
 
   void show(const Facts& facts, double now);
   void cancelDrag();
-  QSize sizeHint() const override { return {800, 600}; }
+  QSize sizeHint() const override { return {640, 480}; }
   QSize minimumSizeHint() const override { return {240, 180}; }
 
  private:

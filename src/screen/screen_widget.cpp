@@ -3,6 +3,7 @@
 #include <QApplication>
 #include <QGridLayout>
 #include <QKeyEvent>
+#include <QStyle>
 #include <QVBoxLayout>
 
 #include "ros/common/clocks.h"
@@ -23,11 +24,20 @@ const char* const kStyle = R"(
                 font-size: 15px; font-weight: bold; }
   QPushButton:hover { background: #414a58; }
   QPushButton:pressed { background: #5b6678; }
+  QPushButton[active="true"] { background: #1f5a36; border: 2px solid #2eb85c; }
   QPushButton#stop { background: #c01818; color: white; border: 3px solid white; font-size: 40px; }
   QPushButton#stop:hover { background: #d02020; }
   QPushButton#stop:pressed { background: #ff3030; }
   QLabel { color: white; font-size: 14px; }
 )";
+
+// The one of several that holds.
+void mark(QPushButton* button, bool active) {
+  if (button->property("active").toBool() == active) return;
+  button->setProperty("active", active);
+  button->style()->unpolish(button);
+  button->style()->polish(button);
+}
 
 }  // namespace
 
@@ -113,10 +123,9 @@ QWidget* ScreenWidget::makeColumn() {
   const auto said = [this] { link_->said(); };
   layout->addWidget(dead_man_ = new DeadManButton(link_->deadMan(), said, column));
   auto* tasks = new QHBoxLayout;
-  auto* follow =
-      makeButton("Follow", "The scope keeps the region where it was", [this] { link_->selectTask("HOLD_VIEW"); });
-  auto* drive = makeButton("Drive by hand", "The scope follows the sliders", [this] { link_->selectTask("MANUAL"); });
-  for (QPushButton* button : {follow, drive}) {
+  follow_ = makeButton("Follow", "The scope keeps the region where it was", [this] { link_->selectTask("HOLD_VIEW"); });
+  drive_ = makeButton("Drive by hand", "The scope follows the sliders", [this] { link_->selectTask("MANUAL"); });
+  for (QPushButton* button : {follow_, drive_}) {
     button->setFixedHeight(32);
     tasks->addWidget(button);
   }
@@ -152,12 +161,15 @@ void ScreenWidget::refresh() {
   controller_->show(controllerBand(facts, now));
   robot_->show(robotBand(facts, now));
   dead_man_->setWanted(facts.dead_man_wanted);
-  showSliders(facts);
+  showTask(facts);
   showAnswer(facts.answer);
 }
 
-void ScreenWidget::showSliders(const Facts& facts) {
-  const bool by_hand = facts.controller.connected && facts.controller.task == "MANUAL" && facts.limits.has_value();
+void ScreenWidget::showTask(const Facts& facts) {
+  const std::string task = facts.controller.connected ? facts.controller.task : "";
+  mark(follow_, task == "HOLD_VIEW");
+  mark(drive_, task == "MANUAL");
+  const bool by_hand = task == "MANUAL" && facts.limits.has_value();
   for (std::size_t k = 0; k < sliders_.size(); ++k) {
     sliders_[k]->setEnabled(by_hand);
     if (!facts.limits) continue;

@@ -39,7 +39,7 @@ class ScreenWidget : public QWidget {
   QWidget* makeColumn();
   QPushButton* makeButton(const QString& text, const QString& tip, const std::function<void()>& act);
   void showAnswer(const Answer& answer);
-  void showSliders(const Facts& facts);
+  void showTask(const Facts& facts);
 
   std::unique_ptr<RosLink> link_;
   ImageView* image_;
@@ -47,6 +47,8 @@ class ScreenWidget : public QWidget {
   StateBand* controller_;
   StateBand* robot_;
   QLabel* answer_;
+  QPushButton* follow_;
+  QPushButton* drive_;
   DeadManButton* dead_man_;
   std::array<VelocitySlider*, 4> sliders_{};
   QTimer beat_timer_;

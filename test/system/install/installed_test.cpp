@@ -102,9 +102,10 @@ TEST_F(Installed, noFileNamesTheSourcesOrTheBuild) {
 TEST_F(Installed, whatBelongsToThePackageIsThere) {
   const std::string share = prefix->path() + "/share/laparoscope_servo/";
   for (const char* file :
-       {"package.xml", "nodelet_plugins.xml", "README.md", "config/aesop.yaml", "config/scenarios/paper.yaml",
-        "doc/network.md", "launch/demo.launch", "linux/laparoscope-servo-cart.service", "loopback/roscore.xml",
-        "rviz/cart.rviz", "msg/TaskError.msg", "srv/SelectRoi.srv", "cmake/laparoscope_servoConfig.cmake"}) {
+       {"package.xml", "nodelet_plugins.xml", "rviz_plugins.xml", "README.md", "config/aesop.yaml",
+        "config/scenarios/paper.yaml", "doc/network.md", "launch/demo.launch", "linux/laparoscope-servo-cart.service",
+        "loopback/roscore.xml", "rviz/cart.rviz", "rviz/screen.rviz", "msg/TaskError.msg", "srv/SelectRoi.srv",
+        "cmake/laparoscope_servoConfig.cmake"}) {
     EXPECT_TRUE(std::filesystem::is_regular_file(share + file)) << file;
   }
   EXPECT_TRUE(std::filesystem::exists(prefix->path() + "/include/laparoscope_servo/tracking/region_tracker.h"));
