@@ -2,6 +2,7 @@
 #include <ros/init.h>
 
 #include <QApplication>
+#include <QScreen>
 #include <QTimer>
 #include <csignal>
 #include <exception>
@@ -46,7 +47,7 @@ int main(int argc, char** argv) {
   look.start(100);
   laparoscope_servo::screen::ScreenWidget screen;
   screen.setWindowTitle("Laparoscope");
-  screen.resize(1280, 800);
+  screen.resize(QSize(1280, 800).boundedTo(QGuiApplication::primaryScreen()->availableSize()));
   screen.show();
   return SturdyApplication::exec();
 }
