@@ -39,8 +39,6 @@ void DeadManButton::keyReleased() {
   });
 }
 
-void DeadManButton::ended() {}
-
 void DeadManButton::paintEvent(QPaintEvent*) {
   QPainter painter(this);
   painter.setRenderHint(QPainter::Antialiasing);

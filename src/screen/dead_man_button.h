@@ -21,7 +21,6 @@ class DeadManButton : public HoldArea {
 
  private:
   void paintEvent(QPaintEvent* event) override;
-  void ended() override;
   QString obstacle() const override;
 
   bool wanted_ = false;

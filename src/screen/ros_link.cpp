@@ -3,7 +3,6 @@
 #include <laparoscope_servo/ScopeVelocity.h>
 #include <laparoscope_servo/SelectRoi.h>
 #include <laparoscope_servo/SelectTask.h>
-#include <laparoscope_servo/StoredView.h>
 #include <ros/console.h>
 #include <ros/init.h>
 #include <ros/master.h>
@@ -186,20 +185,6 @@ void RosLink::selectRegion(const QRect& pixels) {
   request.request.roi.height = static_cast<std::uint32_t>(pixels.height());
   const std::string name = resolved("tracker/select_roi");
   if (!name.empty()) calls_.call(name, "Region", request);
-}
-
-void RosLink::storeView(const std::string& view) {
-  StoredView request;
-  request.request.name = view;
-  const std::string name = resolved("tracker/store_view");
-  if (!name.empty()) calls_.call(name, "Store view", request);
-}
-
-void RosLink::recallView(const std::string& view) {
-  StoredView request;
-  request.request.name = view;
-  const std::string name = resolved("tracker/recall_view");
-  if (!name.empty()) calls_.call(name, "Recall view", request);
 }
 
 void RosLink::setShares(const std::array<double, 4>& shares) {

@@ -46,8 +46,6 @@ class RosLink {
   void engage(bool on);
   void selectTask(const std::string& task);
   void selectRegion(const QRect& pixels);  // of the original image
-  void storeView(const std::string& name);
-  void recallView(const std::string& name);
 
   HeldControl& deadMan() { return dead_man_; }
   HeldControl& slider() { return slider_; }
