@@ -4,7 +4,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "laparoscope_servo/validation/range_checker.h"
+#include "laparoscope_servo/parameters/table.h"
 
 namespace laparoscope_servo::aesop {
 
@@ -17,14 +17,19 @@ constexpr double kDifferentShare = 0.25;  // of a way, between positions and vel
 
 }  // namespace
 
+void describe(parameters::Table& table, MonitorConfig& c) {
+  table.number("response_time", c.response_time, {0.2, 10}, "s",
+               "joints are judged over so long; well above the arm's delay");
+  table.number("slowest_angle", c.slowest_angle, {1e-4, 1}, "rad/s", "slower commands may move nothing: friction");
+  table.number("slowest_distance", c.slowest_distance, {1e-4, 1}, "m/s", "slower commands may move nothing: friction");
+  table.number("tolerance_angle", c.tolerance_angle, {1e-4, 1}, "rad",
+               "of motion that no command explains, and between positions and velocities");
+  table.number("tolerance_distance", c.tolerance_distance, {1e-4, 1}, "m",
+               "of motion that no command explains, and between positions and velocities");
+}
+
 std::vector<std::string> validate(const MonitorConfig& config) {
-  validation::RangeChecker check;
-  check.range("response_time", config.response_time, 0.2, 10.0);
-  check.range("slowest_angle", config.slowest_angle, 1e-4, 1.0);
-  check.range("slowest_distance", config.slowest_distance, 1e-4, 1.0);
-  check.range("tolerance_angle", config.tolerance_angle, 1e-4, 1.0);
-  check.range("tolerance_distance", config.tolerance_distance, 1e-4, 1.0);
-  return check.errors();
+  return parameters::errorsOf(config);
 }
 
 MotionMonitor::MotionMonitor(const MonitorConfig& config, const Kinematics& kinematics) : config_(config) {

@@ -111,6 +111,7 @@ void Tracker::start(const TrackerParameters& parameters) {
   });
   reset_server_ = private_node.advertiseService("reset", &Tracker::reset, this);
 
+  live_ = std::make_unique<LiveParameters<TrackerParameters>>(private_node, parameters);
   camera_info_subscriber_ = node.subscribe("camera_info", 2, &Tracker::cameraInfoCallback, this);
   subscribeImages();
 
@@ -198,6 +199,7 @@ void Tracker::process(const sensor_msgs::ImageConstPtr& message) {
   Processed processed;
   try {
     watchClock();
+    if (live_->take(changed_)) session_->retune(changed_);
     // Simulated time comes over a topic of its own, later than the image or earlier.
     const ros::Time now = ros::Time::isSimTime() ? ros::Time() : ros::Time::now();
     checkStamp(message->header.stamp, now, session_->parameters().input.max_ahead);

@@ -17,6 +17,7 @@
 #include <string>
 
 #include "ros/common/owned_transforms.h"
+#include "ros/common/reconfigure_server.h"
 #include "ros/tracker/feed_owner.h"
 #include "ros/tracker/preview.h"
 #include "ros/tracker/tracker_diagnostics.h"
@@ -61,6 +62,7 @@ class Tracker : public nodelet::Nodelet {
 
   std::unique_ptr<OwnedTransforms> transforms_;  // with robot_motion only
   std::unique_ptr<TrackerSession> session_;
+  TrackerParameters changed_;  // by live_
   std::unique_ptr<TrackerDiagnostics> statistics_;
   std::unique_ptr<diagnostic_updater::Updater> diagnostics_;
   std::string why_aside_;
@@ -95,6 +97,7 @@ class Tracker : public nodelet::Nodelet {
   ros::ServiceServer reset_server_;
   ros::WallTimer diagnostics_timer_;
   ros::WallTimer state_timer_;
+  std::unique_ptr<LiveParameters<TrackerParameters>> live_;
 };
 
 }  // namespace laparoscope_servo::nodelets

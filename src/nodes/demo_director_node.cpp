@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "ros/common/output_file.h"
+#include "ros/common/parameters.h"
 #include "ros/simulation/demo_director.h"
 
 using namespace laparoscope_servo;
@@ -15,8 +16,8 @@ int main(int argc, char** argv) {
   ros::NodeHandle node;
   const ros::NodeHandle private_node("~");
   ParameterReader reader(parametersOf(private_node), private_node.getNamespace());
-  const DemoConfig config = demoConfig(reader);
-  reader.refuseUnknownOfNode();
+  DemoConfig config;
+  reader.readAll(config);
   if (!reader.errors().empty()) {
     ROS_FATAL("%s", reader.report().c_str());
     return EXIT_FAILURE;

@@ -2,6 +2,7 @@
 #include <ros/ros.h>
 
 #include "ros/common/frame_names.h"
+#include "ros/common/parameters.h"
 #include "ros/simulation/scope_markers.h"
 
 using namespace laparoscope_servo;
@@ -11,7 +12,8 @@ int main(int argc, char** argv) {
   ros::NodeHandle node;
   ros::NodeHandle private_node("~");
   ParameterReader reader(parametersOf(private_node), private_node.getNamespace());
-  ScopeMarkersConfig config = scopeMarkersConfig(reader);
+  ScopeMarkersConfig config;
+  reader.readAll(config);
   if (!reader.errors().empty()) {
     ROS_FATAL("%s", reader.report().c_str());
     return 1;

@@ -4,7 +4,9 @@
 #include <cstdlib>
 #include <exception>
 
+#include "ros/aesop/aesop_parameters.h"
 #include "ros/common/frame_names.h"
+#include "ros/common/parameters.h"
 #include "ros/simulation/simulated_camera.h"
 
 using namespace laparoscope_servo;
@@ -14,7 +16,13 @@ int main(int argc, char** argv) {
   ros::NodeHandle node;
   ros::NodeHandle private_node("~");
   ParameterReader reader(parametersOf(private_node), private_node.getNamespace());
-  SimulatedCameraConfig config = simulatedCameraConfig(reader);
+  // One file may describe the arm for both ends.
+  AesopParameters arm;
+  parameters::Table of_the_arm;
+  describe(of_the_arm, arm);
+  reader.allow(of_the_arm);
+  SimulatedCameraConfig config;
+  reader.readAll(config);
   if (!reader.errors().empty()) {
     ROS_FATAL("%s", reader.report().c_str());
     return EXIT_FAILURE;

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <exception>
 
+#include "ros/common/parameters.h"
 #include "ros/playback/video_player.h"
 
 using namespace laparoscope_servo;
@@ -13,7 +14,8 @@ int main(int argc, char** argv) {
   ros::NodeHandle node;
   const ros::NodeHandle private_node("~");
   ParameterReader reader(parametersOf(private_node), private_node.getNamespace());
-  const VideoPlayerConfig config = videoPlayerConfig(reader);
+  VideoPlayerConfig config;
+  reader.readAll(config);
   if (!reader.errors().empty()) {
     ROS_FATAL("%s", reader.report().c_str());
     return EXIT_FAILURE;

@@ -25,6 +25,10 @@ ControllerOutput Controller::update(const ControllerInput& input) {
   return implementation_->update(input);
 }
 
+void Controller::retune(const ControllerConfig& config) {
+  implementation_->retune(config);
+}
+
 std::string Controller::problem(const ControllerInput& input) const {
   return implementation_->problem(input);
 }

@@ -1,210 +1,209 @@
 #include "laparoscope_servo/servo/controller_config.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
-#include <sstream>
+#include <utility>
 
-#include "laparoscope_servo/validation/range_checker.h"
+#include "laparoscope_servo/parameters/table.h"
 
 namespace laparoscope_servo::servo {
 
 namespace {
 
-class Checker : public validation::RangeChecker {
- public:
-  using RangeChecker::range;
+using parameters::Range;
+using parameters::Table;
 
-  // `angular` bounds pan, tilt and spin, `linear` bounds insertion.
-  void range(const std::string& group, const scope::Velocity& value, double minimum, double angular, double linear,
-             const std::string& derivative) {
-    range(group + "/pan", value.pan, minimum, angular, "rad/" + derivative);
-    range(group + "/tilt", value.tilt, minimum, angular, "rad/" + derivative);
-    range(group + "/spin", value.spin, minimum, angular, "rad/" + derivative);
-    range(group + "/insertion", value.insertion, minimum, linear, "m/" + derivative);
+// `angular` bounds pan, tilt and spin, `linear` bounds insertion; `per` is what stands below the line of the units.
+void describeVelocity(Table& table, scope::Velocity& v, const Range& angular, const Range& linear,
+                      const std::string& per) {
+  table.number("pan", v.pan, angular, "rad/" + per, "about the insertion point, sideways");
+  table.number("tilt", v.tilt, angular, "rad/" + per, "about the insertion point, up and down");
+  table.number("spin", v.spin, angular, "rad/" + per, "about the shaft");
+  table.number("insertion", v.insertion, linear, "m/" + per, "along the shaft");
+}
+
+void describeFeatures(Table& table, FeatureGains& c) {
+  table.number("centre", c.centre, {0, 20}, "1/s", "rate at which the error of the region's centre decays")
+      .whileRunning();
+  table.number("depth", c.depth, {0, 20}, "1/s", "rate at which the error of depth decays").whileRunning();
+  table.number("orientation", c.orientation, {0, 20}, "1/s", "rate at which the error of orientation decays")
+      .whileRunning();
+  table.number(
+      "desired_depth", c.desired_depth, {0.005, 0.5}, "m",
+      "Z*, from the camera to the tissue at the reference, also for the predictor; wrong by two it still converges");
+}
+
+// No negative gain: it would drive the arm away from the target.
+void describeGains(Table& table, PaperGains& c) {
+  table.number("pan", c.pan, {0, 5}, "1/s", "k_p, which holds the 1/d2 of eq. (11)").whileRunning();
+  table.number("tilt", c.tilt, {0, 5}, "1/s", "k_t, which holds the 1/d2 of eq. (11)").whileRunning();
+  table.number("spin", c.spin, {0, 5}, "1/s", "k_s").whileRunning();
+  table.number("insertion", c.insertion, {0, 0.5}, "m/s", "k_d").whileRunning();
+}
+
+void describePredictor(Table& table, PredictorConfig& c) {
+  table.flag("enabled", c.enabled, "false: the law sees the task error of the last image as it is");
+  table.number("delay", c.delay, {0, 1}, "s", "from a command to its execution, until it is measured")
+      .atLeast("min_delay")
+      .atMost("max_delay");
+  table.flag("measure_delay", c.measure_delay, "the delay is measured from the velocities that the robot reports");
+  table.number("min_delay", c.min_delay, {0, 1}, "s", "nothing less is measured");
+  table.number("max_delay", c.max_delay, {0, 1}, "s", "nothing more is measured").atLeast("min_delay");
+  table.flag("feed_forward", c.feed_forward, "the target's own velocity is added to the law's");
+  table.number("command_lifetime", c.command_lifetime, {0.02, 2}, "s",
+               "for which the robot does what it was told last: command/timeout of the node aesop");
+}
+
+// The noises are not zero: without one of its own a filter stops listening.
+void describeTarget(Table& table, TargetMotionConfig& c) {
+  table.number("centre_noise", c.centre_noise, {1e-6, 1}, "px over the focal length",
+               "standard deviation of the region's centre in one image");
+  table.number("depth_noise", c.depth_noise, {1e-6, 1}, "", "standard deviation of the log depth in one image");
+  table.number("orientation_noise", c.orientation_noise, {1e-6, 1}, "rad",
+               "standard deviation of the orientation in one image");
+  table.number("centre_wander", c.centre_wander, {1e-6, 1}, "1/sqrt(s)",
+               "random walk of the centre's place, px over the focal length");
+  table.number("depth_wander", c.depth_wander, {1e-6, 1}, "1/sqrt(s)", "random walk of the log depth");
+  table.number("orientation_wander", c.orientation_wander, {1e-6, 1}, "rad/sqrt(s)", "random walk of the orientation");
+  table.number("centre_acceleration", c.centre_acceleration, {0, 10}, "1/s/sqrt(s)",
+               "random walk of the centre's velocity");
+  table.number("depth_acceleration", c.depth_acceleration, {0, 10}, "1/s/sqrt(s)",
+               "random walk of the log depth's velocity");
+  table.number("orientation_acceleration", c.orientation_acceleration, {0, 10}, "rad/s/sqrt(s)",
+               "random walk of the orientation's velocity");
+  table.number("calibration", c.calibration, {0, 2}, "share", "of the scope's own motion that may be wrong");
+  table.number("significance", c.significance, {0, 100}, "standard deviations", "from which on a velocity is believed")
+      .whileRunning();
+  table.number("jump", c.jump, {3, 1000}, "standard deviations", "what is seen further off is another target");
+  table.number("damping", c.damping, {0, 10}, "1/s", "rate at which a velocity that is not seen any more decays");
+}
+
+void describeBreathing(Table& table, BreathingConfig& c) {
+  table.flag("enabled", c.enabled, "periodic motion is followed");
+  table.number("rate", c.rate, {0, 2}, "Hz",
+               "of the ventilator, in [min_rate, max_rate]; 0, or one that proves wrong: it is searched");
+  table.number("rate_stddev", c.rate_stddev, {0, 0.1}, "Hz", "standard deviation of that rate");
+  table.number("min_rate", c.filter.min_frequency, {0.02, 2}, "Hz", "nothing slower is looked for");
+  table.number("max_rate", c.filter.max_frequency, {0.02, 2}, "Hz", "nothing faster is looked for").atLeast("min_rate");
+}
+
+void describeRest(Table& table, RestConfig& c) {
+  table.flag("enabled", c.enabled, "false: the scope never rests");
+  const auto bands = [&](const std::string& name, double& stop, double& start, const std::string& unit,
+                         const std::string& what) {
+    table.number(name + "_stop", stop, {0, 0.1}, unit, "where the error of " + what + " is less, it stops")
+        .whileRunning();
+    table.number(name + "_start", start, {0, 0.1}, unit, "where the error of " + what + " is more, it starts")
+        .atLeast(name + "_stop")
+        .whileRunning();
+  };
+  bands("centre", c.centre_stop, c.centre_start, "px over the focal length", "the centre");
+  bands("depth", c.depth_stop, c.depth_start, "", "the log depth, of which 0.01 is 1 % of scale,");
+  bands("orientation", c.orientation_stop, c.orientation_start, "rad", "orientation");
+  table.number("hunting_time", c.hunting_time, {0, 10}, "s", "a start so soon after a stop widens the band")
+      .whileRunning();
+  table.number("widening", c.widening, {1, 3}, "times", "that a band grows each time").whileRunning();
+  table.number("widest", c.widest, {1, 10}, "times", "its start's bound, a band grows no further").whileRunning();
+}
+
+void describeOscillation(Table& table, OscillationConfig& c) {
+  table.flag("enabled", c.enabled, "false: gains stay as they are");
+  table.number("half_period", c.half_period, {0.05, 5}, "s", "slower is no swinging");
+  table.number("changes", c.changes, {1, 100}, "changes", "of sign in a row are a swinging loop");
+  table.number("centre", c.centre, {0, 1}, "px over the focal length", "a swing reaches so far to each side");
+  table.number("depth", c.depth, {0, 1}, "", "a swing of the log depth reaches so far to each side");
+  table.number("orientation", c.orientation, {0, 3.2}, "rad", "a swing of the orientation reaches so far to each side");
+  table.number("step", c.step, {0.1, 1}, "times", "that the gains become each time");
+  table.number("least", c.least, {0.01, 1}, "times", "the gains, they are not lowered further");
+}
+
+void describeRange(Table& table, Workspace& c) {
+  table.number("min_depth", c.min_depth, {0.005, 0.5}, "m", "least d2, of the camera beyond the insertion point");
+  table.number("max_depth", c.max_depth, {0.005, 0.5}, "m", "largest d2").atLeast("min_depth");
+  table.number("depth_margin", c.depth_margin, {0, 0.1}, "m", "slowed from here to a bound");
+  table.numbers("axis", c.axis, 3, Range::finite(), "",
+                "direction of the cone's axis in the insertion point's frame, into the body; not all zero");
+  table.number("cone", c.cone, {0, 3.2}, "rad", "from the axis to the shaft");
+  table.number("cone_margin", c.cone_margin, {0, 1.6}, "rad", "slowed from here to the bound");
+}
+
+void describeInsertionPoint(Table& table, InsertionPointUse& c) {
+  table.flag("use", c.use, "false: the calibration is taken for true, and nothing watches it");
+  table.number("prior_stddev", c.prior_stddev, {0, 1}, "m",
+               "standard deviation of the calibration, per axis; 0: it counts for nothing");
+  table.number("correction_rate", c.correction_rate, {0, 0.1}, "m/s",
+               "at which d2 goes from the calibration's to the estimate's");
+  describe(table, c.estimator);
+}
+
+bool isZero(const std::vector<double>& v) {
+  return std::all_of(v.begin(), v.end(), [](double component) { return component == 0.0; });
+}
+
+// What no single row says.
+void checkTogether(const ControllerConfig& c, std::vector<std::string>& errors) {
+  if (c.breathing.rate != 0.0 &&
+      !Range(c.breathing.filter.min_frequency, c.breathing.filter.max_frequency).contains(c.breathing.rate)) {
+    errors.push_back("breathing/rate = " + validation::numberText(c.breathing.rate) +
+                     ", expected 0 or a number in [min_rate, max_rate] Hz");
   }
-
-  void atLeast(const std::string& name, double value, const std::string& other_name, double other) {
-    if (!(value < other)) return;
-    std::ostringstream error;
-    error << name << " = " << value << ", expected at least " << other_name << " = " << other;
-    add(error.str());
+  for (const auto& [name, direction] :
+       {std::pair("range/axis", &c.range.axis), std::pair("horizon/up", &c.horizon.up)}) {
+    if (isZero(*direction))
+      errors.push_back(std::string(name) + " is no direction, expected numbers that are not all zero");
   }
-};
-
-void checkDeadZone(const DeadZoneConfig& config, Checker& check) {
-  check.range("dead_zone/width", config.width, 0.0, 0.1, 0.02, "s");
-}
-
-void checkLaws(const ControllerConfig& config, Checker& check) {
-  // No negative gain: it would drive the arm away from the target.
-  check.range("gains/pan", config.gains.pan, 0.0, 5.0, "1/s");
-  check.range("gains/tilt", config.gains.tilt, 0.0, 5.0, "1/s");
-  check.range("gains/spin", config.gains.spin, 0.0, 5.0, "1/s");
-  check.range("gains/insertion", config.gains.insertion, 0.0, 0.5, "m/s");
-  check.range("features/centre", config.features.centre, 0.0, 20.0, "1/s");
-  check.range("features/depth", config.features.depth, 0.0, 20.0, "1/s");
-  check.range("features/orientation", config.features.orientation, 0.0, 20.0, "1/s");
-  check.range("features/desired_depth", config.features.desired_depth, 0.005, 0.5, "m");
-  const PredictorConfig& predictor = config.predictor;
-  check.range("predictor/min_delay", predictor.min_delay, 0.0, 1.0, "s");
-  check.range("predictor/max_delay", predictor.max_delay, 0.0, 1.0, "s");
-  check.atLeast("predictor/max_delay", predictor.max_delay, "predictor/min_delay", predictor.min_delay);
-  check.range("predictor/delay", predictor.delay, std::max(0.0, predictor.min_delay),
-              std::min(1.0, predictor.max_delay), "s");
-  check.range("predictor/command_lifetime", predictor.command_lifetime, 0.02, 2.0, "s");
-}
-
-void checkTarget(const TargetMotionConfig& config, Checker& check) {
-  // Not zero: without noise of its own a filter stops listening.
-  check.range("target/centre_noise", config.centre_noise, 1e-6, 1.0);
-  check.range("target/depth_noise", config.depth_noise, 1e-6, 1.0);
-  check.range("target/orientation_noise", config.orientation_noise, 1e-6, 1.0, "rad");
-  check.range("target/centre_wander", config.centre_wander, 1e-6, 1.0, "1/sqrt(s)");
-  check.range("target/depth_wander", config.depth_wander, 1e-6, 1.0, "1/sqrt(s)");
-  check.range("target/orientation_wander", config.orientation_wander, 1e-6, 1.0, "rad/sqrt(s)");
-  check.range("target/centre_acceleration", config.centre_acceleration, 0.0, 10.0, "1/s/sqrt(s)");
-  check.range("target/depth_acceleration", config.depth_acceleration, 0.0, 10.0, "1/s/sqrt(s)");
-  check.range("target/orientation_acceleration", config.orientation_acceleration, 0.0, 10.0, "rad/s/sqrt(s)");
-  check.range("target/calibration", config.calibration, 0.0, 2.0);
-  check.range("target/significance", config.significance, 0.0, 100.0);
-  check.range("target/jump", config.jump, 3.0, 1000.0);
-  check.range("target/damping", config.damping, 0.0, 10.0, "1/s");
-}
-
-void checkBreathing(const BreathingConfig& config, Checker& check) {
-  check.range("breathing/rate_stddev", config.rate_stddev, 0.0, 0.1, "Hz");
-  check.range("breathing/min_rate", config.filter.min_frequency, 0.02, 2.0, "Hz");
-  check.range("breathing/max_rate", config.filter.max_frequency, 0.02, 2.0, "Hz");
-  check.atLeast("breathing/max_rate", config.filter.max_frequency, "breathing/min_rate", config.filter.min_frequency);
-  if (config.rate != 0.0) {
-    check.range("breathing/rate", config.rate, std::max(0.02, config.filter.min_frequency),
-                std::min(2.0, config.filter.max_frequency), "Hz");
-  }
-  if (check.errors().empty()) {
-    for (const std::string& error : validate(config.filter)) check.add("breathing/filter: " + error);
-  }
-}
-
-void checkDirection(const std::string& name, const std::vector<double>& v, Checker& check) {
-  if (v.size() == 3 && Eigen::Vector3d(v[0], v[1], v[2]).norm() > 0.0 && Eigen::Vector3d(v[0], v[1], v[2]).allFinite())
-    return;
-  check.add(name + " is no direction, expected three finite numbers that are not all zero");
-}
-
-void checkRange(const Workspace& range, Checker& check) {
-  check.range("range/min_depth", range.min_depth, 0.005, 0.5, "m");
-  check.range("range/max_depth", range.max_depth, 0.005, 0.5, "m");
-  check.atLeast("range/max_depth", range.max_depth, "range/min_depth", range.min_depth);
-  check.range("range/depth_margin", range.depth_margin, 0.0, 0.1, "m");
-  check.range("range/cone", range.cone, 0.0, 3.2, "rad");
-  check.range("range/cone_margin", range.cone_margin, 0.0, 1.6, "rad");
-  checkDirection("range/axis", range.axis, check);
-}
-
-void checkInsertionPoint(const InsertionPointUse& config, Checker& check) {
-  check.range("insertion_point/prior_stddev", config.prior_stddev, 0.0, 1.0, "m");
-  check.range("insertion_point/correction_rate", config.correction_rate, 0.0, 0.1, "m/s");
-  for (const std::string& error : validate(config.estimator)) check.add("insertion_point/" + error);
-}
-
-void checkEffect(const EffectConfig& config, Checker& check) {
-  // Not zero: tissue that cannot move by itself would make a fault of every breath.
-  check.range("effect/tissue_centre", config.tissue_centre, 1e-3, 10.0, "1/s");
-  check.range("effect/tissue_depth", config.tissue_depth, 1e-3, 10.0, "1/s");
-  check.range("effect/tissue_orientation", config.tissue_orientation, 1e-3, 10.0, "rad/s");
-  check.range("effect/tissue_time", config.tissue_time, 0.05, 60.0, "s");
-  check.range("effect/unrest_time", config.unrest_time, 0.0, 10.0, "s");
-  check.range("effect/memory", config.memory, 0.1, 60.0, "s");
-  check.range("effect/doubt", config.doubt, 1.0, 100.0);
-  check.range("effect/release", config.release, 0.0, 100.0);
-  check.atLeast("effect/doubt", config.doubt, "effect/release", config.release);
-  check.range("effect/certain", config.certain, 1.0, 1000.0);
-  check.atLeast("effect/certain", config.certain, "effect/doubt", config.doubt);
-  check.range("effect/standing_time", config.standing_time, 0.05, 10.0, "s");
-  check.range("effect/unconfirmed_turn", config.unconfirmed_turn, 1e-3, 10.0, "rad");
-  check.range("effect/unconfirmed_insertion", config.unconfirmed_insertion, 1e-4, 1.0, "m");
-}
-
-void checkOscillation(const OscillationConfig& config, Checker& check) {
-  check.range("oscillation/half_period", config.half_period, 0.05, 5.0, "s");
-  check.range("oscillation/changes", config.changes, 1, 100);
-  check.range("oscillation/centre", config.centre, 0.0, 1.0);
-  check.range("oscillation/depth", config.depth, 0.0, 1.0);
-  check.range("oscillation/orientation", config.orientation, 0.0, 3.2, "rad");
-  check.range("oscillation/step", config.step, 0.1, 1.0);
-  check.range("oscillation/least", config.least, 0.01, 1.0);
-}
-
-void checkRest(const RestConfig& config, Checker& check) {
-  check.range("rest/centre_stop", config.centre_stop, 0.0, 0.1);
-  check.range("rest/centre_start", config.centre_start, 0.0, 0.1);
-  check.range("rest/depth_stop", config.depth_stop, 0.0, 0.1);
-  check.range("rest/depth_start", config.depth_start, 0.0, 0.1);
-  check.range("rest/orientation_stop", config.orientation_stop, 0.0, 0.1, "rad");
-  check.range("rest/orientation_start", config.orientation_start, 0.0, 0.1, "rad");
-  check.range("rest/hunting_time", config.hunting_time, 0.0, 10.0, "s");
-  check.range("rest/widening", config.widening, 1.0, 3.0);
-  check.range("rest/widest", config.widest, 1.0, 10.0);
-  check.atLeast("rest/centre_start", config.centre_start, "rest/centre_stop", config.centre_stop);
-  check.atLeast("rest/depth_start", config.depth_start, "rest/depth_stop", config.depth_stop);
-  check.atLeast("rest/orientation_start", config.orientation_start, "rest/orientation_stop", config.orientation_stop);
-}
-
-void checkSafety(const SafetyConfig& config, Checker& check) {
-  check.range("safety/max_task_error_age", config.max_task_error_age, 0.01, 1.0, "s");
-  check.range("safety/max_depth_age", config.max_depth_age, 0.01, 1.0, "s");
-  check.range("safety/min_depth", config.min_depth, 0.005, 0.5, "m");
-  check.range("safety/max_depth", config.max_depth, 0.005, 0.5, "m");
-  check.atLeast("safety/max_depth", config.max_depth, "safety/min_depth", config.min_depth);
-  check.range("safety/max_lateral_offset", config.max_lateral_offset, 0.0, 0.1, "m");
-  check.range("safety/max_tip_speed", config.max_tip_speed, 0.01, 1000.0, "m/s");
-  check.range("safety/max_tip_turn", config.max_tip_turn, 0.05, 1000.0, "rad/s");
-  check.range("safety/max_optics_offset", config.max_optics_offset, 0.0, 1.0, "m");
-  check.range("safety/resume_time", config.resume_time, 0.0, 10.0, "s");
-  check.range("safety/max_period", config.max_period, 0.001, 1.0, "s");
-  check.range("safety/max_clock_step", config.max_clock_step, 0.01, 10.0, "s");
-  check.atLeast("safety/max_clock_step", config.max_clock_step, "safety/max_period", config.max_period);
-  check.range("safety/slow_below", config.slow_below, 0.0, 1.0);
-  check.range("safety/hold_below", config.hold_below, 0.0, 1.0);
-  check.atLeast("safety/slow_below", config.slow_below, "safety/hold_below", config.hold_below);
-  check.range("safety/release_hold_above", config.release_hold_above, 0.0, 1.0);
-  check.atLeast("safety/release_hold_above", config.release_hold_above, "safety/hold_below", config.hold_below);
-  check.range("safety/min_visible_for_insertion", config.min_visible_for_insertion, 0.0, 1.0);
-  check.range("safety/max_corner_error_for_insertion", config.max_corner_error_for_insertion, 0.0, 100.0, "px");
-  check.range("safety/max_dead_man_age", config.max_dead_man_age, 0.01, 1.0, "s");
-  check.range("safety/max_robot_state_age", config.max_robot_state_age, 0.01, 2.0, "s");
-  check.range("safety/max_manual_age", config.max_manual_age, 0.01, 1.0, "s");
-  check.range("safety/max_manual_repeat", config.max_manual_repeat, 0.5, 3600.0, "s");
-  check.range("safety/manual_neutral", config.manual_neutral, 0.0, 0.5);
-  check.range("safety/max_repeated_errors", config.max_repeated_errors, 1, 100);
-  check.range("safety/max_clock_difference", config.max_clock_difference, 0.001, 1.0, "s");
+  // The dead zone's inverse stays within the limits.
+  const Eigen::Vector4d room = c.limits.velocity.vector() - c.dead_zone.width.vector();
+  if (c.dead_zone.inverse && !(room.array() > 0.0).all())
+    errors.emplace_back("limits/velocity is not above dead_zone/width, expected more in each component");
+  if (!errors.empty()) return;
+  for (const std::string& error : validate(c.breathing.filter)) errors.push_back("breathing/filter: " + error);
+  for (const std::string& error : validate(c.insertion_point.estimator)) errors.push_back("insertion_point/" + error);
 }
 
 }  // namespace
 
+void describe(Table& table, ControllerConfig& c) {
+  table.choice("law", c.law, {"features", "paper"},
+               "features: the region's centre, depth and orientation; paper: eq. (11) of Bourger et al. (2007)");
+  table.choice("spin", c.spin, {"servo", "upright", "released"},
+               "what the scope's spin keeps: the region's orientation, the picture's, or nothing");
+  table.group("features", "gains of the law features", [&] { describeFeatures(table, c.features); });
+  table.group("gains", "gains of the law paper", [&] { describeGains(table, c.gains); });
+  table.group("predictor", "the error when a command will be executed", [&] { describePredictor(table, c.predictor); });
+  table.group("target", "how the target's own motion is told from noise", [&] { describeTarget(table, c.target); });
+  table.group("breathing", "the target's periodic motion", [&] { describeBreathing(table, c.breathing); });
+  table.group("rest", "within these bands about the target the scope rests", [&] { describeRest(table, c.rest); });
+  table.group("oscillation", "a loop that swings about the target loses gain",
+              [&] { describeOscillation(table, c.oscillation); });
+  table.group("dead_zone", "slower commands are not executed by the robot", [&] {
+    table.flag("inverse", c.dead_zone.inverse, "the width is added to what the law asks for");
+    table.group("width", "", [&] { describeVelocity(table, c.dead_zone.width, {0, 0.1}, {0, 0.02}, "s"); });
+  });
+  table.group("limits", "all four components are scaled together, so that the direction is kept", [&] {
+    // Not zero: since all components are scaled together, it would stop the others too. A gain of zero keeps one still.
+    table.group("velocity", "above dead_zone/width where its inverse is used", [&] {
+      describeVelocity(table, c.limits.velocity, {1e-6, 1}, {1e-6, 0.1}, "s");
+    });
+    table.group("acceleration", "a safety stop is immediate, whatever stands here", [&] {
+      describeVelocity(table, c.limits.acceleration, {1e-6, 100}, {1e-6, 10}, "s^2");
+    });
+  });
+  table.group("range", "towards a bound the scope is slowed down, at the bound it goes no further",
+              [&] { describeRange(table, c.range); });
+  table.group("insertion_point", "where the shafts of the poses meet",
+              [&] { describeInsertionPoint(table, c.insertion_point); });
+  table.group("effect", "whether the picture moves as the scope's motion makes it move",
+              [&] { describe(table, c.effect); });
+  table.group("horizon", "which way is up, for the spin upright", [&] {
+    table.numbers("up", c.horizon.up, 3, Range::finite(), "", "direction in the insertion point's frame; not all zero");
+  });
+  table.group("safety", "what the scope has to be sure of before it moves", [&] { describe(table, c.safety); });
+}
+
 std::vector<std::string> validate(const ControllerConfig& config) {
-  Checker check;
-  checkLaws(config, check);
-  checkTarget(config.target, check);
-  checkBreathing(config.breathing, check);
-  checkOscillation(config.oscillation, check);
-  checkEffect(config.effect, check);
-  checkRange(config.range, check);
-  checkInsertionPoint(config.insertion_point, check);
-  checkDirection("horizon/up", config.horizon.up, check);
-  checkDeadZone(config.dead_zone, check);
-  checkRest(config.rest, check);
-  // Not zero: since all components are scaled together, it would stop the others too. A gain of zero keeps one still.
-  check.range("limits/velocity", config.limits.velocity, 1e-6, 1.0, 0.1, "s");
-  // The dead zone's inverse stays within the limits.
-  const Eigen::Vector4d room = config.limits.velocity.vector() - config.dead_zone.width.vector();
-  if (config.dead_zone.inverse && !(room.array() > 0.0).all()) {
-    check.add("limits/velocity is not above dead_zone/width, expected more in each component");
-  }
-  check.range("limits/acceleration", config.limits.acceleration, 1e-6, 100.0, 10.0, "s^2");
-  checkSafety(config.safety, check);
-  return check.errors();
+  std::vector<std::string> errors = parameters::errorsOf(config);
+  checkTogether(config, errors);
+  return errors;
 }
 
 }  // namespace laparoscope_servo::servo

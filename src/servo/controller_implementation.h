@@ -23,6 +23,7 @@ class Controller::Implementation {
   void disengage(const std::string& reason);
   void select(Task task);
   ControllerOutput update(const ControllerInput& input);
+  void retune(const ControllerConfig& config) { servo_.retune(config); }
   std::string problem(const ControllerInput& input) const;
   bool engaged() const { return isEngaged(machine_.state()); }
   Task task() const { return task_; }

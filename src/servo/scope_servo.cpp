@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "servo/law/feature_law.h"
-#include "servo/law/paper_law.h"
 #include "servo/shaping/dead_zone.h"
 #include "servo/shaping/workspace.h"
 #include "servo/task/horizon.h"
@@ -18,11 +16,6 @@ namespace {
 constexpr double kSameImage = 1e-6;  // s, rounding
 constexpr double kBlocked = 0.3;     // s: a robot that does not do what it was told for longer counts as blocked
 constexpr double kHistory = 5.0;     // s: an image of 1 s ago, a delay of 1 s and a command's lifetime of 2 s, at most
-
-std::unique_ptr<ControlLaw> lawOf(const ControllerConfig& config) {
-  if (config.law == LawKind::kPaper) return std::make_unique<PaperLaw>(config.gains);
-  return std::make_unique<FeatureLaw>(config.features, config.spin);
-}
 
 // The dead zone's inverse comes after the limits, and must keep to them.
 Limits beforeDeadZone(const ControllerConfig& config) {
@@ -48,7 +41,8 @@ scope::Velocity scaled(const scope::Velocity& velocity, double scale) {
 
 ScopeServo::ScopeServo(const ControllerConfig& config)
     : config_(config),
-      law_(lawOf(config)),
+      paper_law_(config.gains),
+      feature_law_(config.features, config.spin),
       band_(config.rest),
       oscillation_(config.oscillation),
       limiter_(beforeDeadZone(config)),
@@ -56,6 +50,24 @@ ScopeServo::ScopeServo(const ControllerConfig& config)
       delay_(delayConfig(config.predictor)),
       target_(config.target),
       breathing_(config.breathing, config.target) {}
+
+const ControlLaw& ScopeServo::law() const {
+  if (config_.law == LawKind::kPaper) return paper_law_;
+  return feature_law_;
+}
+
+void ScopeServo::retune(const ControllerConfig& config) {
+  config_.gains = config.gains;
+  config_.features.centre = config.features.centre;
+  config_.features.depth = config.features.depth;
+  config_.features.orientation = config.features.orientation;
+  paper_law_ = PaperLaw(config_.gains);
+  feature_law_ = FeatureLaw(config_.features, config_.spin);
+  RestConfig rest = config.rest;
+  rest.enabled = config_.rest.enabled;
+  band_.retune(rest);
+  target_.setSignificance(config.target.significance);
+}
 
 void ScopeServo::reset() {
   limiter_.reset();
@@ -190,7 +202,7 @@ scope::Velocity ScopeServo::command(const ServoInput& input, const ServoLimits& 
   turn_ = shortTurn(same_way);
   error.alpha = error.desired_alpha + turn_;
   const bool follows = follow.vector() != Eigen::Vector4d::Zero();
-  const LawVelocity wanted = law_->velocity(follows ? error : band_.apply(error, input.time), input.scope);
+  const LawVelocity wanted = law().velocity(follows ? error : band_.apply(error, input.time), input.scope);
   if (!wanted.sum().vector().allFinite()) return wanted.sum();
   const double gain = limits.scale * gainFactor();
   // Pan and tilt come first: where there is no room for spin and insertion, the centre need not wait for them. Nor need

@@ -6,11 +6,12 @@
 #pragma once
 
 #include <limits>
-#include <memory>
 #include <optional>
 
 #include "laparoscope_servo/servo/controller_config.h"
 #include "servo/law/control_law.h"
+#include "servo/law/feature_law.h"
+#include "servo/law/paper_law.h"
 #include "servo/prediction/breathing.h"
 #include "servo/prediction/command_history.h"
 #include "servo/prediction/delay_estimator.h"
@@ -52,6 +53,11 @@ class ScopeServo {
   // through the same dead zone. What the input says of an image does not count.
   scope::Velocity drive(const ServoInput& input, const scope::Velocity& wanted);
 
+  // From the next command on: the laws' gains, the bands of rest, the significance of the target's motion. All else of
+  // the configuration, which must be valid, is left aside. The limits of acceleration hold across the change. Does not
+  // allocate.
+  void retune(const ControllerConfig& config);
+
   // What the robot says that it executed at `time` [s], on the clock of the commands; from this the delay is measured.
   void report(double time, const scope::Velocity& velocity);
 
@@ -83,6 +89,7 @@ class ScopeServo {
   double delay() const { return config_.predictor.measure_delay ? delay_.delay() : config_.predictor.delay; }
 
  private:
+  const ControlLaw& law() const;
   void observe(const ServoInput& input);
   scope::Velocity send(const ServoInput& input, scope::Velocity velocity);
   void forgetTarget();
@@ -91,7 +98,8 @@ class ScopeServo {
   void remember(double time, const scope::Velocity& executed);
 
   ControllerConfig config_;
-  std::unique_ptr<ControlLaw> law_;
+  PaperLaw paper_law_;
+  FeatureLaw feature_law_;
   HysteresisBand band_;
   OscillationGuard oscillation_;
   SlewLimiter limiter_;

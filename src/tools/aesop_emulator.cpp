@@ -47,7 +47,7 @@ sim::EmulatorConfig readConfig(const options::variables_map& values) {
   }
   ParameterReader reader(tree, "params");
   const sim::EmulatorConfig config = readEmulatorConfig(reader);
-  reader.addErrors(errorsBesideEmulator(tree));
+  for (const std::string& error : errorsBesideEmulator(tree)) reader.addError(error);
   if (!reader.errors().empty()) throw std::runtime_error(reader.report());
   return config;
 }

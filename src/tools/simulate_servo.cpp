@@ -104,8 +104,10 @@ int run(const options::variables_map& values) {
     }
   }
   ParameterReader reader(tree, "");
-  const closed_loop::SimulationConfig simulation = simulationConfig(reader);
-  const ControllerNodeConfig node = controllerNodeConfig(reader);
+  ServoSimulationParameters parameters;
+  reader.readAll(parameters);
+  const closed_loop::SimulationConfig& simulation = parameters.simulation;
+  const ControllerNodeConfig& node = parameters.controller;
   const Request request = requestFrom(values, simulation, reader);
   if (!reader.errors().empty()) {
     std::cerr << "simulate_servo: " << reader.report() << '\n';

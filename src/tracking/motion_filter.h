@@ -20,6 +20,7 @@ class MotionFilter {
  public:
   // `damping`, 0 to 1: share of the last motion that is expected to go on.
   explicit MotionFilter(double damping) : damping_(damping) {}
+  void setDamping(double damping) { damping_ = damping; }
 
   // The reference: G is the identity, exactly. `normalisation`: N of Esm, which must be that of `roi`.
   void start(const geometry::Rectangle& roi, const Eigen::Matrix3d& normalisation, double stamp);

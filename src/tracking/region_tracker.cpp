@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "laparoscope_servo/geometry/sl3.h"
+#include "laparoscope_servo/parameters/table.h"
 #include "laparoscope_servo/validation/error_report.h"
 #include "tracking/align/quality.h"
 #include "tracking/align/region_aligner.h"
@@ -52,6 +53,7 @@ class RegionTracker::Implementation {
   cv::Mat occlusionMask() const;
   bool hasRoi() const { return state_ != State::kIdle; }
   const TrackerConfig& config() const { return config_; }
+  void retune(const TrackerConfig& config);
 
  private:
   double setReference(const cv::Mat& image, double stamp, const geometry::Rectangle& wanted);
@@ -297,6 +299,13 @@ const TrackResult& RegionTracker::Implementation::idle(double stamp, const std::
   return result_;
 }
 
+void RegionTracker::Implementation::retune(const TrackerConfig& config) {
+  parameters::copyWhatMayChange(config, config_);
+  aligner_.retune(config_);
+  filter_.setDamping(config_.velocity_damping);
+  search_.retune(config_);
+}
+
 void RegionTracker::Implementation::reset() {
   *this = Implementation(config_, lens_);
 }
@@ -314,6 +323,10 @@ RegionTracker::~RegionTracker() = default;
 RegionTracker::RegionTracker(RegionTracker&&) noexcept = default;
 RegionTracker& RegionTracker::operator=(RegionTracker&&) noexcept = default;
 
+void RegionTracker::retune(const TrackerConfig& config) {
+  validation::throwErrors("tracker", validate(config));
+  implementation_->retune(config);
+}
 void RegionTracker::setLens(const std::optional<image::Lens>& lens) {
   implementation_->setLens(lens);
 }

@@ -1,40 +1,123 @@
 #include "laparoscope_servo/tracking/tracker_config.h"
 
-#include "laparoscope_servo/validation/range_checker.h"
+#include "laparoscope_servo/parameters/table.h"
 
 namespace laparoscope_servo::tracking {
 
-std::vector<std::string> validate(const TrackerConfig& c) {
-  validation::RangeChecker check;
-  check.range("occlusion/rows", c.occlusion.rows, 2, 64);
-  check.range("occlusion/columns", c.occlusion.columns, 2, 64);
-  check.range("occlusion/bins", c.occlusion.bins, 4, 256);
-  check.range("occlusion/threshold", c.occlusion.threshold, 0.0, 1.0);
-  check.range("occlusion/hold", c.occlusion.hold, 0, 100);
-  check.range("esm/levels", c.esm.levels, 1, 6);
-  check.range("esm/max_iterations", c.esm.max_iterations, 1, 100);
-  check.range("esm/min_step", c.esm.min_step, 0.0001, 1.0);
-  check.range("esm/saturation", c.esm.saturation, 1, 256);
-  check.range("quality/min_zncc", c.quality.min_zncc, 0.0, 1.0);
-  check.range("quality/min_visible_fraction", c.quality.min_visible_fraction, 0.0, 1.0);
-  check.range("quality/min_return_fraction", c.quality.min_return_fraction, 0.0, 1.0);
-  check.range("quality/max_corner_error", c.quality.max_corner_error, 0.01, 100.0);
-  check.range("quality/max_centre_error", c.quality.max_centre_error, 0.01, 100.0);
-  check.range("quality/max_area_ratio", c.quality.max_area_ratio, 1.01, 1000.0);
-  check.range("quality/max_jump", c.quality.max_jump, 0.01, 10.0);
-  check.range("quality/max_search_time", c.quality.max_search_time, 0.0, 3600.0);
-  check.range("quality/confirmations", c.quality.confirmations, 1, 100);
-  check.range("search/max_features", c.search.max_features, 50, 5000);
-  check.range("search/max_pixels", c.search.max_pixels, 10000, 10000000);
-  check.range("search/max_ratio", c.search.max_ratio, 0.1, 1.0);
-  check.range("search/min_inliers", c.search.min_inliers, 4, 1000);
-  check.range("search/keyframes", c.search.keyframes, 0, 64);
-  check.range("search/min_detail", c.search.min_detail, 0.0, 1.0);
-  check.range("search/budget", c.search.budget, 0.001, 10.0, "s");
-  check.range("velocity_damping", c.velocity_damping, 0.0, 1.0);
-  check.range("min_roi_side", c.min_roi_side, 8, 1000);
-  check.range("min_texture", c.min_texture, 0.01, 10.0);
-  return check.errors();
+namespace {
+
+using parameters::Table;
+
+void describe(Table& table, OcclusionConfig& c) {
+  // "none" rather than "off", which YAML takes for a boolean.
+  table.choice("colour", c.colour, {"none", "published", "normalised"},
+               "gate before ESM: none, S0 cos H of the paper, or that divided by the intensity, which bears changes of "
+               "brightness");
+  table.number("rows", c.rows, {2, 64}, "areas", "the region is divided into as many down its height");
+  table.number("columns", c.columns, {2, 64}, "areas", "the region is divided into as many across its width");
+  table.number("bins", c.bins, {4, 256}, "bins", "an area's histogram has as many");
+  table
+      .number("threshold", c.threshold, {0, 1}, "Bhattacharyya distance",
+              "an area further from its reference is occluded")
+      .whileRunning();
+  table.flag("structure", c.structure,
+             "after alignment, areas that do not correlate with the reference are occluded, too");
+  table.number("hold", c.hold, {0, 100}, "images", "an area that failed by its structure stays out for so long");
+}
+
+void describe(Table& table, EsmConfig& c) {
+  table.number("levels", c.levels, {1, 6}, "levels", "the pyramid has as many, each half as fine as the one before");
+  table.number("max_iterations", c.max_iterations, {1, 100}, "iterations", "a level of the pyramid takes no more");
+  table.number("min_step", c.min_step, {0.0001, 1}, "px", "converged when no corner is expected to move further");
+  table.choice(
+      "light", c.light, {"constant", "global", "local"},
+      "how the light may differ from the reference's: not at all, by a gain and a bias, by a gain and a bias for "
+      "each block of 16 px or more");
+  table.flag("robust", c.robust, "residuals are weighted by Tukey's function");
+  table.number("saturation", c.saturation, {1, 256}, "grey levels",
+               "a pixel as bright in a colour that is tracked weighs nothing; 256 turns that off");
+  table.choice(
+      "channels", c.channels, {"luma", "strongest", "colour"},
+      "what of the colours is tracked: luma, the mixture that varies most across the region, or all three, which "
+      "is three times the work");
+}
+
+void describe(Table& table, QualityConfig& c) {
+  table
+      .number("min_zncc", c.min_zncc, {0, 1}, "correlation",
+              "over the pixels used; more is asked of a region that was better")
+      .whileRunning();
+  table
+      .number("min_visible_fraction", c.min_visible_fraction, {0, 1}, "share",
+              "of the region's pixels that have to be used")
+      .whileRunning();
+  table
+      .number("min_return_fraction", c.min_return_fraction, {0, 1}, "share",
+              "of the region's pixels that have to be used before it is believed again after a loss")
+      .whileRunning();
+  table
+      .number(
+          "max_corner_error", c.max_corner_error, {0.01, 100}, "px",
+          "standard deviation expected of the worst corner, where block matching does not say that it is the region")
+      .whileRunning();
+  table.number("max_centre_error", c.max_centre_error, {0.01, 100}, "px", "standard deviation expected of the centre")
+      .whileRunning();
+  table
+      .number("max_area_ratio", c.max_area_ratio, {1.01, 1000}, "ratio",
+              "the region's area over that in the reference, or its inverse")
+      .whileRunning();
+  table
+      .number("max_jump", c.max_jump, {0.01, 10}, "region diagonals",
+              "how far a corner may be from its prediction; less when little is visible")
+      .whileRunning();
+  table.number("max_search_time", c.max_search_time, {0, 3600}, "s", "the state is LOST after SEARCHING for longer")
+      .whileRunning();
+  table
+      .number("confirmations", c.confirmations, {1, 100}, "images",
+              "as many in a row have to pass every test before TRACKING is said again")
+      .whileRunning();
+}
+
+void describe(Table& table, SearchConfig& c) {
+  table.flag("features", c.features, "a lost region is looked for by points matched with keyframes");
+  table.flag("correlation", c.correlation, "a lost region is looked for by sliding it over a coarse image");
+  table.number("max_features", c.max_features, {50, 5000}, "points",
+               "drawn from an image; half as many from a keyframe");
+  table.number("max_pixels", c.max_pixels, {10000, 10000000}, "px",
+               "an image with more is scaled down before points are drawn");
+  table
+      .number("max_ratio", c.max_ratio, {0.1, 1}, "ratio",
+              "distance of a point's best match over that of its second best")
+      .whileRunning();
+  table.number("min_inliers", c.min_inliers, {4, 1000}, "matches", "that have to agree on a place").whileRunning();
+  table.number("keyframes", c.keyframes, {0, 64}, "views",
+               "kept beside the reference for scales and tilts that it does not show; they only say where to start");
+  table
+      .number("min_detail", c.min_detail, {0, 1}, "correlation",
+              "of the fine structure where a search found the region")
+      .whileRunning();
+  table
+      .number("budget", c.budget, {0.001, 10}, "s",
+              "that a search may take of an image, by nominal costs; the rest is left for the next image")
+      .whileRunning();
+}
+
+}  // namespace
+
+void describe(Table& table, TrackerConfig& c) {
+  table.number("velocity_damping", c.velocity_damping, {0, 1}, "share", "of the last motion that is expected to go on")
+      .whileRunning();
+  table.number("min_roi_side", c.min_roi_side, {8, 1000}, "px", "smaller regions are refused");
+  table.number("min_texture", c.min_texture, {0.01, 10}, "px",
+               "a region is refused where noise of 2 grey levels moves a corner by more");
+  table.group("occlusion", "which areas of the region are covered", [&] { describe(table, c.occlusion); });
+  table.group("esm", "the alignment of the region with the reference", [&] { describe(table, c.esm); });
+  table.group("quality", "when an estimate is believed", [&] { describe(table, c.quality); });
+  table.group("search", "where a lost region is looked for", [&] { describe(table, c.search); });
+}
+
+std::vector<std::string> validate(const TrackerConfig& config) {
+  return parameters::errorsOf(config);
 }
 
 }  // namespace laparoscope_servo::tracking

@@ -10,6 +10,10 @@
 
 #include "laparoscope_servo/aesop/scope_motion.h"
 
+namespace laparoscope_servo::parameters {
+class Table;
+}
+
 namespace laparoscope_servo::aesop {
 
 struct PatternConfig {
@@ -18,6 +22,9 @@ struct PatternConfig {
   double max_depth_change = 0.01;  // m, 0.001 to 0.05: of the depth by the insertion point believed in
   double patience = 2.0;           // s, 0.5 to 20, without coming nearer to the next direction
 };
+
+// Rows for all of it: ranges and meanings.
+void describe(parameters::Table& table, PatternConfig& config);
 
 std::vector<std::string> validate(const PatternConfig& config);
 

@@ -14,6 +14,10 @@
 
 #include "laparoscope_servo/aesop/scope_motion.h"
 
+namespace laparoscope_servo::parameters {
+class Table;
+}
+
 namespace laparoscope_servo::aesop {
 
 // Defaults are those of config/aesop.yaml, group `command`.
@@ -26,6 +30,9 @@ struct CommandConfig {
   double max_spin = 0.3;        // rad/s
   double max_insertion = 0.03;  // m/s, > 0 to 0.2
 };
+
+// Rows for all of it: ranges and meanings.
+void describe(parameters::Table& table, CommandConfig& config);
 
 std::vector<std::string> validate(const CommandConfig& config);
 

@@ -7,6 +7,10 @@
 #include <string>
 #include <vector>
 
+namespace laparoscope_servo::parameters {
+class Table;
+}
+
 namespace laparoscope_servo::aesop {
 
 constexpr int kJoints = 7;
@@ -18,6 +22,7 @@ enum class JointRole {
   kDriven,   // moved by a motor on command
   kHand,     // set by hand and then locked
   kPassive,  // free: the trocar moves it
+  kBoth,     // driven and by hand, as it may stand in a file: validate() refuses it
 };
 
 // One row of a standard Denavit-Hartenberg table: Rz(theta) Tz(d) Tx(a) Rx(alpha), the joint's position added to theta,
@@ -62,6 +67,10 @@ struct MotionConfig {
   // delay of the arm carries nothing beyond.
   double stopping_time = 0.5;
 };
+
+// Rows for all of it: ranges and meanings.
+void describe(parameters::Table& table, KinematicsConfig& config);
+void describe(parameters::Table& table, MotionConfig& config);
 
 // Every error, each naming the field, its value and what was expected. Empty when the configuration can be used.
 std::vector<std::string> validate(const KinematicsConfig& config);

@@ -13,6 +13,10 @@
 #include "laparoscope_servo/aesop/kinematics.h"
 #include "laparoscope_servo/aesop/messages.h"
 
+namespace laparoscope_servo::parameters {
+class Table;
+}
+
 namespace laparoscope_servo::aesop {
 
 // Defaults are those of config/aesop.yaml, group `monitor`.
@@ -26,6 +30,9 @@ struct MonitorConfig {
   double tolerance_angle = 0.01;
   double tolerance_distance = 0.003;
 };
+
+// Rows for all of it: ranges and meanings.
+void describe(parameters::Table& table, MonitorConfig& config);
 
 std::vector<std::string> validate(const MonitorConfig& config);
 

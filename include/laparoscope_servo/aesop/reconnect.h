@@ -8,6 +8,10 @@
 #include <string>
 #include <vector>
 
+namespace laparoscope_servo::parameters {
+class Table;
+}
+
 namespace laparoscope_servo::aesop {
 
 // Defaults are those of config/aesop.yaml, group `reconnect`.
@@ -16,6 +20,9 @@ struct ReconnectConfig {
   double longest_pause = 8.0;  // s, first_pause to 60
   double stable_time = 5.0;    // s, 0 to 3600: a link that was up for so long has lasted
 };
+
+// Rows for all of it: ranges and meanings.
+void describe(parameters::Table& table, ReconnectConfig& config);
 
 std::vector<std::string> validate(const ReconnectConfig& config);
 

@@ -6,6 +6,10 @@
 
 #include "laparoscope_servo/aesop/codec.h"
 
+namespace laparoscope_servo::parameters {
+class Table;
+}
+
 namespace laparoscope_servo::aesop {
 
 struct SessionConfig {
@@ -15,6 +19,11 @@ struct SessionConfig {
   double request_timeout = 1.0;       // s, 0.1 to 10: for the controller to confirm enable, disable or clear_fault
   CodecFactory codec = makeOwnCodec;  // the wire format; by name: codecNamed()
 };
+
+// Rows for all of it: ranges and meanings.
+void describe(parameters::Table& table, SessionConfig& config);
+// Its row `codec`, which other ends of the line have, too.
+void describeCodec(parameters::Table& table, CodecFactory& codec);
 
 std::vector<std::string> validate(const SessionConfig& config);
 

@@ -11,6 +11,10 @@
 
 #include "laparoscope_servo/aesop/wire_log.h"
 
+namespace laparoscope_servo::parameters {
+class Table;
+}
+
 namespace laparoscope_servo::aesop {
 
 // Defaults are those of config/aesop.yaml, group `wire_log`.
@@ -19,6 +23,9 @@ struct WireLogConfig {
   double size = 20;  // MB, 0.1 to 1000: of one file; an hour takes about 20
   int files = 5;     // 1 to 100: that are kept, the one being written among them
 };
+
+// Rows for all of it: ranges and meanings.
+void describe(parameters::Table& table, WireLogConfig& config);
 
 std::vector<std::string> validate(const WireLogConfig& config);
 

@@ -101,6 +101,10 @@ class Controller {
 
   ControllerOutput update(const ControllerInput& input);
 
+  // Other gains and thresholds between two updates, whatever the state; all else of the configuration, which must be
+  // valid, is left aside. Does not allocate.
+  void retune(const ControllerConfig& config);
+
   // Why engage() would be refused, or motion ends; empty when nothing is missing.
   std::string problem(const ControllerInput& input) const;
 

@@ -11,6 +11,10 @@
 #include "laparoscope_servo/servo/safety_config.h"
 #include "laparoscope_servo/servo/shaping_config.h"
 
+namespace laparoscope_servo::parameters {
+class Table;
+}
+
 namespace laparoscope_servo::servo {
 
 // How what the poses of the shaft tell of the insertion point is used.
@@ -44,6 +48,9 @@ struct ControllerConfig {
   EffectConfig effect;
   SafetyConfig safety;
 };
+
+// Rows for all of it: ranges and meanings.
+void describe(parameters::Table& table, ControllerConfig& config);
 
 // Every error, each naming the field, its value and what was expected; empty when there is none.
 std::vector<std::string> validate(const ControllerConfig& config);

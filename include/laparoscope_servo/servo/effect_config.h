@@ -2,6 +2,10 @@
 // and the scenarios effect_*.yaml: of the evidence, healthy loops reach 3.6 at most and faults go beyond 9.
 #pragma once
 
+namespace laparoscope_servo::parameters {
+class Table;
+}
+
 namespace laparoscope_servo::servo {
 
 struct EffectConfig {
@@ -22,5 +26,8 @@ struct EffectConfig {
   double unconfirmed_turn = 0.044;       // rad
   double unconfirmed_insertion = 0.004;  // m
 };
+
+// Rows for all of it: ranges and meanings.
+void describe(parameters::Table& table, EffectConfig& config);
 
 }  // namespace laparoscope_servo::servo

@@ -4,6 +4,10 @@
 #include <string>
 #include <vector>
 
+namespace laparoscope_servo::parameters {
+class Table;
+}
+
 namespace laparoscope_servo::servo {
 
 struct InsertionPointConfig {
@@ -21,6 +25,9 @@ struct InsertionPointConfig {
   double stop_residual = 0.012;      // m, a stop from it on
   double residual_hysteresis = 0.2;  // a level ends when the residual is below (1 - this) times its threshold
 };
+
+// Rows for all of it: ranges and meanings.
+void describe(parameters::Table& table, InsertionPointConfig& config);
 
 // Every error, each naming the field, its value and what was expected; empty when there is none.
 std::vector<std::string> validate(const InsertionPointConfig& config);

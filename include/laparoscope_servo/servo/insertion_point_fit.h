@@ -10,6 +10,10 @@
 
 #include "laparoscope_servo/servo/insertion_point_estimator.h"
 
+namespace laparoscope_servo::parameters {
+class Table;
+}
+
 namespace laparoscope_servo::servo {
 
 struct InsertionPointFitConfig {
@@ -23,6 +27,9 @@ struct InsertionPointFitConfig {
   double direction_noise = 0.0035;  // rad, of a shaft's direction, standard deviation per axis
   double wobble = 0.001;            // m, what breathing moves the point by, standard deviation
 };
+
+// Rows for all of it: ranges and meanings.
+void describe(parameters::Table& table, InsertionPointFitConfig& config);
 
 std::vector<std::string> validate(const InsertionPointFitConfig& config);
 

@@ -1,6 +1,10 @@
 // What the safety states ask for before they let the scope move, with the defaults that config/controller.yaml repeats.
 #pragma once
 
+namespace laparoscope_servo::parameters {
+class Table;
+}
+
 namespace laparoscope_servo::servo {
 
 struct SafetyConfig {
@@ -33,5 +37,8 @@ struct SafetyConfig {
   int max_repeated_errors = 3;        // task errors that repeat to the last digit while the scope moves
   double max_clock_difference = 0.1;  // s, by which the clocks of two machines may differ
 };
+
+// Rows for all of it: ranges and meanings.
+void describe(parameters::Table& table, SafetyConfig& config);
 
 }  // namespace laparoscope_servo::servo

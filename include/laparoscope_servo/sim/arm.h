@@ -12,6 +12,10 @@
 #include "laparoscope_servo/aesop/messages.h"
 #include "laparoscope_servo/aesop/scope_motion.h"
 
+namespace laparoscope_servo::parameters {
+class Table;
+}
+
 namespace laparoscope_servo::sim {
 
 struct ArmConfig {
@@ -25,6 +29,9 @@ struct ArmConfig {
   double breakaway = 1.25;      // 1 to 10: friction; a joint at rest needs this many times its dead zone to start
   double time_constant = 0.03;  // s, 0 to 1: of a joint following its speed
 };
+
+// Rows for all of it: ranges and meanings.
+void describe(parameters::Table& table, ArmConfig& config);
 
 std::vector<std::string> validate(const ArmConfig& config);
 

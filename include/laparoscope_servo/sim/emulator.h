@@ -11,6 +11,10 @@
 #include "laparoscope_servo/sim/arm.h"
 #include "laparoscope_servo/sim/lies.h"
 
+namespace laparoscope_servo::parameters {
+class Table;
+}
+
 namespace laparoscope_servo::sim {
 
 struct EmulatorConfig {
@@ -20,6 +24,11 @@ struct EmulatorConfig {
 };
 
 // Every error, the name of its group in front.
+// Rows for all of it: ranges and meanings.
+void describe(parameters::Table& table, EmulatorConfig& config);
+// Without the group `kinematics`, which is the arm's.
+void describeEmulator(parameters::Table& table, EmulatorConfig& config);
+
 std::vector<std::string> validate(const EmulatorConfig& config);
 
 // s without a good frame from the host, in ENABLED, after which the controller disables itself. It also keeps what a

@@ -8,6 +8,10 @@
 #include <string>
 #include <vector>
 
+namespace laparoscope_servo::parameters {
+class Table;
+}
+
 namespace laparoscope_servo::sim {
 
 struct BreathingConfig {
@@ -38,6 +42,9 @@ struct PatientConfig {
   double tilt = 0.0;            // rad: the tissue turns to and fro about the world's x axis, through the target
   double tilt_frequency = 0.1;  // Hz
 };
+
+// Rows for all of it: ranges and meanings.
+void describe(parameters::Table& table, PatientConfig& config);
 
 // Every error, each naming the field, its value and what was expected.
 std::vector<std::string> validate(const PatientConfig& config);

@@ -10,6 +10,10 @@
 
 #include "laparoscope_servo/geometry/camera.h"
 
+namespace laparoscope_servo::parameters {
+class Table;
+}
+
 namespace laparoscope_servo::sim {
 
 struct TissueConfig {
@@ -61,6 +65,9 @@ struct SceneConfig {
   ExposureConfig exposure;
   InstrumentConfig instrument;
 };
+
+// Rows for all of it: ranges and meanings.
+void describe(parameters::Table& table, SceneConfig& config);
 
 // Every error, each naming the field, its value and what was expected. Empty when the configuration can be used.
 std::vector<std::string> validate(const SceneConfig& config);

@@ -8,6 +8,10 @@
 #include <utility>
 #include <vector>
 
+namespace laparoscope_servo::parameters {
+class Table;
+}
+
 namespace laparoscope_servo::sim {
 
 struct ScopeActuatorConfig {
@@ -18,6 +22,9 @@ struct ScopeActuatorConfig {
   // as it is.
   std::string dead_zone_kind = "subtract";
 };
+
+// Rows for all of it: ranges and meanings.
+void describe(parameters::Table& table, ScopeActuatorConfig& config);
 
 // Every error, each naming the field, its value and what was expected.
 std::vector<std::string> validate(const ScopeActuatorConfig& config);

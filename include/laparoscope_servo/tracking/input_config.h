@@ -4,6 +4,10 @@
 #include <string>
 #include <vector>
 
+namespace laparoscope_servo::parameters {
+class Table;
+}
+
 namespace laparoscope_servo::tracking {
 
 struct InputConfig {
@@ -21,6 +25,9 @@ struct InputConfig {
   double max_gap = 2.0;    // s, 0.1 to 1e6: an image that is further ahead waits for another one to confirm it
   double max_ahead = 0.1;  // s, 0 to 10: of an image's stamp, ahead of this machine's clock
 };
+
+// Rows for all of it: ranges and meanings.
+void describe(parameters::Table& table, InputConfig& config);
 
 // Every error, each naming the field, its value and what was expected. Empty when the configuration can be used.
 std::vector<std::string> validate(const InputConfig& config);

@@ -64,6 +64,11 @@ class RegionTracker {
   // pinhole camera sees. A lens that differs from the one before resets to IDLE, and the next image says so.
   void setLens(const std::optional<image::Lens>& lens);
 
+  // From the next image on, the configuration's parameters that may change while the tracker runs, as describe() says
+  // of each; the others stay as they are, and so does what is tracked. Throws std::invalid_argument that lists every
+  // error, and leaves the tracker as it was.
+  void retune(const TrackerConfig& config);
+
   // Takes `image` for the reference. Throws std::invalid_argument, with the ROI and what was expected, when the ROI is
   // empty, too small, mostly outside the image or without texture; the tracker then goes on as before.
   TrackResult select(const cv::Mat& image, double stamp, const geometry::Rectangle& roi);

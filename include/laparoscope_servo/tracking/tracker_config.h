@@ -4,6 +4,10 @@
 #include <string>
 #include <vector>
 
+namespace laparoscope_servo::parameters {
+class Table;
+}
+
 namespace laparoscope_servo::tracking {
 
 // What the histograms of the areas are made of, before ESM.
@@ -86,6 +90,9 @@ struct TrackerConfig {
   int min_roi_side = 16;          // px, 8 to 1000
   double min_texture = 0.5;       // px, 0.01 to 10: corner error that two grey levels of noise may cause in a ROI
 };
+
+// Rows for all of it: ranges and meanings.
+void describe(parameters::Table& table, TrackerConfig& config);
 
 // Every error, each naming the field, its value and what was expected. Empty when the configuration can be used.
 std::vector<std::string> validate(const TrackerConfig& config);

@@ -4,6 +4,10 @@
 #include <string>
 #include <vector>
 
+namespace laparoscope_servo::parameters {
+class Table;
+}
+
 namespace laparoscope_servo::tracking {
 
 struct ViewConfig {
@@ -14,6 +18,9 @@ struct ViewConfig {
   double arrival_centre = 20.0;  // px, 0.1 to 10000: distance of the region's centre from its place in the view
   double arrival_scale = 0.1;    // 0.001 to 1: relative difference between the region's scale and that in the view
 };
+
+// Rows for all of it: ranges and meanings.
+void describe(parameters::Table& table, ViewConfig& config);
 
 // Every error, each naming the field, its value and what was expected. Empty when the configuration can be used.
 std::vector<std::string> validate(const ViewConfig& config);

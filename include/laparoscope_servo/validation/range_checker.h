@@ -1,22 +1,22 @@
 // Collects what is wrong with the fields of a configuration, for the validate() functions of all parts.
 #pragma once
 
-#include <sstream>
 #include <string>
 #include <vector>
+
+#include "laparoscope_servo/validation/range.h"
 
 namespace laparoscope_servo::validation {
 
 class RangeChecker {
  public:
-  // An error unless minimum <= value <= maximum, so for NaN, too. `unit` ends the text where there is one.
+  // An error unless the value is in [minimum, maximum], so for NaN, too. `unit` ends the text where there is one.
   template <typename T>
   void range(const std::string& field, T value, T minimum, T maximum, const std::string& unit = "") {
-    if (value >= minimum && value <= maximum) return;
-    std::ostringstream text;
-    text << field << " = " << value << ", expected a number from " << minimum << " to " << maximum
-         << (unit.empty() ? "" : " ") << unit;
-    add(text.str());
+    const Range bounds(static_cast<double>(minimum), static_cast<double>(maximum));
+    if (bounds.contains(static_cast<double>(value))) return;
+    add(field + " = " + numberText(static_cast<double>(value)) + ", expected a number in " + bounds.text() +
+        (unit.empty() ? "" : " ") + unit);
   }
 
   void add(const std::string& error) { errors_.push_back(error); }

@@ -5,7 +5,7 @@
 #include <limits>
 #include <sstream>
 
-#include "laparoscope_servo/validation/range_checker.h"
+#include "laparoscope_servo/parameters/table.h"
 
 namespace laparoscope_servo::aesop {
 
@@ -25,13 +25,16 @@ double angleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 
 }  // namespace
 
+void describe(parameters::Table& table, PatternConfig& c) {
+  table.number("pattern_angle", c.angle, {0.02, 0.4}, "rad", "half the opening of the cone that the arm drives round");
+  table.number("pattern_speed", c.speed, {0.02, 0.15}, "rad/s", "of the shaft on its way round");
+  table.number("pattern_max_depth_change", c.max_depth_change, {0.001, 0.05}, "m", "beyond it the pattern ends");
+  table.number("pattern_patience", c.patience, {0.5, 20}, "s",
+               "without coming nearer to the next direction, the pattern ends");
+}
+
 std::vector<std::string> validate(const PatternConfig& config) {
-  validation::RangeChecker check;
-  check.range("pattern_angle", config.angle, 0.02, 0.4, "rad");
-  check.range("pattern_speed", config.speed, 0.02, 0.15, "rad/s");
-  check.range("pattern_max_depth_change", config.max_depth_change, 0.001, 0.05, "m");
-  check.range("pattern_patience", config.patience, 0.5, 20.0, "s");
-  return check.errors();
+  return parameters::errorsOf(config);
 }
 
 CalibrationPattern::CalibrationPattern(const PatternConfig& config, const Kinematics& kinematics, const JointVector& q,

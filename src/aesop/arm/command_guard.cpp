@@ -5,20 +5,24 @@
 #include <numeric>
 #include <sstream>
 
-#include "laparoscope_servo/validation/range_checker.h"
+#include "laparoscope_servo/parameters/table.h"
 
 namespace laparoscope_servo::aesop {
 
+void describe(parameters::Table& table, CommandConfig& c) {
+  table.number("timeout", c.timeout, {0.02, 2}, "s", "a command that no other follows counts no longer");
+  table.number("max_stamp_age", c.max_stamp_age, {0.02, 10}, "s", "a command whose stamp is older is refused");
+  table.number("max_stamp_lead", c.max_stamp_lead, {0, 2}, "s",
+               "a command whose stamp is further ahead is refused: clocks of two machines differ");
+  table.number("max_pan", c.max_pan, {1e-4, 1}, "rad/s", "beyond a limit all four components are scaled alike");
+  table.number("max_tilt", c.max_tilt, {1e-4, 1}, "rad/s", "beyond a limit all four components are scaled alike");
+  table.number("max_spin", c.max_spin, {1e-4, 1}, "rad/s", "beyond a limit all four components are scaled alike");
+  table.number("max_insertion", c.max_insertion, {1e-5, 0.2}, "m/s",
+               "beyond a limit all four components are scaled alike");
+}
+
 std::vector<std::string> validate(const CommandConfig& config) {
-  validation::RangeChecker check;
-  check.range("timeout", config.timeout, 0.02, 2.0);
-  check.range("max_stamp_age", config.max_stamp_age, 0.02, 10.0);
-  check.range("max_stamp_lead", config.max_stamp_lead, 0.0, 2.0);
-  check.range("max_pan", config.max_pan, 1e-4, 1.0);
-  check.range("max_tilt", config.max_tilt, 1e-4, 1.0);
-  check.range("max_spin", config.max_spin, 1e-4, 1.0);
-  check.range("max_insertion", config.max_insertion, 1e-5, 0.2);
-  return check.errors();
+  return parameters::errorsOf(config);
 }
 
 std::string CommandGuard::describe(Refusal refusal) const {

@@ -1,34 +1,59 @@
 #include "laparoscope_servo/aesop/kinematics_config.h"
 
-#include <cmath>
-#include <sstream>
+#include <algorithm>
+#include <functional>
+
+#include "laparoscope_servo/parameters/table.h"
 
 namespace laparoscope_servo::aesop {
 
 namespace {
 
+using parameters::Range;
+using parameters::Row;
+using parameters::Table;
+using parameters::Value;
+
 constexpr double kDegree = 3.14159265358979323846 / 180.0;
 
-template <typename T>
-std::string describe(const std::string& field, const T& value, const std::string& expected) {
-  std::ostringstream text;
-  text << field << " = " << value << ", expected " << expected;
-  return text.str();
+constexpr double kFar = 100.0;  // m or rad: beyond it a number is a typing error
+
+// A list of the numbers, 1 to 7, of the joints of which `holds` says so.
+void describeJoints(Table& table, const std::string& name, KinematicsConfig& c,
+                    const std::function<bool(const DhJoint&)>& holds, const std::function<void(DhJoint&, bool)>& set,
+                    const std::string& meaning) {
+  const auto get = [&c, holds] {
+    std::vector<double> numbers;
+    for (std::size_t k = 0; k < c.joints.size(); ++k) {
+      if (holds(c.joints[k])) numbers.push_back(static_cast<double>(k + 1));
+    }
+    return Value(numbers);
+  };
+  const auto take = [&c, set](const Value& value) {
+    const auto& numbers = std::get<std::vector<double>>(value);
+    for (std::size_t k = 0; k < c.joints.size(); ++k)
+      set(c.joints[k], std::find(numbers.begin(), numbers.end(), static_cast<double>(k + 1)) != numbers.end());
+  };
+  Row& row = table.other(name, Row::Kind::kNumbers, get, take, meaning).whole();
+  row.range = {1, kJoints};
+  row.unit = "joint numbers";
 }
 
-void checkJoint(const DhJoint& joint, int number, std::vector<std::string>& errors) {
-  const std::string name = "joint " + std::to_string(number) + ": ";
-  const std::pair<const char*, double> finite[] = {
-      {"alpha", joint.alpha}, {"a", joint.a}, {"d", joint.d}, {"theta", joint.theta}, {"minimum", joint.minimum}};
-  for (const auto& [field, value] : finite) {
-    if (!std::isfinite(value)) errors.push_back(describe(name + field, value, "a finite number"));
-  }
-  if (!(joint.maximum > joint.minimum) || !std::isfinite(joint.maximum)) {
-    errors.push_back(describe(name + "maximum", joint.maximum, "a number above its minimum"));
-  }
-  if (!(joint.max_speed > 0.0) || !std::isfinite(joint.max_speed)) {
-    errors.push_back(describe(name + "max_speed", joint.max_speed, "a positive number"));
-  }
+// Both lists together say what every joint is, in whichever order they are read: either one alone starts from the
+// other's default.
+void describeRole(Table& table, const std::string& name, KinematicsConfig& c, JointRole role, JointRole other,
+                  const std::string& meaning) {
+  const auto holds = [role](const DhJoint& joint) { return joint.role == role || joint.role == JointRole::kBoth; };
+  const auto set = [role, other, holds](DhJoint& joint, bool listed) {
+    const bool is_other = joint.role == other || joint.role == JointRole::kBoth;
+    joint.role = listed ? (is_other ? JointRole::kBoth : role) : is_other ? other : JointRole::kPassive;
+  };
+  describeJoints(table, name, c, holds, set, meaning);
+}
+
+void describeField(Table& table, const std::string& name, KinematicsConfig& c, double DhJoint::*field,
+                   const Range& range, const std::string& unit, const std::string& meaning) {
+  table.numbers(name, &(c.joints[0].*field), kJoints, range, unit, meaning, sizeof(DhJoint));
 }
 
 }  // namespace
@@ -48,53 +73,77 @@ std::array<DhJoint, kJoints> nominalJoints() {
            {false, driven, 180.0 * kDegree, 0.0, -0.1, 0.0, -720.0 * kDegree, 720.0 * kDegree, 0.5}}};
 }
 
+void describe(Table& table, KinematicsConfig& c) {
+  const Range any(-kFar, kFar);
+  describeJoints(
+      table, "prismatic", c, [](const DhJoint& joint) { return joint.prismatic; },
+      [](DhJoint& joint, bool listed) { joint.prismatic = listed; }, "the others turn");
+  describeRole(table, "driven", c, JointRole::kDriven, JointRole::kHand, "exactly four");
+  describeRole(table, "by_hand", c, JointRole::kHand, JointRole::kDriven,
+               "those in neither list are passive: exactly two, and they turn");
+  describeField(table, "alpha", c, &DhJoint::alpha, any, "rad", "standard Denavit-Hartenberg");
+  describeField(table, "a", c, &DhJoint::a, any, "m", "standard Denavit-Hartenberg");
+  describeField(table, "d", c, &DhJoint::d, any, "m", "standard Denavit-Hartenberg");
+  describeField(table, "theta", c, &DhJoint::theta, any, "rad", "standard Denavit-Hartenberg");
+  describeField(table, "minimum", c, &DhJoint::minimum, any, "m or rad", "least position; m of a prismatic joint");
+  describeField(table, "maximum", c, &DhJoint::maximum, any, "m or rad", "largest position, each above the least");
+  describeField(table, "max_speed", c, &DhJoint::max_speed, Range::above(0, kFar), "m/s or rad/s",
+                "largest speed; m/s of a prismatic joint");
+  table.number("scope_length", c.scope_length, Range::between(0, 1), "m",
+               "from the end effector's origin to the camera along the shaft");
+  table.number("depth_minimum", c.depth_minimum, Range::above(0, 1), "m",
+               "least depth of the camera beyond the insertion point");
+  table
+      .number("depth_maximum", c.depth_maximum, Range::above(0, 1), "m",
+              "largest depth of the camera beyond the insertion point")
+      .above("depth_minimum")
+      .below("scope_length");
+}
+
+void describe(Table& table, MotionConfig& c) {
+  table.number("limit_margin_angle", c.limit_margin_angle, Range::between(0, 1), "rad",
+               "slowed from here to a revolute joint's limit");
+  table.number("limit_margin_distance", c.limit_margin_distance, Range::between(0, 0.1), "m",
+               "slowed from here to a prismatic joint's limit and to the depths of kinematics");
+  table
+      .number("singular_slow", c.singular_slow, Range::between(0, 1), "",
+              "slowed below this smallest singular value (lengths over 0.3 m)")
+      .above("singular_stop");
+  table.number("singular_stop", c.singular_stop, Range::between(0, 1), "", "held below this smallest singular value");
+  table
+      .number("lever_slow", c.lever_slow, Range::between(0.01, 0.3), "m",
+              "slowed below this d1, from the end effector to the insertion point, in pan, tilt and deeper")
+      .above("lever_stop");
+  table.number("lever_stop", c.lever_stop, Range::between(0.01, 0.3), "m", "held below this d1");
+  table.number("stopping_time", c.stopping_time, {0.05, 5}, "s",
+               "from a command to joints that stand, its delay included");
+}
+
 std::vector<std::string> validate(const KinematicsConfig& config) {
-  std::vector<std::string> errors;
+  std::vector<std::string> errors = parameters::errorsOf(config);
   int driven = 0;
   int passive = 0;
   for (int k = 0; k < kJoints; ++k) {
     const DhJoint& joint = config.joints[static_cast<std::size_t>(k)];
-    checkJoint(joint, k + 1, errors);
+    const std::string name = "joint " + std::to_string(k + 1);
     driven += joint.role == JointRole::kDriven ? 1 : 0;
     passive += joint.role == JointRole::kPassive ? 1 : 0;
-    if (joint.role == JointRole::kPassive && joint.prismatic) {
-      errors.push_back("joint " + std::to_string(k + 1) + " is passive and prismatic, expected passive joints to turn");
+    if (joint.role == JointRole::kBoth) errors.push_back(name + " is listed as driven and as by_hand");
+    if (joint.role == JointRole::kPassive && joint.prismatic)
+      errors.push_back(name + " is passive and prismatic, expected passive joints to turn");
+    if (joint.maximum <= joint.minimum) {
+      errors.push_back("maximum[" + std::to_string(k) + "] = " + validation::numberText(joint.maximum) +
+                       ", expected above minimum[" + std::to_string(k) +
+                       "] = " + validation::numberText(joint.minimum));
     }
   }
-  if (driven != 4) errors.push_back(describe("number of driven joints", driven, "4"));
-  if (passive != 2) errors.push_back(describe("number of passive joints", passive, "2"));
-  if (!(config.scope_length > 0.0 && config.scope_length < 1.0)) {
-    errors.push_back(describe("scope_length", config.scope_length, "above 0 and below 1 m"));
-  }
-  if (!(config.depth_minimum > 0.0)) {
-    errors.push_back(describe("depth_minimum", config.depth_minimum, "above 0 m"));
-  }
-  if (!(config.depth_maximum > config.depth_minimum && config.depth_maximum < config.scope_length)) {
-    errors.push_back(describe("depth_maximum", config.depth_maximum, "above depth_minimum and below scope_length"));
-  }
+  if (driven != 4) errors.push_back("number of driven joints = " + std::to_string(driven) + ", expected 4");
+  if (passive != 2) errors.push_back("number of passive joints = " + std::to_string(passive) + ", expected 2");
   return errors;
 }
 
 std::vector<std::string> validate(const MotionConfig& config) {
-  std::vector<std::string> errors;
-  if (!(config.limit_margin_angle > 0.0 && config.limit_margin_angle < 1.0)) {
-    errors.push_back(describe("limit_margin_angle", config.limit_margin_angle, "above 0 and below 1 rad"));
-  }
-  if (!(config.limit_margin_distance > 0.0 && config.limit_margin_distance < 0.1)) {
-    errors.push_back(describe("limit_margin_distance", config.limit_margin_distance, "above 0 and below 0.1 m"));
-  }
-  if (!(config.singular_stop > 0.0)) errors.push_back(describe("singular_stop", config.singular_stop, "above 0"));
-  if (!(config.singular_slow > config.singular_stop && config.singular_slow < 1.0)) {
-    errors.push_back(describe("singular_slow", config.singular_slow, "above singular_stop and below 1"));
-  }
-  if (!(config.lever_stop > 0.01)) errors.push_back(describe("lever_stop", config.lever_stop, "above 0.01 m"));
-  if (!(config.lever_slow > config.lever_stop && config.lever_slow < 0.3)) {
-    errors.push_back(describe("lever_slow", config.lever_slow, "above lever_stop and below 0.3 m"));
-  }
-  if (!(config.stopping_time >= 0.05 && config.stopping_time <= 5.0)) {
-    errors.push_back(describe("stopping_time", config.stopping_time, "0.05 to 5 s"));
-  }
-  return errors;
+  return parameters::errorsOf(config);
 }
 
 }  // namespace laparoscope_servo::aesop

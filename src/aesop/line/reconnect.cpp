@@ -2,16 +2,19 @@
 
 #include <algorithm>
 
-#include "laparoscope_servo/validation/range_checker.h"
+#include "laparoscope_servo/parameters/table.h"
 
 namespace laparoscope_servo::aesop {
 
+void describe(parameters::Table& table, ReconnectConfig& c) {
+  table.number("first_pause", c.first_pause, {0.05, 10}, "s", "each further pause is twice as long");
+  table.number("longest_pause", c.longest_pause, {0.05, 60}, "s", "no pause is longer").atLeast("first_pause");
+  table.number("stable_time", c.stable_time, {0, 3600}, "s",
+               "after a link that was up for so long the pauses are short again");
+}
+
 std::vector<std::string> validate(const ReconnectConfig& config) {
-  validation::RangeChecker check;
-  check.range("first_pause", config.first_pause, 0.05, 10.0);
-  check.range("longest_pause", config.longest_pause, std::max(0.05, config.first_pause), 60.0);
-  check.range("stable_time", config.stable_time, 0.0, 3600.0);
-  return check.errors();
+  return parameters::errorsOf(config);
 }
 
 void Reconnect::up(double now) {

@@ -1,25 +1,45 @@
 #include "laparoscope_servo/aesop/session_config.h"
 
+#include <algorithm>
 #include <sstream>
 
-#include "laparoscope_servo/validation/range_checker.h"
+#include "laparoscope_servo/parameters/table.h"
 
 namespace laparoscope_servo::aesop {
 
+void describe(parameters::Table& table, SessionConfig& c) {
+  table.number("rate", c.rate, {5, 200}, "Hz", "requests to the controller, each answered by its status");
+  table.number("time_to_live", c.time_to_live, {0.01, 2}, "s",
+               "the controller stops by itself when no command follows in this time, which is at least 2 / rate");
+  table.number("status_timeout", c.status_timeout, {0.05, 5}, "s", "no status for longer is a lost link");
+  table.number("request_timeout", c.request_timeout, {0.1, 10}, "s", "for the controller to confirm a request");
+  describeCodec(table, c.codec);
+}
+
+void describeCodec(parameters::Table& table, CodecFactory& codec) {
+  const std::vector<std::string> names = codecNames();
+  table.choice(
+      "codec", names,
+      [names, &codec] {  // one that is on no list, of who links the driver, is none of a file's either
+        const auto found = std::find_if(names.begin(), names.end(), [&codec](const std::string& name) {
+          return codec && codecNamed(name)()->name() == codec()->name();
+        });
+        return found == names.end() ? std::size_t{0} : static_cast<std::size_t>(found - names.begin());
+      },
+      [names, &codec](std::size_t k) { codec = codecNamed(names[k]); },
+      "the wire format; own is the only one that is shipped");
+}
+
 std::vector<std::string> validate(const SessionConfig& config) {
-  validation::RangeChecker check;
-  if (!config.codec) check.add("codec: there is none, expected one that makes a codec");
-  check.range("rate", config.rate, 5.0, 200.0);
-  check.range("time_to_live", config.time_to_live, 0.01, 2.0);
-  check.range("status_timeout", config.status_timeout, 0.05, 5.0);
-  check.range("request_timeout", config.request_timeout, 0.1, 10.0);
-  if (check.errors().empty() && !(config.time_to_live * config.rate >= 2.0)) {
+  if (!config.codec) return {"codec: there is none, expected one that makes a codec"};
+  std::vector<std::string> errors = parameters::errorsOf(config);
+  if (errors.empty() && !(config.time_to_live * config.rate >= 2.0)) {
     std::ostringstream text;
     text << "time_to_live = " << config.time_to_live << ", expected at least two periods of rate = " << config.rate
          << " Hz, or the arm stutters";
-    check.add(text.str());
+    errors.push_back(text.str());
   }
-  return check.errors();
+  return errors;
 }
 
 std::string lineWarning(const SessionConfig& config, int baud_rate) {

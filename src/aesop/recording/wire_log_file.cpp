@@ -15,7 +15,7 @@
 #include <mutex>
 #include <thread>
 
-#include "laparoscope_servo/validation/range_checker.h"
+#include "laparoscope_servo/parameters/table.h"
 
 namespace laparoscope_servo::aesop {
 
@@ -32,11 +32,14 @@ std::int64_t wallTime() {
 
 }  // namespace
 
+void describe(parameters::Table& table, WireLogConfig& c) {
+  table.text("file", c.file, "absolute path; empty: nothing is recorded");
+  table.number("size", c.size, {0.1, 1000}, "MB", "a full file becomes file.1 and so on; an hour takes about 20");
+  table.number("files", c.files, {1, 100}, "files", "that are kept");
+}
+
 std::vector<std::string> validate(const WireLogConfig& config) {
-  validation::RangeChecker check;
-  check.range("size", config.size, 0.1, 1000.0, "MB");
-  check.range("files", config.files, 1, 100);
-  return check.errors();
+  return parameters::errorsOf(config);
 }
 
 class WireLogFile::Writer {

@@ -1,5 +1,4 @@
-// Parameters of the aesop node and of the emulator: config/aesop.yaml and config/emulator.yaml name every one, with its
-// unit.
+// Parameters of the aesop node and of the emulator.
 #pragma once
 
 #include <string>
@@ -26,9 +25,9 @@ struct CalibrationParameters {
 struct AesopParameters {
   aesop::DriverConfig driver;
   aesop::ReconnectConfig reconnect;
-  std::string port;                    // required
-  int baud_rate = 38400;               // 1200 to 1000000
-  int realtime_priority = 0;           // of the loop, 0 (none) to 99
+  std::string port;  // required
+  int baud_rate = 38400;
+  int realtime_priority = 0;           // of the loop, 0: none
   std::string insertion_point_file;    // a calibration that takes the place of insertion_point; empty: none
   std::string insertion_point_origin;  // where driver.insertion_point is from, in words
   CalibrationParameters calibration;
@@ -39,9 +38,13 @@ struct AesopParameters {
   std::vector<std::string> service_callers;
   aesop::WireLogConfig wire_log;
   ExternalStopsConfig external_stops;
-  double optics_angle = 0.0;  // rad, between the shaft and the optical axis, -1.3 to 1.3
-  double optics_roll = 0.0;   // rad, of the camera about the shaft, -3.2 to 3.2
+  double optics_angle = 0.0;  // rad, between the shaft and the optical axis
+  double optics_roll = 0.0;   // rad, of the camera about the shaft
 };
+
+// All parameters of the node.
+void describe(parameters::Table& table, AesopParameters& parameters);
+std::vector<std::string> validate(const AesopParameters& parameters);
 
 // Missing parameters keep their defaults. All errors are left in the reader.
 AesopParameters readAesopParameters(ParameterReader& reader);

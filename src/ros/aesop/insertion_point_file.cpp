@@ -41,37 +41,26 @@ std::string toYaml(const CalibratedInsertionPoint& c) {
   return text.str();
 }
 
-void readPoses(ParameterReader& reader, const std::string& file, std::vector<aesop::JointVector>& poses) {
-  std::vector<double> numbers;
-  reader.require("poses", "joint positions, seven numbers each");
-  reader.read("poses", numbers, 0, -kLargest, kLargest);
-  if (reader.has("poses") && (numbers.empty() || numbers.size() % aesop::kJoints != 0)) {
-    reader.addError(file + "/poses holds " + std::to_string(numbers.size()) + " numbers, expected seven for each");
-  }
-  for (std::size_t k = 0; k + aesop::kJoints <= numbers.size(); k += aesop::kJoints) {
-    poses.emplace_back(Eigen::Map<const aesop::JointVector>(numbers.data() + k));
-  }
-}
-
-CalibratedInsertionPoint read(ParameterReader& reader, const std::string& file) {
+CalibratedInsertionPoint read(ParameterReader& reader) {
   CalibratedInsertionPoint c;
-  std::vector<double> point;
-  std::vector<double> covariance;
-  for (const char* number : {"stddev", "residual", "cone"}) reader.require(number, "a number");
-  reader.require("insertion_point", "three numbers, m");
-  reader.require("covariance", "nine numbers, m^2");
-  reader.require("date", "when it was calibrated");
-  reader.read("insertion_point", point, 3, -kLargest, kLargest);
-  reader.read("covariance", covariance, 9, -1.0, 1.0);
-  reader.read("stddev", c.stddev, 0.0, 1.0);
-  reader.read("residual", c.residual, 0.0, 1.0);
-  reader.read("cone", c.cone, 0.0, 1.6);
-  reader.read("method", c.method, std::vector<std::string>{"HAND", "PATTERN"});
-  reader.read("date", c.date);
-  readPoses(reader, file, c.poses);
+  std::vector<double> poses;
+  parameters::Table table;
+  table.numbers("insertion_point", c.point.data(), 3, {-kLargest, kLargest}, "m", "")
+      .required("[0.574, -0.079, -0.05]");
+  table.numbers("covariance", c.covariance.data(), 9, {-1, 1}, "m^2", "").required("nine of them");
+  table.number("stddev", c.stddev, {0, 1}, "m", "").required("0.001");
+  table.number("residual", c.residual, {0, 1}, "m", "").required("0.001");
+  table.number("cone", c.cone, {0, 1.6}, "rad", "").required("0.1");
+  table.choice("method", c.method, {"HAND", "PATTERN"}, "");
+  table.text("date", c.date, "").required("2026-01-02T03:04:05Z");
+  table.numbers("poses", poses, 0, {-kLargest, kLargest}, "m or rad", "").required("seven for each");
+  reader.read(table);
   reader.refuseUnknown("");
-  if (point.size() == 3) c.point = Eigen::Vector3d(point.data());
-  if (covariance.size() == 9) c.covariance = Eigen::Matrix3d(covariance.data());
+  if (reader.has("poses") && (poses.empty() || poses.size() % aesop::kJoints != 0))
+    reader.addJudgement({"poses holds " + std::to_string(poses.size()) + " numbers, expected seven for each"});
+  for (std::size_t k = 0; k + aesop::kJoints <= poses.size(); k += aesop::kJoints) {
+    c.poses.emplace_back(Eigen::Map<const aesop::JointVector>(poses.data() + k));
+  }
   return c;
 }
 
@@ -100,7 +89,7 @@ void saveInsertionPoint(const std::string& file, const CalibratedInsertionPoint&
 
 CalibratedInsertionPoint loadInsertionPoint(const std::string& file, const aesop::Kinematics& kinematics) {
   ParameterReader reader(parametersFromYaml(file), file);
-  const CalibratedInsertionPoint c = read(reader, file);
+  const CalibratedInsertionPoint c = read(reader);
   if (!reader.errors().empty()) throw std::runtime_error(reader.report());
   const double now = residual(kinematics, c.poses, c.point);
   if (!(std::abs(now - c.residual) <= kResidualTolerance)) {

@@ -13,20 +13,11 @@ namespace laparoscope_servo {
 
 using diagnostic_msgs::DiagnosticStatus;
 
-void readExternalStops(ParameterReader& reader, ExternalStopsConfig& config) {
-  constexpr double kLarge = 1e6;  // narrower bounds are validate()'s
-  reader.read("master/period", config.master.period, -kLarge, kLarge);
-  reader.read("master/hold", config.master.hold, -kLarge, kLarge);
-  reader.read("master/patience", config.master.patience, -kLarge, kLarge);
-  reader.refuseUnknown("master");
-  for (const std::string& error : validate(config.master)) reader.addError("master/" + error);
-  reader.read("stop_line/path", config.stop_line.path);
-  reader.read("stop_line/signal", config.stop_line.signal);
-  reader.read("stop_line/release", config.stop_line.release, -1000, 1000);
-  reader.read("stop_line/rate", config.stop_line.rate, -kLarge, kLarge);
-  reader.read("stop_line/patience", config.stop_line.patience, -kLarge, kLarge);
-  reader.refuseUnknown("stop_line");
-  for (const std::string& error : validate(config.stop_line)) reader.addError("stop_line/" + error);
+void describe(parameters::Table& table, ExternalStopsConfig& config) {
+  table.group("master", "of ROS: without it nobody can call a service, so the arm stops until it answers again",
+              [&] { describe(table, config.master); });
+  table.group("stop_line", "beside ROS: an open contact, or a broken wire, stops the arm",
+              [&] { describe(table, config.stop_line); });
 }
 
 ExternalStops::ExternalStops(const ExternalStopsConfig& config)

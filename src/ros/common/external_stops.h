@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <string>
 
+#include "laparoscope_servo/parameters/table.h"
 #include "ros/common/master_watch.h"
-#include "ros/common/parameters.h"
 #include "ros/common/stop_line.h"
 
 namespace diagnostic_updater {
@@ -22,8 +22,8 @@ struct ExternalStopsConfig {
   StopLineConfig stop_line;
 };
 
-// The groups `master` and `stop_line`. Errors are left in the reader.
-void readExternalStops(ParameterReader& reader, ExternalStopsConfig& config);
+// The groups `master` and `stop_line`.
+void describe(parameters::Table& table, ExternalStopsConfig& config);
 
 class ExternalStops {
  public:

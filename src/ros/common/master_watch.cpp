@@ -7,7 +7,6 @@
 #include <sstream>
 #include <utility>
 
-#include "laparoscope_servo/validation/range_checker.h"
 #include "ros/common/clocks.h"
 #include "ros/common/quiet_thread.h"
 
@@ -32,12 +31,15 @@ std::string text(XmlRpc::XmlRpcValue& value) {
 
 }  // namespace
 
+void describe(parameters::Table& table, MasterWatchConfig& c) {
+  table.number("period", c.period, {0.05, 5}, "s", "between two questions to it");
+  table.number("hold", c.hold, {0.05, 5}, "s", "while an answer takes longer, the arm is held");
+  table.number("patience", c.patience, {0.05, 60}, "s", "after so long without an answer it is taken for dead")
+      .atLeast("hold");
+}
+
 std::vector<std::string> validate(const MasterWatchConfig& config) {
-  validation::RangeChecker check;
-  check.range("period", config.period, 0.05, 5.0);
-  check.range("hold", config.hold, 0.05, 5.0);
-  check.range("patience", config.patience, config.hold, 60.0);
-  return check.errors();
+  return parameters::errorsOf(config);
 }
 
 const char* name(State state) {

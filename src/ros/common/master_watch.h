@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "laparoscope_servo/parameters/table.h"
 #include "ros/common/master_client.h"
 
 namespace laparoscope_servo {
@@ -22,6 +23,7 @@ struct MasterWatchConfig {
   double patience = 0.7;  // s, hold to 60: after so long without an answer the master is taken for dead
 };
 
+void describe(parameters::Table& table, MasterWatchConfig& config);
 std::vector<std::string> validate(const MasterWatchConfig& config);
 
 struct MasterStatus {

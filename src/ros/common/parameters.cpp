@@ -1,9 +1,10 @@
 #include "ros/common/parameters.h"
 
 #include <algorithm>
-#include <cmath>
-#include <numeric>
+#include <optional>
 #include <sstream>
+
+#include "laparoscope_servo/parameters/nearest_name.h"
 
 namespace laparoscope_servo {
 
@@ -11,51 +12,27 @@ namespace {
 
 using XmlRpc::XmlRpcValue;
 
-std::string typeName(const XmlRpcValue& value) {
+// A scalar; nothing for a group, a list, and what has no type.
+std::optional<parameters::Value> fromXmlRpc(const XmlRpcValue& value) {
+  using parameters::Value;
   switch (value.getType()) {
     case XmlRpcValue::TypeBoolean:
-      return "a boolean";
+      return Value(static_cast<const bool&>(value));
     case XmlRpcValue::TypeInt:
-      return "an integer";
+      return Value(static_cast<const int&>(value));
     case XmlRpcValue::TypeDouble:
-      return "a number";
+      return Value(static_cast<const double&>(value));
     case XmlRpcValue::TypeString:
-      return "a string";
-    case XmlRpcValue::TypeArray:
-      return "a list";
-    case XmlRpcValue::TypeStruct:
-      return "a group of parameters";
+      return Value(static_cast<const std::string&>(value));
     default:
-      return "of no known type";
+      return std::nullopt;
   }
 }
 
-std::string text(const XmlRpcValue& value) {
-  std::ostringstream stream;
-  if (value.getType() == XmlRpcValue::TypeString) {
-    stream << '\'' << static_cast<const std::string&>(value) << '\'';
-  } else if (value.getType() == XmlRpcValue::TypeBoolean) {
-    stream << (static_cast<const bool&>(value) ? "true" : "false");
-  } else if (value.getType() == XmlRpcValue::TypeInt || value.getType() == XmlRpcValue::TypeDouble) {
-    value.write(stream);
-  }
-  return stream.str();
-}
-
-// Insertions, deletions and replacements that make one of the other (Levenshtein).
-std::size_t editDistance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
-    }
-  }
-  return row.back();
+std::string typeName(const XmlRpcValue& value) {
+  if (const auto scalar = fromXmlRpc(value)) return parameters::typeName(*scalar);
+  if (value.getType() == XmlRpcValue::TypeArray) return "a list";
+  return value.getType() == XmlRpcValue::TypeStruct ? "a group of parameters" : "of no known type";
 }
 
 // image_transport's plugins keep theirs in <topic>/<plugin>/, and which of them to load beside that.
@@ -93,122 +70,58 @@ const XmlRpcValue* ParameterReader::take(const std::string& path) {
 }
 
 void ParameterReader::wrongType(const std::string& path, const XmlRpcValue& value, const std::string& expected) {
-  const std::string content = text(value);
+  const auto scalar = fromXmlRpc(value);
+  const std::string content = scalar ? parameters::valueText(*scalar) : "";
   errors_.push_back(full(path) + (content.empty() ? "" : " = " + content) + " is " + typeName(value) + ", expected " +
                     expected);
 }
 
-bool ParameterReader::number(const XmlRpcValue& value, double& result) const {
-  if (value.getType() == XmlRpcValue::TypeInt) {
-    result = static_cast<const int&>(value);
-  } else if (value.getType() == XmlRpcValue::TypeDouble) {
-    result = static_cast<const double&>(value);
-  } else {
-    return false;
-  }
-  return true;
-}
-
-void ParameterReader::read(const std::string& path, double& value, double minimum, double maximum) {
-  const XmlRpcValue* found = take(path);
-  if (found == nullptr) return;
-  std::ostringstream range;
-  range << "a number";
-  if (std::isfinite(minimum) || std::isfinite(maximum)) range << " from " << minimum << " to " << maximum;
-  double result = 0.0;
-  if (!number(*found, result)) return wrongType(path, *found, range.str());
-  if (!(result >= minimum && result <= maximum)) {
-    std::ostringstream error;
-    error << full(path) << " = " << result << ", expected " << range.str();
-    errors_.push_back(error.str());
-    return;
-  }
-  value = result;
-}
-
-void ParameterReader::read(const std::string& path, int& value, int minimum, int maximum) {
-  const XmlRpcValue* found = take(path);
-  if (found == nullptr) return;
-  const std::string range = "an integer from " + std::to_string(minimum) + " to " + std::to_string(maximum);
-  if (found->getType() != XmlRpcValue::TypeInt) return wrongType(path, *found, range);
-  const int result = static_cast<const int&>(*found);
-  if (result < minimum || result > maximum) {
-    errors_.push_back(full(path) + " = " + std::to_string(result) + ", expected " + range);
-    return;
-  }
-  value = result;
-}
-
-void ParameterReader::read(const std::string& path, bool& value) {
-  const XmlRpcValue* found = take(path);
-  if (found == nullptr) return;
-  if (found->getType() != XmlRpcValue::TypeBoolean) return wrongType(path, *found, "true or false");
-  value = static_cast<const bool&>(*found);
-}
-
-void ParameterReader::read(const std::string& path, std::string& value) {
-  const XmlRpcValue* found = take(path);
-  if (found == nullptr) return;
-  if (found->getType() != XmlRpcValue::TypeString) return wrongType(path, *found, "a string");
-  value = static_cast<const std::string&>(*found);
-}
-
-void ParameterReader::read(const std::string& path, std::string& value, const std::vector<std::string>& choices) {
-  const std::size_t errors_before = errors_.size();
-  std::string result = value;
-  read(path, result);
-  if (errors_.size() != errors_before) return;
-  std::string list;
-  for (const std::string& choice : choices) {
-    if (result == choice) {
-      value = result;
-      return;
+void ParameterReader::read(const parameters::Table& table) {
+  for (const parameters::Row& row : table.rows()) {
+    const XmlRpcValue* found = take(row.name);
+    if (found != nullptr) {
+      read(row, *found);
+    } else if (row.is_required) {
+      errors_.push_back(full(row.name) + " is not set, expected " + row.expected() + ", e.g. " + row.example);
     }
-    list += (list.empty() ? "" : ", ") + choice;
   }
-  errors_.push_back(full(path) + " = '" + result + "', expected one of: " + list);
 }
 
-void ParameterReader::read(const std::string& path, std::vector<double>& value, std::size_t size, double minimum,
-                           double maximum) {
-  const XmlRpcValue* found = take(path);
-  if (found == nullptr) return;
-  std::ostringstream expected;
-  expected << "a list of " << (size > 0 ? std::to_string(size) + " " : "") << "numbers from " << minimum << " to "
-           << maximum;
-  if (found->getType() != XmlRpcValue::TypeArray) return wrongType(path, *found, expected.str());
-  std::vector<double> result;
-  for (int k = 0; k < found->size(); ++k) {
-    double element = 0.0;
-    const XmlRpcValue& item = (*found)[k];
-    if (!number(item, element)) return wrongType(path + "[" + std::to_string(k) + "]", item, expected.str());
-    if (!(element >= minimum && element <= maximum)) {
-      std::ostringstream error;
-      error << full(path) << "[" << k << "] = " << element << ", expected " << expected.str();
-      errors_.push_back(error.str());
-      return;
-    }
-    result.push_back(element);
+void ParameterReader::read(const parameters::Row& row, const XmlRpcValue& value) {
+  if (value.getType() != XmlRpcValue::TypeArray) {
+    const auto scalar = fromXmlRpc(value);
+    if (!scalar) return wrongType(row.name, value, row.expected());
+    return take(row, *scalar);
   }
-  if (size > 0 && result.size() != size) {
-    errors_.push_back(full(path) + " has " + std::to_string(result.size()) + " elements, expected " + expected.str());
-    return;
+  const bool of_texts = row.kind == parameters::Row::Kind::kTexts;
+  if (!of_texts && row.kind != parameters::Row::Kind::kNumbers) return wrongType(row.name, value, row.expected());
+  std::vector<double> numbers;
+  std::vector<std::string> texts;
+  for (int k = 0; k < value.size(); ++k) {
+    const auto element = fromXmlRpc(value[k]);
+    const auto* text = element ? std::get_if<std::string>(&*element) : nullptr;
+    const std::optional<double> number = element ? parameters::numberOf(*element) : std::nullopt;
+    if (of_texts ? text == nullptr : !number)
+      return wrongType(row.name + "[" + std::to_string(k) + "]", value[k], row.expected());
+    if (of_texts) texts.push_back(*text);
+    if (!of_texts) numbers.push_back(*number);
   }
-  value = result;
+  return of_texts ? take(row, texts) : take(row, numbers);
 }
 
-void ParameterReader::read(const std::string& path, std::vector<std::string>& value) {
-  const XmlRpcValue* found = take(path);
-  if (found == nullptr) return;
-  if (found->getType() != XmlRpcValue::TypeArray) return wrongType(path, *found, "a list of strings");
-  std::vector<std::string> result;
-  for (int k = 0; k < found->size(); ++k) {
-    const XmlRpcValue& item = (*found)[k];
-    if (item.getType() != XmlRpcValue::TypeString)
-      return wrongType(path + "[" + std::to_string(k) + "]", item, "a string");
-    result.push_back(static_cast<const std::string&>(item));
+void ParameterReader::take(const parameters::Row& row, const parameters::Value& value) {
+  const std::string error = row.take(value);
+  if (!error.empty()) errors_.push_back(full(row.name) + error);
+}
+
+void ParameterReader::allow(const parameters::Table& table) {
+  for (const parameters::Row& row : table.rows()) read_.insert(row.name);
+}
+
+void ParameterReader::addJudgement(const std::vector<std::string>& errors) {
+  for (const std::string& error : errors) {
+    if (std::find(errors_.begin(), errors_.end(), full(error)) == errors_.end()) errors_.push_back(full(error));
   }
-  value = result;
 }
 
 bool ParameterReader::has(const std::string& path) const {
@@ -216,27 +129,8 @@ bool ParameterReader::has(const std::string& path) const {
   return value != nullptr && value->valid();
 }
 
-void ParameterReader::require(const std::string& path, const std::string& what) {
-  if (!has(path)) errors_.push_back(full(path) + " is not set, expected " + what);
-}
-
 std::string ParameterReader::suggestion(const std::string& path) const {
-  std::string nearest;
-  std::size_t least = path.size();
-  for (const std::string& known : read_) {
-    const std::size_t distance = editDistance(path, known);
-    if (distance >= least) continue;
-    least = distance;
-    nearest = known;
-  }
-  // A slip of the finger or two, or the right name in the wrong group.
-  const auto name = [](const std::string& whole) { return whole.substr(whole.rfind('/') + 1); };
-  if (least > 2 && name(nearest) != name(path)) {
-    nearest.clear();
-    for (const std::string& known : read_) {
-      if (name(known) == name(path)) nearest = known;
-    }
-  }
+  const std::string nearest = parameters::nearestName(read_, path);
   return nearest.empty() ? "" : "; is " + full(nearest) + " meant?";
 }
 

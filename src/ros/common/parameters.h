@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "laparoscope_servo/parameters/table.h"
+
 namespace ros {
 class NodeHandle;
 }
@@ -24,23 +26,25 @@ class ParameterReader {
   // "/tracker".
   explicit ParameterReader(const XmlRpc::XmlRpcValue& tree, const std::string& name);
 
-  // Paths are relative to the root, with slashes: "tracking/levels". Bounds are inclusive. An integer is taken for a
-  // double.
-  void read(const std::string& path, double& value, double minimum, double maximum);
-  void read(const std::string& path, int& value, int minimum, int maximum);
-  void read(const std::string& path, bool& value);
-  void read(const std::string& path, std::string& value);
-  // One of a list of names, e.g. a mode.
-  void read(const std::string& path, std::string& value, const std::vector<std::string>& choices);
-  // A list of numbers: exactly `size` of them, or any number when `size` is 0. Bounds hold for each.
-  void read(const std::string& path, std::vector<double>& value, std::size_t size, double minimum, double maximum);
+  // All that the table tells of; what is absent stays as it is, unless it is required. Ranges are judged, but not how
+  // parameters lie to each other: that is left to validate(), of all of them.
+  void read(const parameters::Table& table);
+  // All parameters of a node: reads them, judges them together by the configuration's own validate(), and refuses
+  // others in its namespace.
+  template <class Config>
+  void readAll(Config& config) {
+    parameters::Table table;
+    describe(table, config);
+    read(table);
+    refuseUnknownOfNode();
+    addJudgement(validate(config));
+  }
 
-  // A list of strings, of any length.
-  void read(const std::string& path, std::vector<std::string>& value);
+  // What the table tells of is known, though nobody here reads it.
+  void allow(const parameters::Table& table);
 
+  // Paths are relative to the root, with slashes: "tracking/levels".
   bool has(const std::string& path) const;
-  // Adds an error when the parameter is absent.
-  void require(const std::string& path, const std::string& what);
   // Adds an error for each parameter under `group` that nobody has read, with the nearest name that was: a typing error
   // in a file must not go unnoticed. An empty `group` stands for the root.
   void refuseUnknown(const std::string& group);
@@ -48,15 +52,16 @@ class ParameterReader {
   // and what image_transport's plugins keep under the names of topics.
   void refuseUnknownOfNode();
   void addError(const std::string& error) { errors_.push_back(error); }
-  void addErrors(const std::vector<std::string>& errors) {
-    errors_.insert(errors_.end(), errors.begin(), errors.end());
-  }
+  // Errors of validate(), which begin with the parameter's path; what was said already is not said again.
+  void addJudgement(const std::vector<std::string>& errors);
 
   const std::vector<std::string>& errors() const { return errors_; }
   // All errors, one a line, with a heading; empty when there are none.
   std::string report() const;
 
  private:
+  void read(const parameters::Row& row, const XmlRpc::XmlRpcValue& value);
+  void take(const parameters::Row& row, const parameters::Value& value);
   // "; is X meant?" of the name that was read and is most like it, or nothing.
   std::string suggestion(const std::string& path) const;
   const XmlRpc::XmlRpcValue* find(const std::string& path) const;
@@ -64,7 +69,6 @@ class ParameterReader {
   const XmlRpc::XmlRpcValue* take(const std::string& path);
   void wrongType(const std::string& path, const XmlRpc::XmlRpcValue& value, const std::string& expected);
   std::string full(const std::string& path) const { return name_ + "/" + path; }
-  bool number(const XmlRpc::XmlRpcValue& value, double& result) const;
 
   XmlRpc::XmlRpcValue tree_;
   std::string name_;

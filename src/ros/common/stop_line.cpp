@@ -12,7 +12,6 @@
 #include <sstream>
 #include <thread>
 
-#include "laparoscope_servo/validation/range_checker.h"
 #include "ros/common/clocks.h"
 #include "ros/common/quiet_thread.h"
 
@@ -65,14 +64,17 @@ std::string readModemLine(const StopLineConfig& config, int& file) {
 
 }  // namespace
 
+void describe(parameters::Table& table, StopLineConfig& c) {
+  table.text("path", c.path, "of a GPIO's value, any file, or a serial port; empty: none");
+  table.choice("signal", c.signal, {"", "CTS", "DSR", "CD"},
+               "of a serial port; empty: the file's first character, 0 or 1");
+  table.number("release", c.release, {0, 1}, "level", "at which the arm may move; anything else stops it");
+  table.number("rate", c.rate, {10, 1000}, "Hz", "at which it is read");
+  table.number("patience", c.patience, {0.05, 5}, "s", "without a reading for so long the arm stops");
+}
+
 std::vector<std::string> validate(const StopLineConfig& config) {
-  validation::RangeChecker check;
-  if (!config.signal.empty() && modemBit(config.signal) == 0)
-    check.add("signal = '" + config.signal + "', expected CTS, DSR or CD, or nothing for a file");
-  check.range("release", config.release, 0, 1);
-  check.range("rate", config.rate, 10.0, 1000.0);
-  check.range("patience", config.patience, 0.05, 5.0);
-  return check.errors();
+  return parameters::errorsOf(config);
 }
 
 std::string readStopLine(const StopLineConfig& config, int& file) {

@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "laparoscope_servo/parameters/table.h"
+
 namespace laparoscope_servo {
 
 // Defaults are those of config/aesop.yaml and config/controller.yaml, group `stop_line`.
@@ -22,6 +24,7 @@ struct StopLineConfig {
   double patience = 0.3;  // s, 0.05 to 5: without a reading for so long the arm stops
 };
 
+void describe(parameters::Table& table, StopLineConfig& config);
 std::vector<std::string> validate(const StopLineConfig& config);
 
 // One reading: why the arm must stop, or nothing. `file` is the descriptor of a serial port, kept from one reading to

@@ -34,7 +34,8 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
                [this](const std::string& frame) { return scope_pose_.shaftFrom(frame); }}),
       diagnostics_(node, private_node),
       command_publisher_(node.advertise<ScopeVelocity>("servo_command", 1)),
-      state_publisher_(private_node.advertise<ControllerState>("state", 1, true)) {
+      state_publisher_(private_node.advertise<ControllerState>("state", 1, true)),
+      live_(private_node, config) {
   diagnostics_.setHardwareID("none");
   diagnostics_.add("control", this, &ControllerNode::report);
   publish(controller_.update(input()));
@@ -87,6 +88,7 @@ void ControllerNode::watchOutside() {
 void ControllerNode::onTick() {
   checkTime();
   watchOutside();
+  if (live_.take(changed_)) controller_.retune(changed_.control);
   last_input_ = input();
   clock_jump_.clear();
   inputs_.taken();

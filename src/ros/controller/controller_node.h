@@ -18,6 +18,7 @@
 
 #include "laparoscope_servo/servo/controller.h"
 #include "ros/common/external_stops.h"
+#include "ros/common/reconfigure_server.h"
 #include "ros/common/service_errors.h"
 #include "ros/controller/controller_inputs.h"
 #include "ros/controller/controller_parameters.h"
@@ -53,6 +54,7 @@ class ControllerNode {
 
   ControllerNodeConfig config_;
   servo::Controller controller_;
+  ControllerNodeConfig changed_;  // by live_
   ExternalStops stops_;
   ServiceErrors service_errors_;
   ScopePose scope_pose_;
@@ -72,6 +74,7 @@ class ControllerNode {
   ros::ServiceServer select_task_service_;
   ros::SteadyTimer tick_timer_;
   ros::SteadyTimer diagnostics_timer_;
+  LiveParameters<ControllerNodeConfig> live_;
 };
 
 }  // namespace laparoscope_servo

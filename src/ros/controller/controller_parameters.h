@@ -1,4 +1,4 @@
-// Parameters of the controller node, see config/controller.yaml.
+// Parameters of the controller node.
 #pragma once
 
 #include <ros/node_handle.h>
@@ -22,6 +22,7 @@ struct InputOwners {
 
 struct ControllerNodeConfig {
   double rate = 50.0;                               // Hz, of the commands
+  double diagnostic_period = 1.0;                   // s, read by diagnostic_updater, too
   std::string insertion_point = "insertion_point";  // tf frame, O_A
   std::string camera = "laparoscope_optical";       // tf frame, O_C
   std::string shaft = "scope_tip";                  // tf frame with its z axis along the shaft, into the body
@@ -32,13 +33,14 @@ struct ControllerNodeConfig {
   ExternalStopsConfig external_stops;
 };
 
+// All parameters of the node.
+void describe(parameters::Table& table, ControllerNodeConfig& config);
+std::vector<std::string> validate(const ControllerNodeConfig& config);
+
 // Reads what is set, keeps the defaults for the rest. Errors, also those of servo::validate, go to the reader.
 ControllerNodeConfig controllerNodeConfig(ParameterReader& reader);
 
 // Completes the names of frames and nodes, which depend on the node's namespace.
 void resolveNames(ControllerNodeConfig& config, const ros::NodeHandle& node);
-
-// The part of it that simulate_servo shares.
-servo::ControllerConfig controllerConfig(ParameterReader& reader);
 
 }  // namespace laparoscope_servo

@@ -18,7 +18,7 @@
 #include <string>
 
 #include "laparoscope_servo/Homography.h"
-#include "ros/common/parameters.h"
+#include "laparoscope_servo/parameters/table.h"
 #include "ros/playback/image_source.h"
 
 namespace laparoscope_servo {
@@ -41,8 +41,9 @@ struct VideoPlayerConfig {
   int subscribers = 1;       // 0 to 100: wait for so many of image_raw before the first image
 };
 
-// Reads the private parameters of the same names; errors stay in the reader.
-VideoPlayerConfig videoPlayerConfig(ParameterReader& reader);
+// The private parameters.
+void describe(parameters::Table& table, VideoPlayerConfig& config);
+std::vector<std::string> validate(const VideoPlayerConfig& config);
 
 class VideoPlayer {
  public:

@@ -9,30 +9,38 @@
 #include <cmath>
 
 #include "laparoscope_servo/robust/largest.h"
-#include "ros/aesop/aesop_parameters.h"
 #include "ros/common/clocks.h"
 
 namespace laparoscope_servo {
 
-DemoConfig demoConfig(ParameterReader& reader) {
-  DemoConfig config;
-  reader.require("control", "the path of the emulator's control socket");
-  reader.read("control", config.control);
-  reader.read("summary", config.summary);
-  reader.read("roi_side", config.roi_side, 16.0, 2000.0);
-  reader.read("pan", config.pan, -0.5, 0.5);
-  reader.read("tilt", config.tilt, -0.5, 0.5);
-  reader.read("spin", config.spin, -1.5, 1.5);
-  reader.read("deeper", config.deeper, -0.05, 0.05);
-  reader.read("hand_time", config.hand_time, 0.5, 60.0);
-  reader.read("settled_error", config.settled_error, 0.1, 100.0);
-  reader.read("settled_scale", config.settled_scale, 0.001, 1.0);
-  reader.read("settled_time", config.settled_time, 0.1, 60.0);
-  reader.read("cross_instrument", config.cross_instrument);
-  reader.read("startup_timeout", config.startup_timeout, 1.0, 600.0);
-  reader.read("timeout", config.timeout, 1.0, 600.0);
-  config.emulator = readEmulatorConfig(reader);
-  return config;
+void describeDirector(parameters::Table& table, DemoConfig& c) {
+  table.text("control", c.control, "path of the emulator's control socket").required("/tmp/aesop_control");
+  table.text("summary", c.summary, "JSON file to write; empty: none");
+  table.number("roi_side", c.roi_side, {16, 2000}, "px", "of the square region, in the middle of the image");
+  table.number("pan", c.pan, {-0.5, 0.5}, "rad", "by hand, from the start pose");
+  table.number("tilt", c.tilt, {-0.5, 0.5}, "rad", "by hand, from the start pose");
+  table.number("spin", c.spin, {-1.5, 1.5}, "rad", "by hand, from the start pose");
+  table.number("deeper", c.deeper, {-0.05, 0.05}, "m", "by hand, from the start pose");
+  table.number("hand_time", c.hand_time, {0.5, 60}, "s", "that the hand takes");
+  table.number("settled_error", c.settled_error, {0.1, 100}, "px", "within which the region's centre is back");
+  table.number("settled_scale", c.settled_scale, {0.001, 1}, "ratio", "within which its size is back");
+  table.number("settled_time", c.settled_time, {0.1, 60}, "s", "for which both stay");
+  table.flag("cross_instrument", c.cross_instrument, "the instrument crosses once the loop has settled");
+  table.number("startup_timeout", c.startup_timeout, {1, 600}, "s", "for the nodes to be there");
+  table.number("timeout", c.timeout, {1, 600}, "s", "for each step");
+}
+
+void describe(parameters::Table& table, DemoConfig& c) {
+  describeDirector(table, c);
+  describe(table, c.emulator);
+}
+
+std::vector<std::string> validate(const DemoConfig& config) {
+  std::vector<std::string> errors = parameters::errorsOf(config);
+  for (const std::string& error : sim::validate(config.emulator)) {
+    if (std::find(errors.begin(), errors.end(), error) == errors.end()) errors.push_back(error);
+  }
+  return errors;
 }
 
 DemoDirector::DemoDirector(ros::NodeHandle node, const DemoConfig& config)

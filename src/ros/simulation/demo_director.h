@@ -19,9 +19,9 @@
 #include <string>
 
 #include "laparoscope_servo/aesop/kinematics.h"
+#include "laparoscope_servo/parameters/table.h"
 #include "laparoscope_servo/sim/emulator.h"
 #include "laparoscope_servo/sim/emulator_control_client.h"
-#include "ros/common/parameters.h"
 #include "ros/simulation/demo_measures.h"
 
 namespace laparoscope_servo {
@@ -29,23 +29,26 @@ namespace laparoscope_servo {
 struct DemoConfig {
   std::string control;            // path of the emulator's control socket; required
   std::string summary;            // file to write; empty: none
-  double roi_side = 120.0;        // px, 16 to 2000
-  double pan = 0.14;              // rad, -0.5 to 0.5: by hand, from the start pose; with the tilt 10 degrees
-  double tilt = 0.105;            // rad, -0.5 to 0.5
-  double spin = 0.0;              // rad, -1.5 to 1.5
-  double deeper = 0.02;           // m, -0.05 to 0.05
-  double hand_time = 6.0;         // s, 0.5 to 60: how long the hand takes
-  double settled_error = 2.0;     // px, 0.1 to 100: the ROI's centre is back
-  double settled_scale = 0.02;    // 0.001 to 1, relative: and its size
-  double settled_time = 2.0;      // s, 0.1 to 60: and stays
+  double roi_side = 120.0;        // px
+  double pan = 0.14;              // rad: by hand, from the start pose; with the tilt 10 degrees
+  double tilt = 0.105;            // rad
+  double spin = 0.0;              // rad
+  double deeper = 0.02;           // m
+  double hand_time = 6.0;         // s: how long the hand takes
+  double settled_error = 2.0;     // px: the ROI's centre is back
+  double settled_scale = 0.02;    // relative: and its size
+  double settled_time = 2.0;      // s: and stays
   bool cross_instrument = true;   // once it has settled
-  double startup_timeout = 60.0;  // s, 1 to 600: for the nodes to be there
-  double timeout = 90.0;          // s, 1 to 600: for each of the loop's tasks
+  double startup_timeout = 60.0;  // s: for the nodes to be there
+  double timeout = 90.0;          // s: for each of the loop's tasks
   sim::EmulatorConfig emulator;   // config/aesop.yaml, kinematics, and config/emulator.yaml
 };
 
-// Reads the private parameters; errors stay in the reader.
-DemoConfig demoConfig(ParameterReader& reader);
+// The private parameters.
+void describe(parameters::Table& table, DemoConfig& config);
+// Without what the emulator has, too.
+void describeDirector(parameters::Table& table, DemoConfig& config);
+std::vector<std::string> validate(const DemoConfig& config);
 
 class DemoDirector {
  public:

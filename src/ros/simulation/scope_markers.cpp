@@ -1,5 +1,6 @@
 #include "ros/simulation/scope_markers.h"
 
+#include "ros/common/parameter_names.h"
 #include "ros/simulation/scene_markers.h"
 
 namespace laparoscope_servo {
@@ -18,15 +19,16 @@ const std::vector<std::string> kLinks{kBase, "link_1", "link_2", "link_3", "link
 
 }  // namespace
 
-ScopeMarkersConfig scopeMarkersConfig(ParameterReader& reader) {
-  ScopeMarkersConfig config;
-  reader.read("frame_prefix", config.frame_prefix);
-  reader.read("camera_frame", config.camera_frame);
-  reader.read("insertion_point", config.insertion_point);
-  reader.read("view_depth", config.view_depth, 1e-3, 10.0);
-  reader.read("scope_radius", config.scope_radius, 1e-4, 1.0);
-  reader.refuseUnknown("");
-  return config;
+void describe(parameters::Table& table, ScopeMarkersConfig& c) {
+  describeFramePrefix(table, c.frame_prefix);
+  describeFrame(table, "camera_frame", c.camera_frame, "of the camera, without the prefix");
+  describeFrame(table, "insertion_point", c.insertion_point, "of the insertion point, without the prefix");
+  table.number("view_depth", c.view_depth, {1e-3, 10}, "m", "how far the field of view is drawn");
+  table.number("scope_radius", c.scope_radius, {1e-4, 1}, "m", "of the shaft");
+}
+
+std::vector<std::string> validate(const ScopeMarkersConfig& config) {
+  return parameters::errorsOf(config);
 }
 
 ScopeMarkers::ScopeMarkers(ros::NodeHandle node, ros::NodeHandle private_node, const ScopeMarkersConfig& config)

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "laparoscope_servo/geometry/camera.h"
-#include "ros/common/parameters.h"
+#include "laparoscope_servo/parameters/table.h"
 
 namespace laparoscope_servo {
 
@@ -27,8 +27,9 @@ struct ScopeMarkersConfig {
   double scope_radius = 0.005;                       // m, > 0
 };
 
-// Reads the private parameters of the same names; errors stay in the reader.
-ScopeMarkersConfig scopeMarkersConfig(ParameterReader& reader);
+// The private parameters.
+void describe(parameters::Table& table, ScopeMarkersConfig& config);
+std::vector<std::string> validate(const ScopeMarkersConfig& config);
 
 class ScopeMarkers {
  public:

@@ -1,115 +1,139 @@
 #include "ros/simulation/servo_simulation_config.h"
 
-#include <limits>
+#include <algorithm>
 
 namespace laparoscope_servo {
 
+using parameters::Range;
+using parameters::Table;
+
+namespace closed_loop {
+
 namespace {
 
-void readScene(ParameterReader& reader, closed_loop::SimulationConfig& config) {
-  const std::string group = "simulation/";
-  reader.read(group + "duration", config.duration, 0.1, 36000.0);
-  reader.read(group + "rest_from", config.rest_from, 0.0, 0.999);
-  reader.read(group + "frame_rate", config.frame_rate, 1.0, 200.0);
-  reader.read(group + "image_delay", config.image_delay, 0.0, 1.0);
-  reader.read(group + "corner_noise", config.corner_noise, 0.0, 20.0);
-  reader.read(group + "image/width", config.width, 16.0, 10000.0);
-  reader.read(group + "image/height", config.height, 16.0, 10000.0);
-  reader.read(group + "camera/fx", config.camera.fx, 1.0, 1e5);
-  reader.read(group + "camera/fy", config.camera.fy, 1.0, 1e5);
-  reader.read(group + "camera/cx", config.camera.cx, -1e5, 1e5);
-  reader.read(group + "camera/cy", config.camera.cy, -1e5, 1e5);
-  reader.read(group + "roi/x", config.roi.x, 0.0, 10000.0);
-  reader.read(group + "roi/y", config.roi.y, 0.0, 10000.0);
-  reader.read(group + "roi/width", config.roi.width, 2.0, 10000.0);
-  reader.read(group + "roi/height", config.roi.height, 2.0, 10000.0);
-  reader.read(group + "tissue/distance", config.tissue_distance, 0.005, 1.0);
-  reader.read(group + "tissue/slant_x", config.tissue_slant_x, -1.2, 1.2);
-  reader.read(group + "tissue/slant_y", config.tissue_slant_y, -1.2, 1.2);
+void describeImage(Table& table, SimulationConfig& c) {
+  table.group("image", "", [&] {
+    table.number("width", c.width, {16, 10000}, "px", "of the camera's images");
+    table.number("height", c.height, {16, 10000}, "px", "of the camera's images");
+  });
+  table.group("camera", "", [&] {
+    table.number("fx", c.camera.fx, {1, 1e5}, "px", "focal length across");
+    table.number("fy", c.camera.fy, {1, 1e5}, "px", "focal length down");
+    table.number("cx", c.camera.cx, {-1e5, 1e5}, "px", "principal point across");
+    table.number("cy", c.camera.cy, {-1e5, 1e5}, "px", "principal point down");
+  });
+  table.group("roi", "in the reference image", [&] {
+    table.number("x", c.roi.x, {0, 10000}, "px", "left edge");
+    table.number("y", c.roi.y, {0, 10000}, "px", "upper edge");
+    table.number("width", c.roi.width, {2, 10000}, "px", "x + width within image/width");
+    table.number("height", c.roi.height, {2, 10000}, "px", "y + height within image/height");
+  });
 }
 
-void readScope(ParameterReader& reader, closed_loop::SimulationConfig& config) {
-  const std::string group = "simulation/";
-  reader.read(group + "scope/depth", config.depth, 0.005, 0.5);
-  reader.read(group + "scope/length", config.scope_length, 0.01, 1.0);
-  reader.read(group + "scope/believed_depth_factor", config.believed_depth_factor, 0.1, 10.0);
-  reader.read(group + "scope/optics_angle", config.optics_angle, -1.3, 1.3);
-  reader.read(group + "scope/optics_roll", config.optics_roll, -3.2, 3.2);
-  std::string wrist = "stiff";
-  reader.read(group + "scope/wrist", wrist, {"stiff", "passive"});
-  config.wrist = wrist == "passive" ? sim::Wrist::kPassive : sim::Wrist::kStiff;
-  reader.read(group + "start/pan", config.start.pan, -1.2, 1.2);
-  reader.read(group + "start/tilt", config.start.tilt, -1.2, 1.2);
-  reader.read(group + "start/spin", config.start.spin, -3.2, 3.2);
-  reader.read(group + "start/insertion", config.start.insertion, -0.5, 0.5);
-  reader.read(group + "start_spread/pan", config.start_spread.pan, 0.0, 1.2);
-  reader.read(group + "start_spread/tilt", config.start_spread.tilt, 0.0, 1.2);
-  reader.read(group + "start_spread/spin", config.start_spread.spin, 0.0, 3.2);
-  reader.read(group + "start_spread/insertion", config.start_spread.insertion, 0.0, 0.5);
-  reader.read(group + "reports", config.reports);
-  reader.read(group + "report_noise", config.report_noise, 0.0, 1.0);
-  reader.read(group + "poses", config.poses);
-  reader.read(group + "pose_noise", config.pose_noise, 0.0, 0.1);
-  reader.read(group + "direction_noise", config.direction_noise, 0.0, 0.5);
-  reader.read(group + "robot/delay", config.robot.delay, 0.0, 2.0);
-  reader.read(group + "robot/signs", config.signs, 4, -1.0, 1.0);
-  reader.read(group + "picture/roll", config.picture.roll, -6.3, 6.3);
-  reader.read(group + "picture/mirror", config.picture.mirror, {"none", "left_right", "up_down"});
-  reader.read(group + "picture/frozen_from", config.picture.frozen_from, 0.0, 1e9);
-  reader.read(group + "crossing/period", config.crossing.period, 0.0, 1e9);
-  reader.read(group + "crossing/duration", config.crossing.duration, 0.01, 1e9);
-  reader.read(group + "crossing/cover", config.crossing.cover, 0.0, 1.0);
-  reader.read(group + "crossing/noise", config.crossing.noise, 1.0, 100.0);
-  reader.read(group + "robot/dead_zone", config.robot.dead_zone, 4, 0.0, 1.0);
-  reader.read(group + "robot/dead_zone_kind", config.robot.dead_zone_kind, {"subtract", "threshold"});
-  for (const std::string& error : sim::validate(config.robot)) reader.addError("simulation/robot/" + error);
+void describeScope(Table& table, SimulationConfig& c) {
+  table.group("scope", "", [&] {
+    table.number("depth", c.depth, {0.005, 0.5}, "m", "d2 at the reference pose");
+    table.number("length", c.scope_length, {0.01, 1}, "m", "d1 + d2");
+    table.number("believed_depth_factor", c.believed_depth_factor, {0.1, 10}, "times",
+                 "the true d2 that the controller and eq. (12) are told");
+    table.number("optics_angle", c.optics_angle, {-1.3, 1.3}, "rad",
+                 "between shaft and optical axis; 0.5236 is a 30 degree scope");
+    table.number("optics_roll", c.optics_roll, {-3.2, 3.2}, "rad", "of the camera about the shaft");
+    table.choice("wrist", c.wrist, {"stiff", "passive"},
+                 "stiff: nothing holds the scope at the insertion point; passive: its direction follows it");
+  });
+  const auto motion = [&](scope::Velocity& v, double low, double about, double along, const std::string& what) {
+    table.number("pan", v.pan, {low * 1.2, 1.2}, "rad", what + " about the insertion point, sideways");
+    table.number("tilt", v.tilt, {low * 1.2, 1.2}, "rad", what + " about the insertion point, up and down");
+    table.number("spin", v.spin, {low * about, about}, "rad", what + " about the shaft");
+    table.number("insertion", v.insertion, {low * along, along}, "m", what + " along the shaft, deeper");
+  };
+  table.group("start", "from the reference pose", [&] { motion(c.start, -1.0, 3.2, 0.5, "turned or moved"); });
+  table.group("start_spread", "of several runs each starts at random within start plus or minus this",
+              [&] { motion(c.start_spread, 0.0, 3.2, 0.5, "at most"); });
 }
 
-void readPatient(ParameterReader& reader, sim::PatientConfig& config) {
-  const std::string group = "simulation/patient/";
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();  // the ranges are sim::validate's to judge
-  reader.read(group + "breathing/frequency", config.breathing.frequency, -kInfinity, kInfinity);
-  reader.read(group + "breathing/second_harmonic", config.breathing.second_harmonic, -kInfinity, kInfinity);
-  reader.read(group + "breathing/third_harmonic", config.breathing.third_harmonic, -kInfinity, kInfinity);
-  reader.read(group + "breathing/start", config.breathing.start, -kInfinity, kInfinity);
-  reader.read(group + "breathing/end", config.breathing.end, -kInfinity, kInfinity);
-  reader.read(group + "breathing/tissue", config.breathing.tissue, 3, -kInfinity, kInfinity);
-  reader.read(group + "breathing/trocar", config.breathing.trocar, 3, -kInfinity, kInfinity);
-  reader.read(group + "pull/distance", config.pull.distance, -kInfinity, kInfinity);
-  reader.read(group + "pull/time", config.pull.time, -kInfinity, kInfinity);
-  reader.read(group + "pull/period", config.pull.period, -kInfinity, kInfinity);
-  reader.read(group + "drift", config.drift, 3, -kInfinity, kInfinity);
-  reader.read(group + "drift_end", config.drift_end, -kInfinity, kInfinity);
-  reader.read(group + "jump", config.jump, 3, -kInfinity, kInfinity);
-  reader.read(group + "jump_time", config.jump_time, -kInfinity, kInfinity);
-  reader.read(group + "tilt", config.tilt, -kInfinity, kInfinity);
-  reader.read(group + "tilt_frequency", config.tilt_frequency, -kInfinity, kInfinity);
-  for (const std::string& error : sim::validate(config)) reader.addError(group + error);
+void describeRobot(Table& table, SimulationConfig& c) {
+  table.group("robot", "", [&] {
+    describe(table, c.robot);
+    table.numbers("signs", c.signs, 4, {-1, 1}, "", "of pan, tilt, spin, insertion; -1: the robot does the opposite");
+  });
+  table.flag("reports", c.reports, "the robot says how fast it moves");
+  table.number("report_noise", c.report_noise, {0, 1}, "rad/s", "standard deviation; a tenth of it in m/s");
+  table.flag("poses", c.poses, "the controller is told the shaft's pose, and may estimate the insertion point");
+  table.number("pose_noise", c.pose_noise, {0, 0.1}, "m", "of the shaft's place, standard deviation per axis");
+  table.number("direction_noise", c.direction_noise, {0, 0.5}, "rad",
+               "of the shaft's direction, standard deviation per axis");
+}
+
+void describeDisturbances(Table& table, SimulationConfig& c) {
+  table.group("picture", "what stands between the scope and what the tracker sees", [&] {
+    table.number("roll", c.picture.roll, {-6.3, 6.3}, "rad", "turned against the configured optics");
+    table.choice("mirror", c.picture.mirror, {"none", "left_right", "up_down"}, "before it is rolled");
+    table.number("frozen_from", c.picture.frozen_from, {0, 1e9}, "s",
+                 "from then on it shows what it showed, with new noise, as another camera's would");
+  });
+  table.group("crossing", "instruments cross the region", [&] {
+    table.number("period", c.crossing.period, {0, 1e9}, "s", "from one to the next; 0: none");
+    table.number("duration", c.crossing.duration, {0.01, 1e9}, "s", "of a crossing");
+    table.number("cover", c.crossing.cover, {0, 1}, "share",
+                 "of the region that is covered in the middle of a crossing");
+    table.number("noise", c.crossing.noise, {1, 100}, "times", "the noise of the corners, during a crossing");
+  });
+  table.group("patient", "in the camera's axes at the reference: x right, y down, z forward",
+              [&] { describe(table, c.patient); });
 }
 
 }  // namespace
 
-closed_loop::SimulationConfig simulationConfig(ParameterReader& reader) {
-  closed_loop::SimulationConfig config;
-  readScene(reader, config);
-  readScope(reader, config);
-  readPatient(reader, config.patient);
-  if (config.roi.x + config.roi.width > config.width || config.roi.y + config.roi.height > config.height) {
-    reader.addError(
-        "simulation/roi does not lie in the image, expected x + width and y + height within image/width, image/height");
+void describe(Table& table, SimulationConfig& c) {
+  table.number("duration", c.duration, {0.1, 36000}, "s", "of simulated time, where --duration is not given");
+  table.number("rest_from", c.rest_from, {0, 0.999}, "share",
+               "of the duration after which figures of rest are taken, where --rest-after is not given");
+  table.number("frame_rate", c.frame_rate, {1, 200}, "Hz", "of the camera");
+  table.number("image_delay", c.image_delay, {0, 1}, "s", "from the exposure to the task error");
+  table.number("corner_noise", c.corner_noise, {0, 20}, "px",
+               "standard deviation of each coordinate of the region's corners");
+  describeImage(table, c);
+  table.group("tissue", "a plane", [&] {
+    table.number("distance", c.tissue_distance, {0.005, 1}, "m", "Z*, along the reference camera's axis");
+    table.number("slant_x", c.tissue_slant_x, {-1.2, 1.2}, "rad", "of the plane about the camera's x axis");
+    table.number("slant_y", c.tissue_slant_y, {-1.2, 1.2}, "rad", "of the plane about the camera's y axis");
+  });
+  describeScope(table, c);
+  describeRobot(table, c);
+  describeDisturbances(table, c);
+}
+
+std::vector<std::string> validate(const SimulationConfig& c) {
+  std::vector<std::string> errors = parameters::errorsOf(c);
+  if (c.roi.x + c.roi.width > c.width || c.roi.y + c.roi.height > c.height) {
+    errors.emplace_back(
+        "roi does not lie in the image, expected x + width and y + height within image/width, image/height");
   }
-  const double spread = config.start_spread.insertion;
-  if (!(config.depth + config.start.insertion - spread > 0.0)) {
-    reader.addError(
-        "simulation/start/insertion less start_spread/insertion pulls the camera out, expected more than minus "
-        "scope/depth");
+  const double spread = c.start_spread.insertion;
+  if (!(c.depth + c.start.insertion - spread > 0.0)) {
+    errors.emplace_back(
+        "start/insertion less start_spread/insertion pulls the camera out, expected more than minus scope/depth");
   }
-  if (!(config.scope_length > config.depth + config.start.insertion + spread)) {
-    reader.addError(
-        "simulation/scope/length is too short, expected more than scope/depth + start/insertion + "
-        "start_spread/insertion");
+  if (!(c.scope_length > c.depth + c.start.insertion + spread)) {
+    errors.emplace_back(
+        "scope/length is too short, expected more than scope/depth + start/insertion + start_spread/insertion");
   }
-  return config;
+  return errors;
+}
+
+}  // namespace closed_loop
+
+void describe(Table& table, ServoSimulationParameters& parameters) {
+  describe(table, parameters.controller);
+  table.group("simulation", "what the controller is tried on", [&] { describe(table, parameters.simulation); });
+}
+
+std::vector<std::string> validate(const ServoSimulationParameters& parameters) {
+  std::vector<std::string> errors = validate(parameters.controller);
+  for (const std::string& error : closed_loop::validate(parameters.simulation)) errors.push_back("simulation/" + error);
+  return errors;
 }
 
 }  // namespace laparoscope_servo

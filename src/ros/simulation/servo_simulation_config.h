@@ -1,12 +1,28 @@
-// Parameters of the closed loop, see config/simulate_servo.yaml.
+// Parameters of simulate_servo: those of the controller, and the group `simulation`, what it is tried on.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "laparoscope_servo/closed_loop/servo_simulation.h"
-#include "ros/common/parameters.h"
+#include "ros/controller/controller_parameters.h"
+
+namespace laparoscope_servo::closed_loop {
+
+// Without the group's name.
+void describe(parameters::Table& table, SimulationConfig& config);
+std::vector<std::string> validate(const SimulationConfig& config);
+
+}  // namespace laparoscope_servo::closed_loop
 
 namespace laparoscope_servo {
 
-// Reads the group `simulation`; errors go to the reader.
-closed_loop::SimulationConfig simulationConfig(ParameterReader& reader);
+struct ServoSimulationParameters {
+  ControllerNodeConfig controller;
+  closed_loop::SimulationConfig simulation;
+};
+
+void describe(parameters::Table& table, ServoSimulationParameters& parameters);
+std::vector<std::string> validate(const ServoSimulationParameters& parameters);
 
 }  // namespace laparoscope_servo

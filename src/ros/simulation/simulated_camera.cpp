@@ -8,9 +8,8 @@
 
 #include "laparoscope_servo/sim/arm.h"
 #include "laparoscope_servo/sim/texture.h"
-#include "ros/aesop/aesop_parameters.h"
+#include "ros/common/parameter_names.h"
 #include "ros/simulation/scene_markers.h"
-#include "ros/simulation/scene_parameters.h"
 #include "ros/tracker/result_messages.h"
 
 namespace laparoscope_servo {
@@ -40,16 +39,25 @@ Eigen::Isometry3d startPose(const aesop::Kinematics& kinematics, const sim::ArmC
 
 }  // namespace
 
-SimulatedCameraConfig simulatedCameraConfig(ParameterReader& reader) {
-  SimulatedCameraConfig config;
-  reader.require("control", "the path of the emulator's control socket");
-  reader.read("control", config.control);
-  reader.read("frame_prefix", config.frame_prefix);
-  reader.read("frame_id", config.frame_id);
-  reader.read("base_frame", config.base_frame);
-  config.scene = readSceneConfig(reader);
-  config.emulator = readEmulatorConfig(reader);
-  return config;
+void describeCamera(parameters::Table& table, SimulatedCameraConfig& c) {
+  table.text("control", c.control, "path of the emulator's control socket").required("/tmp/aesop_control");
+  describeFramePrefix(table, c.frame_prefix);
+  describeFrame(table, "frame_id", c.frame_id, "of the images");
+  describeFrame(table, "base_frame", c.base_frame, "of the markers");
+  describe(table, c.scene);
+}
+
+void describe(parameters::Table& table, SimulatedCameraConfig& c) {
+  describeCamera(table, c);
+  describe(table, c.emulator);
+}
+
+std::vector<std::string> validate(const SimulatedCameraConfig& config) {
+  std::vector<std::string> errors = parameters::errorsOf(config);
+  for (const std::string& error : sim::validate(config.emulator)) {
+    if (std::find(errors.begin(), errors.end(), error) == errors.end()) errors.push_back(error);
+  }
+  return errors;
 }
 
 SimulatedCamera::SimulatedCamera(ros::NodeHandle node, ros::NodeHandle private_node,

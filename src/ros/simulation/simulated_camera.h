@@ -17,10 +17,10 @@
 #include <string>
 
 #include "laparoscope_servo/aesop/kinematics.h"
+#include "laparoscope_servo/parameters/table.h"
 #include "laparoscope_servo/sim/emulator.h"
 #include "laparoscope_servo/sim/emulator_control_client.h"
 #include "laparoscope_servo/sim/scope_camera.h"
-#include "ros/common/parameters.h"
 
 namespace laparoscope_servo {
 
@@ -33,8 +33,11 @@ struct SimulatedCameraConfig {
   sim::EmulatorConfig emulator;                  // config/aesop.yaml, kinematics, and config/emulator.yaml
 };
 
-// Reads the private parameters; errors stay in the reader.
-SimulatedCameraConfig simulatedCameraConfig(ParameterReader& reader);
+// The private parameters.
+void describe(parameters::Table& table, SimulatedCameraConfig& config);
+// Without what the emulator has, too.
+void describeCamera(parameters::Table& table, SimulatedCameraConfig& config);
+std::vector<std::string> validate(const SimulatedCameraConfig& config);
 
 class SimulatedCamera {
  public:

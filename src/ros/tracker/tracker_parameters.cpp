@@ -11,165 +11,117 @@
 
 namespace laparoscope_servo {
 
+using parameters::Table;
+using parameters::Value;
+
 namespace {
 
 constexpr double kMaxPixel = 65535.0;
 
-// One of `names`, which are in the order of the enumeration's values.
-template <typename Enum>
-void readEnum(ParameterReader& reader, const std::string& path, const std::vector<std::string>& names, Enum& value) {
-  std::string name = names[static_cast<std::size_t>(value)];
-  reader.read(path, name, names);
-  value = static_cast<Enum>(std::find(names.begin(), names.end(), name) - names.begin());
+bool isFrame(const std::string& name) {
+  return !name.empty() && name[0] != '/';
 }
 
-void readOcclusion(ParameterReader& reader, tracking::OcclusionConfig& config) {
-  // "none" rather than "off", which YAML takes for a boolean.
-  readEnum(reader, "tracking/occlusion/colour", {"none", "published", "normalised"}, config.colour);
-  reader.read("tracking/occlusion/rows", config.rows, 2, 64);
-  reader.read("tracking/occlusion/columns", config.columns, 2, 64);
-  reader.read("tracking/occlusion/bins", config.bins, 4, 256);
-  reader.read("tracking/occlusion/threshold", config.threshold, 0.0, 1.0);
-  reader.read("tracking/occlusion/structure", config.structure);
-  reader.read("tracking/occlusion/hold", config.hold, 0, 100);
-}
-
-void readEsm(ParameterReader& reader, tracking::EsmConfig& config) {
-  reader.read("tracking/esm/levels", config.levels, 1, 6);
-  reader.read("tracking/esm/max_iterations", config.max_iterations, 1, 100);
-  reader.read("tracking/esm/min_step", config.min_step, 0.0001, 1.0);
-  readEnum(reader, "tracking/esm/light", {"constant", "global", "local"}, config.light);
-  reader.read("tracking/esm/robust", config.robust);
-  reader.read("tracking/esm/saturation", config.saturation, 1, 256);
-  readEnum(reader, "tracking/esm/channels", {"luma", "strongest", "colour"}, config.channels);
-}
-
-void readQuality(ParameterReader& reader, tracking::QualityConfig& config) {
-  reader.read("tracking/quality/min_zncc", config.min_zncc, 0.0, 1.0);
-  reader.read("tracking/quality/min_visible_fraction", config.min_visible_fraction, 0.0, 1.0);
-  reader.read("tracking/quality/min_return_fraction", config.min_return_fraction, 0.0, 1.0);
-  reader.read("tracking/quality/max_corner_error", config.max_corner_error, 0.01, 100.0);
-  reader.read("tracking/quality/max_centre_error", config.max_centre_error, 0.01, 100.0);
-  reader.read("tracking/quality/max_area_ratio", config.max_area_ratio, 1.01, 1000.0);
-  reader.read("tracking/quality/max_jump", config.max_jump, 0.01, 10.0);
-  reader.read("tracking/quality/max_search_time", config.max_search_time, 0.0, 3600.0);
-  reader.read("tracking/quality/confirmations", config.confirmations, 1, 100);
-}
-
-void readSearch(ParameterReader& reader, tracking::SearchConfig& config) {
-  reader.read("tracking/search/features", config.features);
-  reader.read("tracking/search/correlation", config.correlation);
-  reader.read("tracking/search/max_features", config.max_features, 50, 5000);
-  reader.read("tracking/search/max_pixels", config.max_pixels, 10000, 10000000);
-  reader.read("tracking/search/max_ratio", config.max_ratio, 0.1, 1.0);
-  reader.read("tracking/search/min_inliers", config.min_inliers, 4, 1000);
-  reader.read("tracking/search/keyframes", config.keyframes, 0, 64);
-  reader.read("tracking/search/min_detail", config.min_detail, 0.0, 1.0);
-  reader.read("tracking/search/budget", config.budget, 0.001, 10.0);
-}
-
-void readTracking(ParameterReader& reader, tracking::TrackerConfig& config) {
-  readOcclusion(reader, config.occlusion);
-  readEsm(reader, config.esm);
-  readQuality(reader, config.quality);
-  readSearch(reader, config.search);
-  reader.read("tracking/velocity_damping", config.velocity_damping, 0.0, 1.0);
-  reader.read("tracking/min_roi_side", config.min_roi_side, 8, 1000);
-  reader.read("tracking/min_texture", config.min_texture, 0.01, 10.0);
-}
-
-void readInput(ParameterReader& reader, tracking::InputConfig& config) {
-  reader.read("input/max_repeats", config.max_repeats, 0, 25);
-  reader.read("input/max_still_repeats", config.max_still_repeats, 0, 1000);
-  reader.read("input/moving", config.moving, 0.05, 100.0);
-  reader.read("input/moved", config.moved, 0.1, 100.0);
-  reader.read("input/restart_images", config.restart_images, 2, 100);
-  reader.read("input/loop_step", config.loop_step, 0.1, 1e6);
-  reader.read("input/max_gap", config.max_gap, 0.1, 1e6);
-  reader.read("input/max_ahead", config.max_ahead, 0.0, 10.0);
-}
-
-void readImage(ParameterReader& reader, const std::string& name, ImageFormat& format) {
-  reader.read("image/bit_depth", format.bit_depth, 0, 16);
-  if (format.bit_depth > 0 && format.bit_depth < 8) {
-    reader.addError(name + "/image/bit_depth is " + std::to_string(format.bit_depth) + ", expected 0, or 8 to 16");
-  }
-  readEnum(reader, "image/yuv_range", {"limited", "full"}, format.yuv_range);
-}
-
-// A string "x,y,width,height" (empty: none), or a group of four numbers.
-void readRoi(ParameterReader& reader, const std::string& name, std::optional<geometry::Rectangle>& roi) {
-  if (!reader.has("roi")) return;
-  bool is_group = false;
-  for (const char* part : {"roi/x", "roi/y", "roi/width", "roi/height"}) is_group = is_group || reader.has(part);
-  if (!is_group) {
-    std::string text;
-    reader.read("roi", text);
-    if (text.empty()) return;
-    try {
-      roi = parseRoi(text);
-    } catch (const std::invalid_argument& error) {
-      reader.addError(name + "/roi: " + error.what());
-    }
-    return;
-  }
-  geometry::Rectangle rectangle;
-  const std::string what = "px, with x, y, width and height";
-  for (const char* part : {"roi/x", "roi/y", "roi/width", "roi/height"}) reader.require(part, what);
-  reader.read("roi/x", rectangle.x, 0.0, kMaxPixel);
-  reader.read("roi/y", rectangle.y, 0.0, kMaxPixel);
-  reader.read("roi/width", rectangle.width, 1.0, kMaxPixel);
-  reader.read("roi/height", rectangle.height, 1.0, kMaxPixel);
-  roi = rectangle;
-}
-
-void readRobotMotion(ParameterReader& reader, const std::string& name, RobotMotionConfig& config) {
-  reader.read("robot_motion/enabled", config.enabled);
-  reader.read("robot_motion/fixed_frame", config.fixed_frame);
-  reader.read("robot_motion/frame_prefix", config.frame_prefix);
-  reader.read("robot_motion/owner", config.owner);
-  reader.read("robot_motion/depth", config.depth, 0.005, 1.0);
-  if (config.fixed_frame.empty() || config.fixed_frame[0] == '/') {
-    reader.addError(name + "/robot_motion/fixed_frame is '" + config.fixed_frame +
-                    "', expected the name of a tf frame, without a leading slash");
-  }
+bool isNodeOrNothing(const std::string& name) {
   std::string why;
-  if (!config.owner.empty() && (config.owner.front() == '~' || !ros::names::validate(config.owner, why))) {
-    reader.addError(name + "/robot_motion/owner is '" + config.owner +
-                    "', expected the name of a node, e.g. aesop or /aesop, or nothing");
+  return name.empty() || (name[0] != '~' && ros::names::validate(name, why));
+}
+
+void describe(Table& table, ImageFormat& format) {
+  table.number("bit_depth", format.bit_depth, {0, 16}, "bits",
+               "8 to 16, the lowest ones, that images of 16 bit use; 0: found out from the largest value seen");
+  table.choice("yuv_range", format.yuv_range, {"limited", "full"},
+               "of YUV images: Y from 16 to 235, as of video, or from 0 to 255, as of many webcams");
+}
+
+void describe(Table& table, RobotMotionConfig& config) {
+  table.flag("enabled", config.enabled, "the motion of the robot is used; not in track_bag");
+  table.text("fixed_frame", config.fixed_frame, "in it the tissue stands still")
+      .accepting("the name of a tf frame, without a leading slash", isFrame);
+  table.text("frame_prefix", config.frame_prefix,
+             "text in front of fixed_frame, unless that has a slash; auto: the namespace, nothing in the root");
+  table.text("owner", config.owner, "whose tf is believed; empty: who publishes a frame first")
+      .accepting("the name of a node, e.g. aesop or /aesop, or nothing", isNodeOrNothing);
+  table.number("depth", config.depth, {0.005, 1}, "m", "of the tissue in front of the camera");
+}
+
+bool isRoiOrNothing(const std::string& text) {
+  try {
+    if (!text.empty()) parseRoi(text);
+    return true;
+  } catch (const std::invalid_argument&) {
+    return false;
   }
 }
 
-void readViews(ParameterReader& reader, tracking::ViewConfig& config) {
-  reader.read("views/capacity", config.capacity, 1, 256);
-  reader.read("views/min_visible_fraction", config.min_visible_fraction, 0.0, 1.0);
-  reader.read("views/arrival_centre", config.arrival_centre, 0.1, 10000.0);
-  reader.read("views/arrival_scale", config.arrival_scale, 0.001, 1.0);
+// A region told as a group of four numbers, in the words that the table knows.
+void groupToText(XmlRpc::XmlRpcValue& roi, const std::string& name, std::vector<std::string>& errors) {
+  if (roi.getType() != XmlRpc::XmlRpcValue::TypeStruct) return;
+  geometry::Rectangle rectangle;
+  Table table;
+  table.number("x", rectangle.x, {0, kMaxPixel}, "px", "left edge").required("580");
+  table.number("y", rectangle.y, {0, kMaxPixel}, "px", "upper edge").required("180");
+  table.number("width", rectangle.width, {1, kMaxPixel}, "px", "across").required("220");
+  table.number("height", rectangle.height, {1, kMaxPixel}, "px", "down").required("340");
+  ParameterReader reader(roi, name);
+  reader.read(table);
+  reader.refuseUnknown("");
+  errors.insert(errors.end(), reader.errors().begin(), reader.errors().end());
+  roi = reader.errors().empty() ? roiText(rectangle) : std::string();
 }
 
 }  // namespace
 
+void describe(Table& table, TrackerParameters& parameters) {
+  table
+      .other(
+          "roi", parameters::Row::Kind::kText,
+          [&roi = parameters.roi] { return Value(roi ? roiText(*roi) : std::string()); },
+          [&roi = parameters.roi](const Value& value) {
+            const auto& text = std::get<std::string>(value);
+            roi = text.empty() ? std::nullopt : std::make_optional(parseRoi(text));
+          },
+          "px, region that is selected in the first image; also as a group {x: 580, y: 180, width: 220, height: 340}")
+      .accepting("x,y,width,height, e.g. 580,180,220,340, each in [0, 65535], the sides at least 1, or nothing",
+                 isRoiOrNothing)
+      .optional("580,180,220,340");
+  table.flag("rectified_images", parameters.rectified_images,
+             "the images are rectified: P of camera_info describes them; otherwise K does");
+  table.flag("rectify", parameters.rectify,
+             "the images are raw, and the tracker takes the lens out by camera_info; pixels, also of roi, are then "
+             "rectified ones. Not with rectified_images");
+  table.number("select_timeout", parameters.select_timeout, {0.1, 60}, "s",
+               "for which select_roi, store_view and recall_view wait for an image");
+  table.group("image", "how pixels are stored", [&] { describe(table, parameters.image); });
+  table.group("input", "which images are believed", [&] { describe(table, parameters.input); });
+  table.group("robot_motion", "of the nodelet: the search starts from where tf says that the camera has moved",
+              [&] { describe(table, parameters.robot_motion); });
+  table.group("views", "of the nodelet: stored and recalled under a name", [&] { describe(table, parameters.views); });
+  table.group("tracking", "", [&] { describe(table, parameters.tracking); });
+}
+
+std::vector<std::string> validate(const TrackerParameters& parameters) {
+  std::vector<std::string> errors = parameters::errorsOf(parameters);
+  if (parameters.rectify && parameters.rectified_images)
+    errors.emplace_back("rectify = true beside rectified_images = true, expected one of them at most");
+  const int bit_depth = parameters.image.bit_depth;
+  if (bit_depth > 0 && bit_depth < 8)
+    errors.push_back("image/bit_depth = " + std::to_string(bit_depth) + ", expected 0, or 8 to 16");
+  return errors;
+}
+
 TrackerParameters readTrackerParameters(const XmlRpc::XmlRpcValue& tree, const std::string& name,
                                         std::vector<std::string>& errors) {
   TrackerParameters parameters;
-  ParameterReader reader(tree, name);
-  readTracking(reader, parameters.tracking);
-  readInput(reader, parameters.input);
-  readImage(reader, name, parameters.image);
-  readRoi(reader, name, parameters.roi);
-  readRobotMotion(reader, name, parameters.robot_motion);
-  readViews(reader, parameters.views);
-  bool rectified = false;
-  reader.read("rectified_images", rectified);
-  bool rectify = false;
-  reader.read("rectify", rectify);
-  if (rectify && rectified) {
-    reader.addError(name + "/rectify: true beside rectified_images: true, expected one of them at most");
-  }
-  parameters.image_kind = rectify ? ImageKind::kToRectify : rectified ? ImageKind::kRectified : ImageKind::kRaw;
-  reader.read("select_timeout", parameters.select_timeout, 0.1, 60.0);
+  XmlRpc::XmlRpcValue words = tree;
+  if (tree.valid() && tree.getType() == XmlRpc::XmlRpcValue::TypeStruct && tree.hasMember("roi"))
+    groupToText(words["roi"], name + "/roi", errors);
+  ParameterReader reader(words, name);
+  Table table;
+  describe(table, parameters);
+  reader.read(table);
   reader.refuseUnknownOfNode();
-  if (reader.errors().empty()) reader.addErrors(tracking::validate(parameters.tracking));
+  if (reader.errors().empty()) reader.addJudgement(validate(parameters));
   errors.insert(errors.end(), reader.errors().begin(), reader.errors().end());
   return parameters;
 }
@@ -197,9 +149,10 @@ geometry::Rectangle parseRoi(const std::string& text) {
 }
 
 std::string roiText(const geometry::Rectangle& roi) {
-  std::ostringstream stream;
-  stream << roi.x << ',' << roi.y << ',' << roi.width << ',' << roi.height;
-  return stream.str();
+  std::string text;
+  for (const double number : {roi.x, roi.y, roi.width, roi.height})
+    text += (text.empty() ? "" : ",") + validation::numberText(number);
+  return text;
 }
 
 std::string errorReport(const std::vector<std::string>& errors) {

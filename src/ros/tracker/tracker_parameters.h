@@ -1,4 +1,4 @@
-// The tracker's parameters, as the nodelet and the offline tool read them: config/tracker.yaml says what each means.
+// The tracker's parameters, as the nodelet and the offline tool read them.
 #pragma once
 
 #include <XmlRpcValue.h>
@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "laparoscope_servo/geometry/homography.h"
+#include "laparoscope_servo/parameters/table.h"
 #include "laparoscope_servo/tracking/input_config.h"
 #include "laparoscope_servo/tracking/tracker_config.h"
 #include "laparoscope_servo/tracking/view_config.h"
@@ -22,15 +23,25 @@ struct TrackerParameters {
   tracking::InputConfig input;
   ImageFormat image{0, YuvRange::kLimited};  // a bit depth of 0: found out
   std::optional<geometry::Rectangle> roi;    // px, selected in the first image
-  ImageKind image_kind = ImageKind::kRaw;
+  bool rectified_images = false;             // P of camera_info describes them
+  bool rectify = false;                      // the lens is taken out of raw ones
   RobotMotionConfig robot_motion;
   tracking::ViewConfig views;
-  double select_timeout = 5.0;  // s, 0.1 to 60: how long a service waits for an image
+  double select_timeout = 5.0;  // s, for which a service waits for an image
+
+  ImageKind imageKind() const {
+    return rectify ? ImageKind::kToRectify : rectified_images ? ImageKind::kRectified : ImageKind::kRaw;
+  }
 };
 
+// All parameters of the tracker.
+void describe(parameters::Table& table, TrackerParameters& parameters);
+
+// Every error, each naming the parameter, its value and what was expected; empty when there is none.
+std::vector<std::string> validate(const TrackerParameters& parameters);
+
 // Reads `tree`, called `name` in errors; what is absent keeps its default. Every error is appended to `errors`: the
-// result may be used only when there is none. A parameter under tracking/, input/ or views/ that does not exist is an
-// error, too.
+// result may be used only when there is none. A parameter that does not exist is an error, too.
 TrackerParameters readTrackerParameters(const XmlRpc::XmlRpcValue& tree, const std::string& name,
                                         std::vector<std::string>& errors);
 

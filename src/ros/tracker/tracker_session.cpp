@@ -26,7 +26,7 @@ TrackerSession::TrackerSession(const TrackerParameters& parameters)
     : parameters_(parameters),
       tracker_(parameters.tracking),
       recall_(parameters.views),
-      intrinsics_(parameters.image_kind),
+      intrinsics_(parameters.imageKind()),
       gate_(parameters.input),
       feed_(parameters.input) {
   validation::throwErrors("input", tracking::validate(parameters.input));
@@ -118,7 +118,7 @@ std::optional<Eigen::Matrix3d> TrackerSession::motionBefore(Processed& processed
 }
 
 void TrackerSession::updateLens(const cv::Size& size) {
-  if (parameters_.image_kind != ImageKind::kToRectify) return;
+  if (parameters_.imageKind() != ImageKind::kToRectify) return;
   const std::shared_ptr<const image::Lens>& lens = lens_source_.lensFor(size);
   lens_error_ = lens ? "" : "images cannot be rectified: " + lens_source_.error();
   if (!lens || lens == lens_) return;
@@ -214,6 +214,11 @@ std::string TrackerSession::recall(const RecallRoute& route) {
   if (route.epoch != epoch_) return "a region was selected or forgotten in the meantime";
   recall_.begin(route.steps);
   return "";
+}
+
+void TrackerSession::retune(const TrackerParameters& parameters) {
+  parameters::copyWhatMayChange(parameters, parameters_);
+  tracker_.retune(parameters_.tracking);
 }
 
 void TrackerSession::reset() {

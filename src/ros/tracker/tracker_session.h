@@ -83,6 +83,10 @@ class TrackerSession {
   // from.
   std::string recall(const RecallRoute& route);
 
+  // From the next image on, the parameters that may change while the tracker runs; the others stay. What is tracked
+  // stays, too.
+  void retune(const TrackerParameters& parameters);
+
   // ROS time has jumped back: a loop is believed with its first image.
   void clockJumpedBack() { gate_.clockJumpedBack(); }
 

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <sstream>
 
+#include "laparoscope_servo/parameters/table.h"
 #include "laparoscope_servo/robust/largest.h"
 #include "laparoscope_servo/validation/error_report.h"
-#include "laparoscope_servo/validation/range_checker.h"
 
 namespace laparoscope_servo::servo {
 
@@ -46,18 +46,29 @@ std::string problem(const char* what, double value, const char* expected, double
 
 }  // namespace
 
+void describe(parameters::Table& table, InsertionPointFitConfig& c) {
+  table.number("spacing", c.spacing, {0.001, 0.2}, "rad",
+               "a pose is kept when its shaft's direction is as far from all others");
+  table.number("min_poses", c.min_poses, {5, 500}, "poses", "fewer are refused; at most half of max_poses");
+  table.number("max_poses", c.max_poses, {10, 1000}, "poses", "when there are more, a wider spacing thins them out");
+  table.number("min_cone", c.min_cone, {0.01, 0.5}, "rad",
+               "as far has the shaft to turn, root mean square from its mean");
+  table.number("max_residual", c.max_residual, {1e-4, 0.1}, "m",
+               "root mean square distance of the shafts from the point");
+  table.number("max_stddev", c.max_stddev, {1e-4, 0.1}, "m", "standard deviation of the point along its worst axis");
+  table.number("position_noise", c.position_noise, {1e-6, 0.05}, "m", "assumed of a pose, standard deviation per axis");
+  table.number("direction_noise", c.direction_noise, {0, 0.1}, "rad",
+               "assumed of a shaft's direction, standard deviation per axis");
+  table.number("wobble", c.wobble, {0, 0.05}, "m", "what breathing moves the point by, standard deviation");
+}
+
 std::vector<std::string> validate(const InsertionPointFitConfig& config) {
-  validation::RangeChecker check;
-  check.range("spacing", config.spacing, 0.001, 0.2, "rad");
-  check.range("max_poses", config.max_poses, 10, 1000);
-  check.range("min_poses", config.min_poses, 5, std::max(5, config.max_poses / 2));
-  check.range("min_cone", config.min_cone, 0.01, 0.5, "rad");
-  check.range("max_residual", config.max_residual, 1e-4, 0.1, "m");
-  check.range("max_stddev", config.max_stddev, 1e-4, 0.1, "m");
-  check.range("position_noise", config.position_noise, 1e-6, 0.05, "m");
-  check.range("direction_noise", config.direction_noise, 0.0, 0.1, "rad");
-  check.range("wobble", config.wobble, 0.0, 0.05, "m");
-  return check.errors();
+  std::vector<std::string> errors = parameters::errorsOf(config);
+  if (config.min_poses > std::max(5, config.max_poses / 2)) {
+    errors.push_back("min_poses = " + std::to_string(config.min_poses) +
+                     ", expected at most half of max_poses = " + std::to_string(config.max_poses));
+  }
+  return errors;
 }
 
 InsertionPointFitter::InsertionPointFitter(const InsertionPointFitConfig& config)

@@ -32,6 +32,9 @@ class TargetMotion {
   // At `time`, which may lie ahead of the last measurement.
   TargetPrediction predict(double time) const;
 
+  // See TargetMotionConfig::significance.
+  void setSignificance(double significance) { config_.significance = significance; }
+
   bool empty() const { return !initialised_; }
   void reset() { initialised_ = false; }
 

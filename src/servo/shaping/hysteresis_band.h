@@ -19,6 +19,9 @@ class HysteresisBand {
   // feature that is not finite stays as it is.
   TaskError apply(const TaskError& error, double time);
 
+  // Other bands: what rests in them, and how they are widened, stays.
+  void retune(const RestConfig& config) { config_ = config; }
+
   // Every feature is at rest, and the bands are as configured.
   void reset() { centre_ = depth_ = orientation_ = Band(); }
 

@@ -5,8 +5,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "laparoscope_servo/parameters/table.h"
 #include "laparoscope_servo/validation/error_report.h"
-#include "laparoscope_servo/validation/range_checker.h"
 
 namespace laparoscope_servo::sim {
 
@@ -24,20 +24,20 @@ constexpr double kEpsilon = 1e-9;  // s
 
 }  // namespace
 
+void describe(parameters::Table& table, ArmConfig& c) {
+  table.numbers("start", c.start.data(), kJoints, {-100, 100}, "m or rad",
+                "joint positions at power-on; those of passive joints are a first guess");
+  table.numbers("insertion_point", c.insertion_point.data(), 3, {-10, 10}, "m",
+                "where the trocar really is, in aesop_base");
+  table.number("delay", c.delay, {0, 2}, "s", "from a command to its effect");
+  table.numbers("dead_zone", c.dead_zone.data(), kJoints, {0, 1}, "m/s or rad/s",
+                "of the joints; about 0.4 mm/s and 4 mrad/s of the scope");
+  table.number("breakaway", c.breakaway, {1, 10}, "times", "its dead zone is what a joint at rest needs");
+  table.number("time_constant", c.time_constant, {0, 1}, "s", "of a joint following its speed");
+}
+
 std::vector<std::string> validate(const ArmConfig& config) {
-  validation::RangeChecker check;
-  for (int k = 0; k < kJoints; ++k) {
-    const std::string joint = "[" + std::to_string(k) + "]";
-    check.range("start" + joint, config.start[k], -100.0, 100.0);
-    check.range("dead_zone" + joint, config.dead_zone[k], 0.0, 1.0);
-  }
-  for (int k = 0; k < 3; ++k) {
-    check.range("insertion_point[" + std::to_string(k) + "]", config.insertion_point[k], -10.0, 10.0);
-  }
-  check.range("delay", config.delay, 0.0, 2.0);
-  check.range("breakaway", config.breakaway, 1.0, 10.0);
-  check.range("time_constant", config.time_constant, 0.0, 1.0);
-  return check.errors();
+  return parameters::errorsOf(config);
 }
 
 Arm::Arm(const aesop::Kinematics& kinematics, const ArmConfig& config) : kinematics_(kinematics), config_(config) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "laparoscope_servo/aesop/session_config.h"
+#include "laparoscope_servo/parameters/table.h"
 #include "laparoscope_servo/validation/error_report.h"
 
 namespace laparoscope_servo::sim {
@@ -11,6 +13,18 @@ namespace {
 using aesop::RobotState;
 
 }  // namespace
+
+void describe(parameters::Table& table, EmulatorConfig& c) {
+  table.group("kinematics", "as for the node aesop", [&] { describe(table, c.kinematics); });
+  describeEmulator(table, c);
+}
+
+void describeEmulator(parameters::Table& table, EmulatorConfig& c) {
+  table.group("emulator", "the far end of the line", [&] {
+    describe(table, c.arm);
+    aesop::describeCodec(table, c.codec);
+  });
+}
 
 std::vector<std::string> validate(const EmulatorConfig& config) {
   std::vector<std::string> errors;

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "laparoscope_servo/geometry/se3.h"
-#include "laparoscope_servo/validation/range_checker.h"
+#include "laparoscope_servo/parameters/table.h"
 
 namespace laparoscope_servo::sim {
 
@@ -12,15 +12,6 @@ namespace {
 
 Eigen::Vector3d vector(const std::vector<double>& v) {
   return {v[0], v[1], v[2]};
-}
-
-void checkVector(const std::string& name, const std::vector<double>& v, double limit, const std::string& unit,
-                 validation::RangeChecker& check) {
-  if (v.size() != 3) {
-    check.add(name + " has " + std::to_string(v.size()) + " elements, expected 3: x, y, z in " + unit);
-    return;
-  }
-  for (std::size_t k = 0; k < 3; ++k) check.range(name + "[" + std::to_string(k) + "]", v[k], -limit, limit, unit);
 }
 
 // Where the k-th pull ends; before the first the tissue is at rest.
@@ -32,26 +23,33 @@ Eigen::Vector3d endOfPull(double k, double distance) {
 
 }  // namespace
 
+void describe(parameters::Table& table, PatientConfig& c) {
+  table.group("breathing", "", [&] {
+    table.number("frequency", c.breathing.frequency, {0.02, 2}, "Hz", "of the breath");
+    table.number("second_harmonic", c.breathing.second_harmonic, {0, 1}, "share", "of the first one's amplitude");
+    table.number("third_harmonic", c.breathing.third_harmonic, {0, 1}, "share", "of the first one's amplitude");
+    table.number("start", c.breathing.start, {0, 1e9}, "s", "there is no breath before");
+    table.number("end", c.breathing.end, {0, 1e9}, "s", "the breath is held from then on");
+    table.numbers("tissue", c.breathing.tissue, 3, {-0.1, 0.1}, "m", "amplitude of the first harmonic: x, y, z");
+    table.numbers("trocar", c.breathing.trocar, 3, {-0.05, 0.05}, "m",
+                  "amplitude of the insertion point's first harmonic: x, y, z");
+  });
+  table.group("pull", "somebody pulls at the tissue, each time to another place on a circle", [&] {
+    table.number("distance", c.pull.distance, {0, 0.1}, "m",
+                 "radius of the circle; nearer and further by a third of it");
+    table.number("time", c.pull.time, {0.05, 60}, "s", "that a pull takes");
+    table.number("period", c.pull.period, {0.05, 1e9}, "s", "from one pull to the next").atLeast("time");
+  });
+  table.numbers("drift", c.drift, 3, {-0.1, 0.1}, "m/s", "of the tissue: x, y, z");
+  table.number("drift_end", c.drift_end, {0, 1e9}, "s", "the tissue drifts no longer");
+  table.numbers("jump", c.jump, 3, {-0.1, 0.1}, "m", "the tissue is pulled so far: x, y, z");
+  table.number("jump_time", c.jump_time, {0, 1e9}, "s", "when it is pulled");
+  table.number("tilt", c.tilt, {0, 1.2}, "rad", "the tissue turns so far to and fro about the x axis");
+  table.number("tilt_frequency", c.tilt_frequency, {0.001, 2}, "Hz", "of that turning");
+}
+
 std::vector<std::string> validate(const PatientConfig& config) {
-  validation::RangeChecker check;
-  const BreathingConfig& breathing = config.breathing;
-  check.range("breathing/frequency", breathing.frequency, 0.02, 2.0, "Hz");
-  check.range("breathing/second_harmonic", breathing.second_harmonic, 0.0, 1.0);
-  check.range("breathing/third_harmonic", breathing.third_harmonic, 0.0, 1.0);
-  check.range("breathing/start", breathing.start, 0.0, 1e9, "s");
-  check.range("breathing/end", breathing.end, 0.0, 1e9, "s");
-  checkVector("breathing/tissue", breathing.tissue, 0.1, "m", check);
-  checkVector("breathing/trocar", breathing.trocar, 0.05, "m", check);
-  check.range("pull/distance", config.pull.distance, 0.0, 0.1, "m");
-  check.range("pull/time", config.pull.time, 0.05, 60.0, "s");
-  check.range("pull/period", config.pull.period, std::max(0.05, config.pull.time), 1e9, "s");
-  checkVector("drift", config.drift, 0.1, "m/s", check);
-  check.range("drift_end", config.drift_end, 0.0, 1e9, "s");
-  checkVector("jump", config.jump, 0.1, "m", check);
-  check.range("jump_time", config.jump_time, 0.0, 1e9, "s");
-  check.range("tilt", config.tilt, 0.0, 1.2, "rad");
-  check.range("tilt_frequency", config.tilt_frequency, 0.001, 2.0, "Hz");
-  return check.errors();
+  return parameters::errorsOf(config);
 }
 
 double Patient::breath(double time) const {

@@ -1,64 +1,79 @@
 #include "laparoscope_servo/sim/scene_config.h"
 
-#include <sstream>
-
-#include "laparoscope_servo/validation/range_checker.h"
+#include "laparoscope_servo/parameters/table.h"
 
 namespace laparoscope_servo::sim {
 
 namespace {
 
-class Checker : public validation::RangeChecker {
- public:
-  void positive(const std::string& field, double value, double maximum) {
-    if (value > 0.0 && value <= maximum) return;
-    std::ostringstream text;
-    text << field << " = " << value << ", expected more than 0, at most " << maximum;
-    add(text.str());
-  }
-  void position(const std::string& field, const Eigen::Vector3d& value) {
-    for (int k = 0; k < 3; ++k) range(field + '[' + std::to_string(k) + ']', value[k], -10.0, 10.0);
-  }
-};
+using parameters::Range;
+using parameters::Table;
+
+constexpr double kAnySeed = 2147483647.0;
+
+void describe(Table& table, ScopeCameraConfig& c) {
+  table.number("width", c.width, {16, 4096}, "px", "of the images");
+  table.number("height", c.height, {16, 4096}, "px", "of the images");
+  table.number("fx", c.intrinsics.fx, Range::above(0, 1e5), "px", "focal length across");
+  table.number("fy", c.intrinsics.fy, Range::above(0, 1e5), "px", "focal length down");
+  table.number("cx", c.intrinsics.cx, {-1e5, 1e5}, "px", "principal point across");
+  table.number("cy", c.intrinsics.cy, {-1e5, 1e5}, "px", "principal point down");
+  table.number("rate", c.rate, {0.1, 1000}, "Hz", "of the images");
+  table.number("supersampling", c.supersampling, {1, 4}, "samples", "per pixel along each axis");
+  table.number("noise", c.noise, {0, 100}, "grey levels", "standard deviation");
+  table.number("noise_seed", c.noise_seed, {0, kAnySeed}, "", "of that noise");
+  table.number("border_radius", c.border_radius, {0, 1e4}, "px",
+               "black outside this circle as in a real laparoscope; 0: none");
+}
+
+void describe(Table& table, TissueConfig& c) {
+  table.text("image", c.image, "file name of a texture of your own; empty: made from the seed");
+  table.number("seed", c.seed, {0, kAnySeed}, "", "of a texture that is made");
+  table.number("texture_side", c.texture_side, {64, 8192}, "px", "of a texture that is made");
+  table.number("width", c.width, Range::above(0, 10), "m", "of the texture, which is mirrored beyond its edges");
+  table.number("distance", c.distance, Range::above(0, 10), "m",
+               "along the optical axis from the camera at the arm's start pose");
+  table.number("tilt_x", c.tilt_x, {-1.2, 1.2}, "rad", "about the x axis of the camera at the start pose");
+  table.number("tilt_y", c.tilt_y, {-1.2, 1.2}, "rad", "then about the tissue's own y axis");
+}
+
+void describe(Table& table, LightConfig& c) {
+  table.number("reference_distance", c.reference_distance, Range::above(0, 10), "m",
+               "where tissue that is seen squarely has the brightness of its texture");
+  table.number("beam_exponent", c.beam_exponent, {0, 8}, "",
+               "lamp and lens lose this power of the cosine of the angle to the optical axis");
+}
+
+void describe(Table& table, ExposureConfig& c) {
+  table.flag("automatic", c.automatic, "false: the gain stays as it is");
+  table.number("gain", c.gain, {0.01, 100}, "", "when not automatic");
+  table.number("target", c.target, {1, 254}, "grey levels", "mean of the image that the gain is moved to");
+  table.number("time_constant", c.time_constant, Range::above(0, 1e3), "s", "of that motion");
+}
+
+void describe(Table& table, InstrumentConfig& c) {
+  table.number("radius", c.radius, Range::above(0, 0.1), "m", "of its shaft");
+  table.numbers("trocar", c.trocar.data(), 3, {-10, 10}, "m", "where it comes from");
+  table.numbers("start", c.start.data(), 3, {-10, 10}, "m", "its tip when a crossing begins");
+  table.numbers("end", c.end.data(), 3, {-10, 10}, "m", "its tip when a crossing ends");
+  table.number("crossing_time", c.crossing_time, Range::above(0, 1e4), "s", "that a crossing takes");
+  table.number("period", c.period, {0, 1e6}, "s",
+               "from one crossing to the next; 0: only when ~cross_instrument is called");
+}
 
 }  // namespace
 
+void describe(Table& table, SceneConfig& c) {
+  table.group("camera", "", [&] { describe(table, c.camera); });
+  table.group("tissue", "a plane", [&] { describe(table, c.tissue); });
+  table.group("light", "at the tip of the scope", [&] { describe(table, c.light); });
+  table.group("exposure", "", [&] { describe(table, c.exposure); });
+  table.group("instrument", "points are in the tissue's frame: x right, y down, z into the tissue",
+              [&] { describe(table, c.instrument); });
+}
+
 std::vector<std::string> validate(const SceneConfig& config) {
-  constexpr int kAnySeed = 2147483647;
-  Checker check;
-  const ScopeCameraConfig& camera = config.camera;
-  check.range("camera/width", camera.width, 16, 4096);
-  check.range("camera/height", camera.height, 16, 4096);
-  const std::string intrinsics = camera.intrinsics.error();
-  if (!intrinsics.empty()) check.add("camera: " + intrinsics);
-  check.range("camera/rate", camera.rate, 0.1, 1000.0);
-  check.range("camera/supersampling", camera.supersampling, 1, 4);
-  check.range("camera/noise", camera.noise, 0.0, 100.0);
-  check.range("camera/noise_seed", camera.noise_seed, 0, kAnySeed);
-  check.range("camera/border_radius", camera.border_radius, 0.0, 1e4);
-
-  const TissueConfig& tissue = config.tissue;
-  check.range("tissue/seed", tissue.seed, 0, kAnySeed);
-  check.range("tissue/texture_side", tissue.texture_side, 64, 8192);
-  check.positive("tissue/width", tissue.width, 10.0);
-  check.positive("tissue/distance", tissue.distance, 10.0);
-  check.range("tissue/tilt_x", tissue.tilt_x, -1.2, 1.2);
-  check.range("tissue/tilt_y", tissue.tilt_y, -1.2, 1.2);
-
-  check.positive("light/reference_distance", config.light.reference_distance, 10.0);
-  check.range("light/beam_exponent", config.light.beam_exponent, 0.0, 8.0);
-  check.range("exposure/gain", config.exposure.gain, 0.01, 100.0);
-  check.range("exposure/target", config.exposure.target, 1.0, 254.0);
-  check.positive("exposure/time_constant", config.exposure.time_constant, 1e3);
-
-  const InstrumentConfig& instrument = config.instrument;
-  check.positive("instrument/radius", instrument.radius, 0.1);
-  check.position("instrument/trocar", instrument.trocar);
-  check.position("instrument/start", instrument.start);
-  check.position("instrument/end", instrument.end);
-  check.positive("instrument/crossing_time", instrument.crossing_time, 1e4);
-  check.range("instrument/period", instrument.period, 0.0, 1e6);
-  return check.errors();
+  return parameters::errorsOf(config);
 }
 
 }  // namespace laparoscope_servo::sim

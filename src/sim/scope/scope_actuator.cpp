@@ -1,31 +1,19 @@
 #include "laparoscope_servo/sim/scope_actuator.h"
 
-#include <cmath>
-#include <sstream>
+#include "laparoscope_servo/parameters/table.h"
 
 namespace laparoscope_servo::sim {
 
+void describe(parameters::Table& table, ScopeActuatorConfig& c) {
+  table.number("delay", c.delay, {0, 2}, "s", "from a command to its execution");
+  table.numbers("dead_zone", c.dead_zone, 4, {0, 1}, "rad/s, m/s",
+                "pan, tilt, spin, insertion: slower commands are not executed");
+  table.choice("dead_zone_kind", c.dead_zone_kind, {"subtract", "threshold"},
+               "faster commands lose the dead zone's width, or are executed as they are");
+}
+
 std::vector<std::string> validate(const ScopeActuatorConfig& config) {
-  std::vector<std::string> errors;
-  std::ostringstream error;
-  if (!(config.delay >= 0.0 && config.delay <= 2.0)) {
-    error << "delay = " << config.delay << ", expected a number from 0 to 2 s";
-    errors.push_back(error.str());
-  }
-  if (config.dead_zone.size() != 4) {
-    errors.push_back("dead_zone has " + std::to_string(config.dead_zone.size()) +
-                     " elements, expected 4: pan, tilt, spin [rad/s], insertion [m/s]");
-  }
-  for (const double width : config.dead_zone) {
-    if (width >= 0.0 && std::isfinite(width)) continue;
-    error.str("");
-    error << "dead_zone = " << width << ", expected numbers of at least 0";
-    errors.push_back(error.str());
-  }
-  if (config.dead_zone_kind != "subtract" && config.dead_zone_kind != "threshold") {
-    errors.push_back("dead_zone_kind = '" + config.dead_zone_kind + "', expected one of: subtract, threshold");
-  }
-  return errors;
+  return parameters::errorsOf(config);
 }
 
 void ScopeActuator::command(double time, const Eigen::Vector4d& velocity) {

@@ -41,6 +41,9 @@ class RegionAligner {
   // left.
   Alignment align(const cv::Mat& image, const EsmState& start, const MotionPrior* prior, double reach);
 
+  // See RegionTracker::retune.
+  void retune(const TrackerConfig& config) { gates_.setThreshold(config.occlusion.threshold); }
+
   // The next start has nothing to do with the last one: what is occluded and how the light is are not known.
   void startAfresh();
   // An image is done: see OcclusionGates::advance.

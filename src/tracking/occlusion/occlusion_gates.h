@@ -44,6 +44,9 @@ class OcclusionGates {
   // Share of the ROI's pixels that are used in those areas, 0 to 1.
   double visibleFraction() const;
 
+  // See OcclusionConfig::threshold; from the next image on.
+  void setThreshold(double threshold) { config_.threshold = threshold; }
+
   // Forgets what the structure gate rejected: the place has changed.
   void forget();
 

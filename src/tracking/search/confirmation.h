@@ -13,6 +13,9 @@ class Confirmation {
  public:
   explicit Confirmation(const QualityConfig& config) : config_(config) {}
 
+  // See RegionTracker::retune.
+  void retune(const QualityConfig& config) { config_ = config; }
+
   // The ROI was found in the next image. True when that is often enough: QualityConfig::confirmations images in a row.
   bool add(const EsmResult& found, const geometry::Rectangle& roi, const TrackRecord& record);
   // It was not found, or is believed.

@@ -66,6 +66,11 @@ FeatureSearch::FeatureSearch(const TrackerConfig& config, std::shared_ptr<const 
       max_area_ratio_(config.quality.max_area_ratio),
       lens_(std::move(lens)) {}
 
+void FeatureSearch::retune(const TrackerConfig& config) {
+  config_ = config.search;
+  max_area_ratio_ = config.quality.max_area_ratio;
+}
+
 void FeatureSearch::restart() {
   turn_ = 0;
   strip_ = strips_ = 0;

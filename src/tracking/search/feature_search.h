@@ -42,6 +42,9 @@ class FeatureSearch {
   // A whole pass over `image` (CV_8UC1 or CV_8UC3).
   std::vector<FeatureCandidate> find(const cv::Mat& image, const image::ChannelWeights& weights, Keyframes& keyframes);
 
+  // See RegionTracker::retune.
+  void retune(const TrackerConfig& config);
+
   // Starts the turns again, and leaves the pass.
   void restart();
 

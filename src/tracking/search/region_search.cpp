@@ -52,6 +52,12 @@ void RegionSearch::keepKeyframe(const cv::Mat& image, const Evidence& seen, cons
   since_keyframe_ = 0;
 }
 
+void RegionSearch::retune(const TrackerConfig& config) {
+  config_ = config;
+  feature_search_.retune(config);
+  confirmation_.retune(config.quality);
+}
+
 void RegionSearch::restart() {
   feature_search_.restart();
   suggested_.clear();

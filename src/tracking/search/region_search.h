@@ -53,6 +53,9 @@ class RegionSearch {
   // new, or none was stored for some images.
   void keepKeyframe(const cv::Mat& image, const Evidence& seen, const Eigen::Matrix3d& g, RegionAligner& aligner);
 
+  // See RegionTracker::retune.
+  void retune(const TrackerConfig& config);
+
   // The ROI has been lost: the search starts.
   void restart();
 

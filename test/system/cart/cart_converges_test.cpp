@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "ros/common/parameters.h"
 #include "ros/simulation/demo_director.h"
 
 namespace laparoscope_servo {
@@ -15,7 +16,8 @@ constexpr double kDegree = M_PI / 180.0;
 TEST(Cart, ConvergesFromTenDegreesAndTwentyMillimetresOffAndBearsAnInstrument) {
   ros::NodeHandle private_node("~");
   ParameterReader reader(parametersOf(private_node), private_node.getNamespace());
-  const DemoConfig config = demoConfig(reader);
+  DemoConfig config;
+  reader.readAll(config);
   ASSERT_TRUE(reader.errors().empty()) << reader.report();
   const DemoSummary summary = DemoDirector(ros::NodeHandle(), config).run();
   SCOPED_TRACE(toJson(summary));

@@ -183,8 +183,8 @@ TEST(ControllerConfig, DirectionsNeedALength) {
   config.horizon.up = {0.0, std::numeric_limits<double>::quiet_NaN(), 1.0};
   const std::vector<std::string> errors = validate(config);
   ASSERT_EQ(errors.size(), 2u);
-  EXPECT_EQ(errors[0].rfind("range/axis", 0), 0u);
-  EXPECT_EQ(errors[1].rfind("horizon/up", 0), 0u);
+  EXPECT_EQ(errors[0], "horizon/up[1] = nan, expected a list of 3 numbers");
+  EXPECT_EQ(errors[1], "range/axis is no direction, expected numbers that are not all zero");
 }
 
 TEST(ControllerConfig, TheInverseOfTheDeadZoneHasToFitIntoTheLimits) {

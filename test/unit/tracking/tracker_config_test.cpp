@@ -19,7 +19,7 @@ TEST(TrackerConfig, EveryErrorIsListedWithNameAndValue) {
   c.quality.confirmations = 0;
   const std::vector<std::string> errors = validate(c);
   ASSERT_EQ(errors.size(), 4u);
-  EXPECT_EQ(errors[0], "occlusion/rows = 1, expected a number from 2 to 64");
+  EXPECT_EQ(errors[0], "occlusion/rows = 1, expected an integer in [2, 64] areas");
   EXPECT_NE(errors[1].find("occlusion/threshold = nan"), std::string::npos);
   EXPECT_NE(errors[2].find("esm/levels = 7"), std::string::npos);
   EXPECT_NE(errors[3].find("quality/confirmations = 0"), std::string::npos);
@@ -37,7 +37,7 @@ TEST(TrackerConfig, TheSearchHasRanges) {
   const std::vector<std::string> errors = validate(c);
   ASSERT_EQ(errors.size(), 7u);
   for (const std::string& error : errors) EXPECT_EQ(error.rfind("search/", 0), 0u) << error;
-  EXPECT_EQ(errors[0], "search/max_features = 49, expected a number from 50 to 5000");
+  EXPECT_EQ(errors[0], "search/max_features = 49, expected an integer in [50, 5000] points");
 }
 
 }  // namespace

@@ -20,8 +20,8 @@ TEST(RangeChecker, NamesFieldValueAndWhatWasExpectedInOrder) {
   check.range("gains/pan", -1.0, 0.0, 5.0, "1/s");
   check.range("rows", 65, 2, 64);
   check.add("columns are missing");
-  const std::vector<std::string> expected = {"gains/pan = -1, expected a number from 0 to 5 1/s",
-                                             "rows = 65, expected a number from 2 to 64", "columns are missing"};
+  const std::vector<std::string> expected = {"gains/pan = -1, expected a number in [0, 5] 1/s",
+                                             "rows = 65, expected a number in [2, 64]", "columns are missing"};
   EXPECT_EQ(check.errors(), expected);
 }
 

@@ -21,11 +21,11 @@ TEST(KinematicsConfig, everyErrorIsNamed) {
   config.joints[6].max_speed = 0.0;
   config.scope_length = -0.3;
   const std::vector<std::string> errors = validate(config);
-  ASSERT_EQ(errors.size(), 5u);  // depth_maximum is above the wrong scope_length, too
-  EXPECT_NE(errors[0].find("joint 2: a = nan"), std::string::npos);
-  EXPECT_NE(errors[1].find("joint 3: maximum"), std::string::npos);
-  EXPECT_NE(errors[2].find("joint 7: max_speed = 0"), std::string::npos);
-  EXPECT_NE(errors[3].find("scope_length = -0.3"), std::string::npos);
+  ASSERT_EQ(errors.size(), 4u);
+  EXPECT_EQ(errors[0], "a[1] = nan, expected a list of 7 numbers in [-100, 100] m");
+  EXPECT_EQ(errors[1], "max_speed[6] = 0, expected a list of 7 numbers in (0, 100] m/s or rad/s");
+  EXPECT_EQ(errors[2], "scope_length = -0.3, expected a number in (0, 1) m");
+  EXPECT_EQ(errors[3].rfind("maximum[2] = ", 0), 0u) << errors[3];
 }
 
 TEST(KinematicsConfig, fourDrivenAndTwoPassiveJoints) {

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <limits>
 #include <stdexcept>
 
 #include "support/temporary_folder.h"
@@ -12,8 +11,6 @@ namespace laparoscope_servo {
 namespace {
 
 using XmlRpc::XmlRpcValue;
-
-const double kInfinity = std::numeric_limits<double>::infinity();
 
 // A YAML file that lives as long as the object.
 class File {
@@ -33,162 +30,141 @@ bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-TEST(ParameterReader, KeepsTheDefaultOfWhatIsNotSet) {
-  ParameterReader reader(XmlRpcValue(), "/node");
+struct Config {
   double number = 1.5;
   int integer = 3;
   bool flag = true;
   std::string text = "a";
+  std::string word = "left";
   std::vector<double> list{1.0};
-  reader.read("number", number, 0.0, 2.0);
-  reader.read("group/integer", integer, 0, 5);
-  reader.read("flag", flag);
-  reader.read("text", text);
-  reader.read("list", list, 1, 0.0, 2.0);
-  EXPECT_EQ(number, 1.5);
-  EXPECT_EQ(integer, 3);
-  EXPECT_TRUE(flag);
-  EXPECT_EQ(text, "a");
-  EXPECT_EQ(list, std::vector<double>{1.0});
-  EXPECT_EQ(reader.report(), "");
+  std::vector<std::string> names{"kept"};
+};
+
+void describe(parameters::Table& table, Config& c) {
+  table.number("number", c.number, {0, 2}, "m", "of it");
+  table.group("group", "", [&] { table.number("integer", c.integer, {0, 5}, "", "of it"); });
+  table.flag("flag", c.flag, "of it");
+  table.text("text", c.text, "of it");
+  table.choice("word", c.word, {"left", "right"}, "of it");
+  table.numbers("list", c.list, 3, {0, 10}, "", "of it");
+  table.texts("names", c.names, "of it");
+}
+
+std::vector<std::string> validate(const Config& config) {
+  std::vector<std::string> errors = parameters::errorsOf(config);
+  if (config.flag && config.integer == 5) errors.emplace_back("flag = true beside group/integer = 5");
+  return errors;
+}
+
+struct Read {
+  Config config;
+  std::vector<std::string> errors;
+};
+
+Read read(const XmlRpcValue& parameters) {
+  Read result;
+  ParameterReader reader(parameters, "/node");
+  parameters::Table table;
+  describe(table, result.config);
+  reader.read(table);
+  result.errors = reader.errors();
+  return result;
+}
+
+TEST(ParameterReader, KeepsTheDefaultOfWhatIsNotSet) {
+  const Read got = read(XmlRpcValue());
+  EXPECT_TRUE(got.errors.empty());
+  EXPECT_EQ(got.config.number, 1.5);
+  EXPECT_EQ(got.config.integer, 3);
+  EXPECT_TRUE(got.config.flag);
+  EXPECT_EQ(got.config.text, "a");
+  EXPECT_EQ(got.config.list, std::vector<double>{1.0});
+  EXPECT_EQ(got.config.names, std::vector<std::string>{"kept"});
 }
 
 TEST(ParameterReader, ReadsEachType) {
-  ParameterReader reader(tree("{group: {number: 0.25, integer: 4}, flag: true, text: 'word', list: [1, 2.5]}"),
-                         "/node");
-  double number = 0.0;
-  int integer = 0;
-  bool flag = false;
-  std::string text;
-  std::vector<double> list;
-  reader.read("group/number", number, 0.0, 2.0);
-  reader.read("group/integer", integer, 0, 5);
-  reader.read("flag", flag);
-  reader.read("text", text);
-  reader.read("list", list, 0, 0.0, 5.0);
-  EXPECT_EQ(reader.report(), "");
-  EXPECT_EQ(number, 0.25);
-  EXPECT_EQ(integer, 4);
-  EXPECT_TRUE(flag);
-  EXPECT_EQ(text, "word");
-  EXPECT_EQ(list, (std::vector<double>{1.0, 2.5}));
+  const Read got =
+      read(tree("{group: {integer: 4}, number: 0.25, flag: false, text: 'b', word: right, list: [1, 2.5, 3],"
+                " names: [a, '1']}"));
+  EXPECT_TRUE(got.errors.empty()) << got.errors.front();
+  EXPECT_EQ(got.config.number, 0.25);
+  EXPECT_EQ(got.config.integer, 4);
+  EXPECT_FALSE(got.config.flag);
+  EXPECT_EQ(got.config.text, "b");
+  EXPECT_EQ(got.config.word, "right");
+  EXPECT_EQ(got.config.list, (std::vector<double>{1.0, 2.5, 3.0}));
+  EXPECT_EQ(got.config.names, (std::vector<std::string>{"a", "1"}));
+  EXPECT_TRUE(read(tree("names: []")).config.names.empty());
 }
 
 TEST(ParameterReader, TakesAnIntegerForANumberButNotTheOtherWay) {
-  ParameterReader reader(tree("{a: 1, b: 1.0}"), "/node");
-  double a = 0.0;
-  int b = 7;
-  reader.read("a", a, 0.0, 2.0);
-  reader.read("b", b, 0, 2);
-  EXPECT_EQ(a, 1.0);
-  EXPECT_EQ(b, 7);
-  ASSERT_EQ(reader.errors().size(), 1u);
-  EXPECT_TRUE(contains(reader.errors()[0], "/node/b = 1")) << reader.errors()[0];
+  const Read got = read(tree("{number: 1, group: {integer: 1.0}}"));
+  EXPECT_EQ(got.config.number, 1.0);
+  EXPECT_EQ(got.config.integer, 3);
+  EXPECT_EQ(got.errors, std::vector<std::string>{"/node/group/integer = 1 is a number, expected an integer in [0, 5]"});
 }
 
-TEST(ParameterReader, BoundsAreInclusiveAndCatchNotANumber) {
-  const std::string text = "{low: 0.0, high: 2.0, below: -0.001, above: 2.001, nan: .nan, inf: .inf, int_high: 6}";
-  ParameterReader reader(tree(text), "/node");
-  double value = 9.0;
-  reader.read("low", value, 0.0, 2.0);
-  EXPECT_EQ(value, 0.0);
-  reader.read("high", value, 0.0, 2.0);
-  EXPECT_EQ(value, 2.0);
-  EXPECT_TRUE(reader.errors().empty());
-  for (const char* name : {"below", "above", "nan", "inf"}) reader.read(name, value, 0.0, 2.0);
-  int integer = 1;
-  reader.read("int_high", integer, 0, 5);
-  EXPECT_EQ(value, 2.0);
-  EXPECT_EQ(integer, 1);
-  EXPECT_EQ(reader.errors().size(), 5u) << reader.report();
-  reader.read("nan", value, -kInfinity, kInfinity);
-  EXPECT_EQ(reader.errors().size(), 6u) << reader.report();
+TEST(ParameterReader, EndsOfARangeAreInItAndNotANumberIsNot) {
+  for (const char* good : {"number: 0.0", "number: 2.0", "group: {integer: 0}", "group: {integer: 5}"})
+    EXPECT_TRUE(read(tree(good)).errors.empty()) << good;
+  for (const char* bad : {"number: -0.001", "number: 2.001", "number: .nan", "number: .inf", "group: {integer: 6}",
+                          "list: [1, .nan, 2]"}) {
+    const Read got = read(tree(bad));
+    EXPECT_EQ(got.errors.size(), 1u) << bad;
+    EXPECT_EQ(got.config.number, 1.5) << bad;
+    EXPECT_EQ(got.config.integer, 3) << bad;
+  }
 }
 
 TEST(ParameterReader, NamesNameValueAndExpectation) {
-  ParameterReader reader(tree("{a: fast, b: 3.0, c: 1, d: [1], e: {f: 2}, g: up, h: 5}"), "/node");
-  double number = 0.0;
-  bool flag = false;
-  std::string word = "left";
-  reader.read("a", number, 0.0, 2.0);
-  reader.read("b", number, 0.0, 2.0);
-  reader.read("c", flag);
-  reader.read("d", number, 0.0, 2.0);
-  reader.read("e", number, 0.0, 2.0);
-  reader.read("g", word, {"left", "right"});
-  reader.read("h", word);
-  const std::vector<std::string> expected{"/node/a = 'fast' is a string, expected a number from 0 to 2",
-                                          "/node/b = 3, expected a number from 0 to 2",
-                                          "/node/c = 1 is an integer, expected true or false",
-                                          "/node/d is a list, expected a number from 0 to 2",
-                                          "/node/e is a group of parameters, expected a number from 0 to 2",
-                                          "/node/g = 'up', expected one of: left, right",
-                                          "/node/h = 5 is an integer, expected a string"};
-  EXPECT_EQ(reader.errors(), expected);
-  EXPECT_EQ(number, 0.0);
-  EXPECT_EQ(word, "left");
-  EXPECT_TRUE(contains(reader.report(), "7 errors in the parameters:\n"));
+  const std::pair<const char*, const char*> cases[] = {
+      {"number: fast", "/node/number = 'fast' is a string, expected a number in [0, 2] m"},
+      {"number: 3.0", "/node/number = 3, expected a number in [0, 2] m"},
+      {"flag: 1", "/node/flag = 1 is an integer, expected true or false"},
+      {"number: [1]", "/node/number is a list, expected a number in [0, 2] m"},
+      {"number: {f: 2}", "/node/number is a group of parameters, expected a number in [0, 2] m"},
+      {"word: up", "/node/word = 'up', expected one of: left, right"},
+      {"text: 5", "/node/text = 5 is an integer, expected a string"},
+      {"list: [1, 2]", "/node/list has 2 elements, expected a list of 3 numbers in [0, 10]"},
+      {"list: [1, two, 3]", "/node/list[1] = 'two' is a string, expected a list of 3 numbers in [0, 10]"},
+      {"list: [1, 2, 30]", "/node/list[2] = 30, expected a list of 3 numbers in [0, 10]"},
+      {"list: [1, [2], 3]", "/node/list[1] is a list, expected a list of 3 numbers in [0, 10]"},
+      {"list: 4", "/node/list = 4 is an integer, expected a list of 3 numbers in [0, 10]"},
+      {"names: a", "/node/names = 'a' is a string, expected a list of strings"},
+      {"names: [a, 1]", "/node/names[1] = 1 is an integer, expected a list of strings"}};
+  for (const auto& [text, error] : cases) EXPECT_EQ(read(tree(text)).errors, std::vector<std::string>{error}) << text;
 }
 
-TEST(ParameterReader, WithoutBoundsItAsksForANumber) {
-  ParameterReader reader(tree("{a: fast}"), "/node");
-  double number = 0.0;
-  reader.read("a", number, -kInfinity, kInfinity);
-  EXPECT_EQ(reader.errors(), std::vector<std::string>{"/node/a = 'fast' is a string, expected a number"});
+TEST(ParameterReader, ListsAllErrorsAtOnce) {
+  const Read got = read(tree("{number: 3.0, flag: 1, list: [1]}"));
+  EXPECT_EQ(got.errors.size(), 3u);
+  ParameterReader reader(tree("{number: 3.0, flag: 1, list: [1]}"), "/node");
+  Config config;
+  reader.readAll(config);
+  EXPECT_TRUE(contains(reader.report(), "errors in the parameters:\n")) << reader.report();
 }
 
-TEST(ParameterReader, ListsAreCheckedElementByElement) {
-  ParameterReader reader(tree("{short: [1, 2], wrong: [1, two, 3], far: [1, 2, 30], scalar: 4, good: [1, 2, 3]}"),
-                         "/node");
-  std::vector<double> list{0.0};
-  for (const char* name : {"short", "wrong", "far", "scalar"}) {
-    reader.read(name, list, 3, 0.0, 10.0);
-    EXPECT_EQ(list, std::vector<double>{0.0}) << name;
-  }
-  EXPECT_EQ(reader.errors().size(), 4u);
-  EXPECT_TRUE(contains(reader.report(), "/node/short has 2 elements, expected a list of 3 numbers")) << reader.report();
-  EXPECT_TRUE(contains(reader.report(), "/node/wrong[1] = 'two' is a string")) << reader.report();
-  EXPECT_TRUE(contains(reader.report(), "/node/far[2] = 30")) << reader.report();
-  reader.read("good", list, 3, 0.0, 10.0);
-  EXPECT_EQ(list, (std::vector<double>{1.0, 2.0, 3.0}));
-}
-
-TEST(ParameterReader, ListsOfStrings) {
-  std::vector<std::string> value{"kept"};
-  ParameterReader good(tree("names: [a, '1']\nnone: []"), "/node");
-  good.read("absent", value);
-  EXPECT_EQ(value, (std::vector<std::string>{"kept"}));
-  good.read("names", value);
-  EXPECT_EQ(value, (std::vector<std::string>{"a", "1"}));
-  good.read("none", value);
-  EXPECT_TRUE(value.empty());
-  EXPECT_TRUE(good.errors().empty()) << good.report();
-
-  value = {"kept"};
-  ParameterReader bad(tree("name: a\nmixed: [a, 1]"), "/node");
-  bad.read("name", value);
-  bad.read("mixed", value);
-  ASSERT_EQ(bad.errors().size(), 2u);
-  EXPECT_TRUE(contains(bad.errors()[0], "/node/name = 'a'")) << bad.errors()[0];
-  EXPECT_TRUE(contains(bad.errors()[1], "/node/mixed[1] = 1")) << bad.errors()[1];
-  EXPECT_EQ(value, (std::vector<std::string>{"kept"}));
+TEST(ParameterReader, OfANodeJudgesParametersTogether) {
+  ParameterReader reader(tree("group: {integer: 5}"), "/node");
+  Config config;
+  config.list = {1.0, 2.0, 3.0};
+  reader.readAll(config);
+  EXPECT_EQ(reader.errors(), std::vector<std::string>{"/node/flag = true beside group/integer = 5"});
 }
 
 TEST(ParameterReader, RefusesWhatNobodyReads) {
-  const XmlRpcValue parameters = tree("{known: 1, unknown: 2, group: {known: 1, other: 2, deep: {deeper: 3}}}");
+  const XmlRpcValue parameters = tree("{number: 1, unknown: 2, group: {integer: 1, other: 2, deep: {deeper: 3}}}");
+  Config config;
+  parameters::Table table;
+  describe(table, config);
   ParameterReader reader(parameters, "/node");
-  int value = 0;
-  reader.read("known", value, 0, 9);
-  reader.read("group/known", value, 0, 9);
-  reader.read("group/absent", value, 0, 9);
+  reader.read(table);
   reader.refuseUnknown("group");
   EXPECT_EQ(reader.errors(), (std::vector<std::string>{"/node/group/deep/deeper is no parameter of this program",
                                                        "/node/group/other is no parameter of this program"}));
-  ParameterReader root(parameters, "/node");
-  root.read("known", value, 0, 9);
-  root.refuseUnknown("");
-  EXPECT_EQ(root.errors().size(), 4u) << root.report();
-  EXPECT_TRUE(contains(root.report(), "/node/unknown is no parameter")) << root.report();
+  reader.refuseUnknown("");
+  EXPECT_EQ(reader.errors().size(), 3u) << reader.report();
+  EXPECT_TRUE(contains(reader.report(), "/node/unknown is no parameter")) << reader.report();
   ParameterReader empty(XmlRpcValue(), "/node");
   empty.refuseUnknown("");
   empty.refuseUnknown("group");
@@ -196,35 +172,50 @@ TEST(ParameterReader, RefusesWhatNobodyReads) {
 }
 
 TEST(ParameterReader, NamesWhatAMisspeltParameterIsMostLike) {
-  ParameterReader reader(tree("{limits: {velocty: 1.0}, velocity: 2.0, colour_of_the_cart: red}"), "/node");
-  double value = 0.0;
-  reader.read("limits/velocity", value, 0.0, 9.0);
-  reader.read("limits/acceleration", value, 0.0, 9.0);
+  Config config;
+  parameters::Table table;
+  describe(table, config);
+  ParameterReader reader(tree("{group: {intger: 1}, integer: 2, colour_of_the_cart: red}"), "/node");
+  reader.read(table);
   reader.refuseUnknown("");
-  EXPECT_EQ(
-      reader.errors(),
-      (std::vector<std::string>{"/node/colour_of_the_cart is no parameter of this program",
-                                "/node/limits/velocty is no parameter of this program; is /node/limits/velocity meant?",
-                                "/node/velocity is no parameter of this program; is /node/limits/velocity meant?"}));
+  EXPECT_EQ(reader.errors(), (std::vector<std::string>{
+                                 "/node/colour_of_the_cart is no parameter of this program",
+                                 "/node/group/intger is no parameter of this program; is /node/group/integer meant?",
+                                 "/node/integer is no parameter of this program; is /node/group/integer meant?"}));
+}
+
+TEST(ParameterReader, AllowsWhatAnotherTableTellsOf) {
+  Config config;
+  parameters::Table table;
+  describe(table, config);
+  ParameterReader reader(tree("{number: 99.0, numbr: 1.0}"), "/node");
+  reader.allow(table);
+  reader.refuseUnknown("");
+  EXPECT_EQ(reader.errors(),
+            std::vector<std::string>{"/node/numbr is no parameter of this program; is /node/number meant?"});
 }
 
 TEST(ParameterReader, LeavesToLibrariesWhatIsTheirsInTheNamespaceOfANode) {
+  Config config;
+  parameters::Table table;
+  describe(table, config);
   ParameterReader reader(tree("{diagnostic_period: 0.5, overlay: {compressed: {format: png, jpeg_quality: 80}}, "
-                              "rte: 5, group: {}, overly: {wrong: 1}}"),
+                              "numbr: 5, group: {}, overly: {wrong: 1}}"),
                          "/node");
-  double value = 0.0;
-  reader.read("rate", value, 0.0, 9.0);
+  reader.read(table);
   reader.refuseUnknownOfNode();
   EXPECT_EQ(reader.errors(),
-            (std::vector<std::string>{"/node/overly/wrong is no parameter of this program",
-                                      "/node/rte is no parameter of this program; is /node/rate meant?"}));
+            (std::vector<std::string>{"/node/numbr is no parameter of this program; is /node/number meant?",
+                                      "/node/overly/wrong is no parameter of this program"}));
 }
 
 TEST(ParameterReader, AValueInPlaceOfAGroupHidesNothingElse) {
+  Config config;
+  parameters::Table table;
+  describe(table, config);
   ParameterReader reader(tree("{group: 5}"), "/node");
-  double value = 1.0;
-  reader.read("group/value", value, 0.0, 9.0);
-  EXPECT_EQ(value, 1.0);
+  reader.read(table);
+  EXPECT_EQ(config.integer, 3);
   reader.refuseUnknown("");
   EXPECT_EQ(reader.errors(), std::vector<std::string>{"/node/group is no parameter of this program"});
 }
@@ -234,13 +225,18 @@ TEST(ParameterReader, RootHasToBeAGroup) {
   EXPECT_EQ(reader.errors(), std::vector<std::string>{"/node is an integer, expected a group of parameters"});
 }
 
-TEST(ParameterReader, RequireNamesWhatIsMissing) {
+TEST(ParameterReader, NamesWhatIsMissing) {
+  std::string port;
+  int baud = 0;
+  parameters::Table table;
+  table.text("port", port, "of the line").required("/dev/ttyUSB0");
+  table.number("baud", baud, {1, 9}, "bit/s", "of the line").required("9");
   ParameterReader reader(tree("{port: x}"), "/node");
   EXPECT_TRUE(reader.has("port"));
   EXPECT_FALSE(reader.has("baud"));
-  reader.require("port", "a device");
-  reader.require("baud", "a rate");
-  EXPECT_EQ(reader.errors(), std::vector<std::string>{"/node/baud is not set, expected a rate"});
+  reader.read(table);
+  EXPECT_EQ(reader.errors(),
+            std::vector<std::string>{"/node/baud is not set, expected an integer in [1, 9] bit/s, e.g. 9"});
 }
 
 TEST(ParametersFromYaml, ReadsScalarsAsRosparamDoes) {

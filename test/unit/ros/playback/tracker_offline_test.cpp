@@ -87,7 +87,7 @@ class TrackerOfflineTest : public testing::Test {
     images_.clear();
     for (const Eigen::Matrix3d& g : test_support::motion(kImages, kRoi, 5.0)) images_.push_back(view(texture, g));
     writeFolder();
-    options_.parameters.image_kind = ImageKind::kToRectify;
+    options_.parameters.rectify = true;
     ASSERT_TRUE(camera_calibration_parsers::writeCalibration(calibration, "scope",
                                                              test_support::lensInfo(lens, cv::Size(320, 240))));
   }
@@ -276,7 +276,7 @@ TEST_F(TrackerOfflineTest, RectifiesByACalibrationFile) {
 TEST_F(TrackerOfflineTest, SaysThatDistortionIsNotCorrected) {
   options_.camera_info = out_.file("scope.yaml");
   writeRawFolder(image::Lens(test::laparoscope(cv::Size(320, 240), 220.0)), options_.camera_info);
-  options_.parameters.image_kind = ImageKind::kRaw;
+  options_.parameters.rectify = false;
   const OfflineSummary summary = run();
   ASSERT_EQ(summary.notes.size(), 1u);
   EXPECT_NE(summary.notes[0].find("distortion"), std::string::npos);

@@ -12,8 +12,6 @@
 namespace laparoscope_servo {
 namespace {
 
-const char* const kDefaults = LAPAROSCOPE_SERVO_CONFIG "/tracker.yaml";
-
 std::vector<std::string> errorsOf(const XmlRpc::XmlRpcValue& tree) {
   std::vector<std::string> errors;
   readTrackerParameters(tree, "/tracker", errors);
@@ -25,115 +23,6 @@ bool mentions(const std::vector<std::string>& errors, const std::string& text) {
     if (error.find(text) != std::string::npos) return true;
   }
   return false;
-}
-
-TEST(DefaultFile, EqualsTheDefaultsOfTheStructs) {
-  std::vector<std::string> errors;
-  const TrackerParameters file = readTrackerParameters(parametersFromYaml(kDefaults), "/tracker", errors);
-  EXPECT_TRUE(errors.empty()) << errorReport(errors);
-  const TrackerParameters code;
-  EXPECT_EQ(file.roi.has_value(), code.roi.has_value());
-  EXPECT_EQ(file.image_kind, code.image_kind);
-  EXPECT_EQ(file.select_timeout, code.select_timeout);
-  EXPECT_EQ(file.robot_motion.enabled, code.robot_motion.enabled);
-  EXPECT_EQ(file.robot_motion.fixed_frame, code.robot_motion.fixed_frame);
-  EXPECT_EQ(file.robot_motion.depth, code.robot_motion.depth);
-  EXPECT_EQ(file.robot_motion.frame_prefix, code.robot_motion.frame_prefix);
-  EXPECT_EQ(file.robot_motion.owner, code.robot_motion.owner);
-  EXPECT_EQ(file.views.capacity, code.views.capacity);
-  EXPECT_EQ(file.views.min_visible_fraction, code.views.min_visible_fraction);
-  EXPECT_EQ(file.views.arrival_centre, code.views.arrival_centre);
-  EXPECT_EQ(file.views.arrival_scale, code.views.arrival_scale);
-  EXPECT_EQ(file.image.bit_depth, code.image.bit_depth);
-  EXPECT_EQ(file.image.yuv_range, code.image.yuv_range);
-  EXPECT_EQ(file.input.max_repeats, code.input.max_repeats);
-  EXPECT_EQ(file.input.max_still_repeats, code.input.max_still_repeats);
-  EXPECT_EQ(file.input.moving, code.input.moving);
-  EXPECT_EQ(file.input.moved, code.input.moved);
-  EXPECT_EQ(file.input.restart_images, code.input.restart_images);
-  EXPECT_EQ(file.input.loop_step, code.input.loop_step);
-  EXPECT_EQ(file.input.max_gap, code.input.max_gap);
-  EXPECT_EQ(file.input.max_ahead, code.input.max_ahead);
-  const tracking::TrackerConfig& f = file.tracking;
-  const tracking::TrackerConfig& c = code.tracking;
-  EXPECT_EQ(f.velocity_damping, c.velocity_damping);
-  EXPECT_EQ(f.min_roi_side, c.min_roi_side);
-  EXPECT_EQ(f.min_texture, c.min_texture);
-  EXPECT_EQ(f.occlusion.colour, c.occlusion.colour);
-  EXPECT_EQ(f.occlusion.rows, c.occlusion.rows);
-  EXPECT_EQ(f.occlusion.columns, c.occlusion.columns);
-  EXPECT_EQ(f.occlusion.bins, c.occlusion.bins);
-  EXPECT_EQ(f.occlusion.threshold, c.occlusion.threshold);
-  EXPECT_EQ(f.occlusion.structure, c.occlusion.structure);
-  EXPECT_EQ(f.occlusion.hold, c.occlusion.hold);
-  EXPECT_EQ(f.esm.levels, c.esm.levels);
-  EXPECT_EQ(f.esm.max_iterations, c.esm.max_iterations);
-  EXPECT_EQ(f.esm.min_step, c.esm.min_step);
-  EXPECT_EQ(f.esm.light, c.esm.light);
-  EXPECT_EQ(f.esm.robust, c.esm.robust);
-  EXPECT_EQ(f.esm.saturation, c.esm.saturation);
-  EXPECT_EQ(f.esm.channels, c.esm.channels);
-  EXPECT_EQ(f.quality.min_zncc, c.quality.min_zncc);
-  EXPECT_EQ(f.quality.min_visible_fraction, c.quality.min_visible_fraction);
-  EXPECT_EQ(f.quality.max_corner_error, c.quality.max_corner_error);
-  EXPECT_EQ(f.quality.max_centre_error, c.quality.max_centre_error);
-  EXPECT_EQ(f.quality.max_area_ratio, c.quality.max_area_ratio);
-  EXPECT_EQ(f.quality.max_jump, c.quality.max_jump);
-  EXPECT_EQ(f.quality.max_search_time, c.quality.max_search_time);
-  EXPECT_EQ(f.quality.confirmations, c.quality.confirmations);
-}
-
-TEST(DefaultFile, NamesEveryParameter) {
-  const ParameterReader file(parametersFromYaml(kDefaults), "/tracker");
-  for (const char* path : {"rectified_images",
-                           "rectify",
-                           "robot_motion/enabled",
-                           "robot_motion/fixed_frame",
-                           "robot_motion/depth",
-                           "robot_motion/frame_prefix",
-                           "robot_motion/owner",
-                           "select_timeout",
-                           "views/capacity",
-                           "views/min_visible_fraction",
-                           "views/arrival_centre",
-                           "views/arrival_scale",
-                           "image/bit_depth",
-                           "image/yuv_range",
-                           "input/max_repeats",
-                           "input/max_still_repeats",
-                           "input/moving",
-                           "input/moved",
-                           "input/restart_images",
-                           "input/loop_step",
-                           "input/max_gap",
-                           "input/max_ahead",
-                           "tracking/velocity_damping",
-                           "tracking/min_roi_side",
-                           "tracking/min_texture",
-                           "tracking/occlusion/colour",
-                           "tracking/occlusion/rows",
-                           "tracking/occlusion/columns",
-                           "tracking/occlusion/bins",
-                           "tracking/occlusion/threshold",
-                           "tracking/occlusion/structure",
-                           "tracking/occlusion/hold",
-                           "tracking/esm/levels",
-                           "tracking/esm/max_iterations",
-                           "tracking/esm/min_step",
-                           "tracking/esm/light",
-                           "tracking/esm/robust",
-                           "tracking/esm/saturation",
-                           "tracking/esm/channels",
-                           "tracking/quality/min_zncc",
-                           "tracking/quality/min_visible_fraction",
-                           "tracking/quality/max_corner_error",
-                           "tracking/quality/max_centre_error",
-                           "tracking/quality/max_area_ratio",
-                           "tracking/quality/max_jump",
-                           "tracking/quality/max_search_time",
-                           "tracking/quality/confirmations"}) {
-    EXPECT_TRUE(file.has(path)) << path;
-  }
 }
 
 TEST(TrackerParametersTest, AreTheDefaultsWhenNothingIsSet) {
@@ -155,7 +44,7 @@ TEST(TrackerParametersTest, ReadEveryKindOfValue) {
   std::vector<std::string> errors;
   const TrackerParameters parameters = readTrackerParameters(tree, "/tracker", errors);
   EXPECT_TRUE(errors.empty()) << errorReport(errors);
-  EXPECT_EQ(parameters.image_kind, ImageKind::kRectified);
+  EXPECT_EQ(parameters.imageKind(), ImageKind::kRectified);
   EXPECT_EQ(parameters.select_timeout, 2.0);
   EXPECT_EQ(parameters.tracking.occlusion.colour, tracking::ColourGate::kPublished);
   EXPECT_EQ(parameters.tracking.esm.levels, 2);
@@ -167,7 +56,7 @@ TEST(TrackerParametersTest, RectifyRawImagesOnly) {
   XmlRpc::XmlRpcValue tree;
   tree["rectify"] = true;
   std::vector<std::string> errors;
-  EXPECT_EQ(readTrackerParameters(tree, "/tracker", errors).image_kind, ImageKind::kToRectify);
+  EXPECT_EQ(readTrackerParameters(tree, "/tracker", errors).imageKind(), ImageKind::kToRectify);
   EXPECT_TRUE(errors.empty()) << errorReport(errors);
   tree["rectified_images"] = true;
   EXPECT_TRUE(mentions(errorsOf(tree), "/tracker/rectify")) << errorReport(errorsOf(tree));

@@ -22,7 +22,7 @@ const geometry::Rectangle kRoi{40.0, 30.0, 90.0, 80.0};
 
 TrackerParameters toRectify() {
   TrackerParameters parameters;
-  parameters.image_kind = ImageKind::kToRectify;
+  parameters.rectify = true;
   parameters.roi = kRoi;
   return parameters;
 }
@@ -135,7 +135,7 @@ TEST_F(TrackerSessionLens, ImagesOfAnotherSizeNeedCameraInfoOfTheirs) {
 
 TEST_F(TrackerSessionLens, LeavesTheImageAloneUnlessItIsAskedToRectify) {
   TrackerParameters parameters = toRectify();
-  parameters.image_kind = ImageKind::kRaw;
+  parameters.rectify = false;
   TrackerSession session(parameters);
   session.setCameraInfo(info_);
   const Processed processed = session.process(first_, at(1.0));

@@ -249,9 +249,9 @@ TEST(EmulatorConfig, errorsNameTheirGroup) {
   config.kinematics.scope_length = 0.0;
   config.arm.delay = 5.0;
   const std::vector<std::string> errors = validate(config);
-  ASSERT_EQ(errors.size(), 3u);
-  EXPECT_EQ(errors[0].rfind("kinematics/", 0), 0u);
-  EXPECT_EQ(errors[2].rfind("emulator/delay", 0), 0u);
+  ASSERT_EQ(errors.size(), 2u);
+  EXPECT_EQ(errors[0].rfind("kinematics/scope_length", 0), 0u);
+  EXPECT_EQ(errors[1].rfind("emulator/delay", 0), 0u);
 }
 
 }  // namespace

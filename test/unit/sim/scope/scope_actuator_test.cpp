@@ -48,7 +48,13 @@ TEST(ScopeActuator, ValidationNamesWhatIsWrong) {
   config.delay = std::numeric_limits<double>::quiet_NaN();
   config.dead_zone = {0.1, -0.1, std::numeric_limits<double>::infinity()};
   config.dead_zone_kind = "soft";
-  EXPECT_EQ(validate(config).size(), 5u);
+  const std::vector<std::string> errors = validate(config);
+  ASSERT_EQ(errors.size(), 3u);
+  EXPECT_EQ(errors[0], "delay = nan, expected a number in [0, 2] s");
+  EXPECT_EQ(errors[1].rfind("dead_zone has 3 elements, expected a list of 4 numbers", 0), 0u) << errors[1];
+  EXPECT_EQ(errors[2], "dead_zone_kind = 'soft', expected one of: subtract, threshold");
+  config.dead_zone = {0.1, 0.1, std::numeric_limits<double>::infinity(), 0.0};
+  EXPECT_EQ(validate(config)[1].rfind("dead_zone[2] = inf", 0), 0u) << validate(config)[1];
 }
 
 }  // namespace

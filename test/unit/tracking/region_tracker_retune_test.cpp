@@ -1,0 +1,98 @@
+// Thresholds that change between two images, without losing the region.
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "laparoscope_servo/tracking/region_tracker.h"
+#include "support/synthetic_tissue.h"
+
+namespace laparoscope_servo::tracking {
+namespace {
+
+const cv::Size kSize(320, 240);
+const geometry::Rectangle kRoi = {110, 70, 100, 100};
+
+class RegionTrackerRetune : public testing::Test {
+ protected:
+  RegionTrackerRetune() { tracker_.select(image(), 0.0, kRoi); }
+
+  // The same tissue, each time with other noise, a third of the region covered.
+  cv::Mat image(bool covered = false) {
+    cv::Mat picture = test::view(scene_, Eigen::Matrix3d::Identity(), 1.0, 0.0, 2.0, ++seed_);
+    if (covered) picture(cv::Rect(110, 70, 35, 100)).setTo(cv::Scalar::all(20));
+    return picture;
+  }
+  TrackResult track(bool covered = false) { return tracker_.track(image(covered), 0.04 * ++count_); }
+
+  cv::Mat scene_ = test::tissue(kSize, 61);
+  int seed_ = 10;
+  int count_ = 0;
+  TrackerConfig config_;
+  RegionTracker tracker_{config_};
+};
+
+TEST_F(RegionTrackerRetune, CountsFromTheNextImageOn) {
+  ASSERT_EQ(track(true).state, State::kTracking);
+  ASSERT_LT(track(true).visible_fraction, 0.8);
+  config_.quality.min_visible_fraction = 0.95;
+  config_.quality.min_return_fraction = 0.95;
+  tracker_.retune(config_);
+  const TrackResult strict = track(true);
+  EXPECT_EQ(strict.state, State::kSearching);
+  EXPECT_FALSE(strict.reason.empty());
+  EXPECT_EQ(tracker_.config().quality.min_visible_fraction, 0.95);
+}
+
+TEST_F(RegionTrackerRetune, ConfirmationsCountAtOnce) {
+  config_.quality.min_visible_fraction = config_.quality.min_return_fraction = 0.95;
+  config_.quality.confirmations = 1;
+  tracker_.retune(config_);
+  ASSERT_EQ(track(true).state, State::kSearching);
+  EXPECT_EQ(track(false).state, State::kTracking) << "one image is enough now";
+}
+
+TEST_F(RegionTrackerRetune, LosesNothing) {
+  ASSERT_EQ(track().state, State::kTracking);
+  for (int k = 0; k < 20; ++k) {
+    config_.velocity_damping = k % 2 == 0 ? 0.0 : 1.0;
+    config_.occlusion.threshold = k % 2 == 0 ? 0.4 : 0.6;
+    config_.search.budget = k % 2 == 0 ? 0.001 : 0.1;
+    config_.quality.max_jump = k % 2 == 0 ? 0.1 : 1.0;
+    tracker_.retune(config_);
+    const TrackResult result = track();
+    ASSERT_EQ(result.state, State::kTracking) << result.reason;
+    EXPECT_EQ(result.reference_stamp, 0.0);
+  }
+  EXPECT_TRUE(tracker_.hasRoi());
+}
+
+TEST_F(RegionTrackerRetune, WhatMayNotChangeStays) {
+  config_.esm.levels = 1;
+  config_.occlusion.rows = 3;
+  config_.quality.min_zncc = 0.4;
+  tracker_.retune(config_);
+  EXPECT_EQ(tracker_.config().esm.levels, TrackerConfig().esm.levels);
+  EXPECT_EQ(tracker_.config().occlusion.rows, TrackerConfig().occlusion.rows);
+  EXPECT_EQ(tracker_.config().quality.min_zncc, 0.4);
+  EXPECT_EQ(track().areas.rows, TrackerConfig().occlusion.rows);
+}
+
+TEST_F(RegionTrackerRetune, AConfigurationThatIsWrongIsRefused) {
+  config_.quality.min_zncc = 0.4;
+  config_.search.budget = -1.0;
+  EXPECT_THROW(tracker_.retune(config_), std::invalid_argument);
+  EXPECT_EQ(tracker_.config().quality.min_zncc, TrackerConfig().quality.min_zncc);
+  EXPECT_EQ(track().state, State::kTracking);
+}
+
+TEST_F(RegionTrackerRetune, HoldsAcrossAReset) {
+  config_.quality.confirmations = 1;
+  tracker_.retune(config_);
+  tracker_.reset();
+  EXPECT_EQ(tracker_.config().quality.confirmations, 1);
+  tracker_.select(image(), 10.0, kRoi);
+  EXPECT_EQ(tracker_.config().quality.confirmations, 1);
+}
+
+}  // namespace
+}  // namespace laparoscope_servo::tracking
