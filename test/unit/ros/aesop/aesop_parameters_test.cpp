@@ -86,8 +86,8 @@ TEST(EmulatorParameters, theNodesParametersAreAllowedOthersAreNot) {
   tree["command"]["timeout"] = -1.0;
   const std::vector<std::string> errors = errorsBesideEmulator(tree);
   ASSERT_EQ(errors.size(), 2u);
-  EXPECT_NE(errors[0].find("params/emulatr/delay is no parameter"), std::string::npos) << errors[0];
-  EXPECT_NE(errors[1].find("command/timeout"), std::string::npos) << errors[1];
+  EXPECT_NE(errors[1].find("params/emulatr/delay is no parameter"), std::string::npos) << errors[1];
+  EXPECT_NE(errors[0].find("command/timeout"), std::string::npos) << errors[0];
 }
 
 TEST(EmulatorParameters, trocarOfTheNodeAndOfTheEmulatorAgree) {
