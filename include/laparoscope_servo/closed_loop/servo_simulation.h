@@ -67,7 +67,8 @@ struct SimulationConfig {
   sim::PatientConfig patient;
   PictureConfig picture;
   CrossingConfig crossing;
-  std::vector<double> signs{1.0, 1.0, 1.0, 1.0};  // of pan, tilt, spin, insertion; -1: the robot does the opposite, 0: it does not move
+  std::vector<double> signs{
+      1.0, 1.0, 1.0, 1.0};  // of pan, tilt, spin, insertion; -1: the robot does the opposite, 0: it does not move
 };
 
 // The controller under test.
