@@ -1,11 +1,10 @@
-#include "servo/shaping/workspace.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
 #include "laparoscope_servo/geometry/se3.h"
+#include "servo/shaping/workspace.h"
 
 namespace laparoscope_servo::servo {
 namespace {
