@@ -241,7 +241,7 @@ TEST_F(EsmTest, ErrorsInCommonAreNotIteratedOn) {
   const EsmResult few = aligned(20.0 * all.sigma * all.sigma);
   EXPECT_EQ(few.status, EsmStatus::kConverged);
   EXPECT_LT(few.iterations, all.iterations);
-  EXPECT_LT(test::cornerDistance(few.state.g, all.state.g, kRoi), 3.0 * few.corner_error);
+  EXPECT_LT(geometry::cornerDistance(few.state.g, all.state.g, kRoi), 3.0 * few.corner_error);
 }
 
 }  // namespace
