@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "laparoscope_servo/scope/geometry.h"
+
 namespace laparoscope_servo {
 namespace {
 
