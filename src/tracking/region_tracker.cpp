@@ -76,6 +76,7 @@ class RegionTracker::Implementation {
   cv::Size image_size_;
   double reference_stamp_ = 0.0;
   double last_stamp_ = 0.0;
+  double proven_stamp_ = 0.0;               // of the last image in which blocks were where the estimate has them
   double unseen_before_ = 0.0;              // s, from the reference until it was recalled; 0 once it was found
   EsmState last_;                           // last estimate that was believed
   std::optional<Eigen::Matrix3d> carried_;  // the same, moved as a robot says: where the last attempt started from
@@ -114,7 +115,7 @@ TrackResult RegionTracker::Implementation::select(const cv::Mat& image, double s
   const geometry::Rectangle& roi = aligner_.roi();
   filter_.start(roi, aligner_.esm().normalisation(), stamp);
   state_ = State::kTracking;
-  last_stamp_ = stamp;
+  last_stamp_ = proven_stamp_ = stamp;
 
   Attempt attempt;
   attempt.evidence.roi = roi;
@@ -134,7 +135,7 @@ void RegionTracker::Implementation::recall(const cv::Mat& reference, double refe
   filter_.start(aligner_.roi(), aligner_.esm().normalisation(), now);
   filter_.stop();
   state_ = State::kSearching;
-  last_stamp_ = now;
+  last_stamp_ = proven_stamp_ = now;
   unseen_before_ = std::max(0.0, now - reference_stamp);
   search_.restart();
 }
@@ -216,6 +217,8 @@ Attempt RegionTracker::Implementation::attempt(const cv::Mat& image, double stam
   e.in_image = found.share_in_image;
   e.zncc = found.zncc;
   e.blocks = found.blocks;
+  if (e.blocks.confident >= leastBlocks(e.blocks, e.visible_fraction)) proven_stamp_ = stamp;
+  e.unproven = stamp - proven_stamp_;
   result.doubt = found.in_image ? doubt(e, config_.quality) : "the ROI is outside the image";
   return result;
 }

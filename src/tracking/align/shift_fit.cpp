@@ -18,7 +18,7 @@ constexpr int kRounds = 5;
 constexpr double kPlace = 0.15;  // px, how well a block's place is measured at best
 // What ESM may be off by before a block is seen, of half the ROI's side, at its border: shear and perspective are
 // believed only as far as blocks show more.
-constexpr double kShift = 0.08, kAffine = 0.02, kPerspective = 0.012;
+constexpr double kShift = 0.08, kAffine = 0.04, kPerspective = 0.024;
 
 template <typename Value>
 using OfBlocks = boost::container::static_vector<Value, BlockMatching::kMostBlocks>;  // does not allocate
