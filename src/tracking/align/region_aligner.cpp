@@ -23,10 +23,12 @@ constexpr int kMostCorrections = 2;  // blocks that were too far to be found are
 constexpr double kSignificant = 1.0;
 // px of the level that blocks are searched on, their median: as near as this ESM knows better.
 constexpr double kNearOff = 0.3;
-constexpr double kFarOff = 1.5;       // px of the image, the blocks' median: ESM is off, however the blocks scatter
+constexpr double kFarOff =
+    1.5;  // lengthUnit()s of the image, the blocks' median: ESM is off, however the blocks scatter
 constexpr double kMostMissing = 0.5;  // share of the blocks that are found, from which on they are not searched further
-constexpr double kGateShift = 2.0;    // px: masks drawn further from the estimate than this are drawn again
-constexpr double kBorder = 4.0;       // px of the coarsest level, of what smoothing takes in from beyond the ROI
+constexpr double kGateShift =
+    2.0;  // lengthUnit()s of the image: masks drawn further from the estimate than this are drawn again
+constexpr double kBorder = 4.0;  // px of the coarsest level, of what smoothing takes in from beyond the ROI
 
 bool usable(const EsmResult& estimate) {
   return estimate.status == EsmStatus::kConverged || estimate.status == EsmStatus::kMaxIterations;
@@ -108,7 +110,8 @@ Alignment RegionAligner::align(const cv::Mat& image, const EsmState& start, cons
     result.esm = esm_.align(pyramid_, result.esm.state, prior, 0);
     iterations += result.esm.iterations;
   };
-  if (usable(result.esm) && geometry::cornerDistance(shown_, result.esm.state.g, roi()) > kGateShift) {
+  if (usable(result.esm) &&
+      geometry::cornerDistance(shown_, result.esm.state.g, roi()) > kGateShift * lengthUnit(roi())) {
     look(image, result.esm.state.g);
     refine();
   }
@@ -150,8 +153,8 @@ void RegionAligner::correct(EsmResult& estimate, BlockEvidence& evidence) {
   for (int round = 0; round < kMostCorrections; ++round) {
     const std::optional<ShiftFit> fit = fitShifts(*shifts, roi(), blocks_.side());
     if (!fit) break;
-    const bool contradicts =
-        evidence.off > kNearOff * blocks_.scale() && (fit->significance > kSignificant || evidence.off > kFarOff);
+    const bool contradicts = evidence.off > kNearOff * blocks_.scale() &&
+                             (fit->significance > kSignificant || evidence.off > kFarOff * lengthUnit(roi()));
     if (!contradicts && std::isfinite(estimate.corner_error)) break;
     follow(*fit, estimate);
     shifts = &measure(estimate, evidence);
@@ -167,7 +170,7 @@ void RegionAligner::lookFurther(EsmResult& estimate, BlockEvidence& evidence) {
   const BlockEvidence further = {static_cast<int>(shifts.size()), confidentShifts(shifts),
                                  medianShift(shifts, estimate.state.g)};
   const std::optional<ShiftFit> fit = fitShifts(shifts, roi(), far_blocks_.side());
-  if (!fit || !(further.off > kFarOff) || further.confident <= evidence.confident) return;
+  if (!fit || !(further.off > kFarOff * lengthUnit(roi())) || further.confident <= evidence.confident) return;
   EsmResult other = estimate;
   BlockEvidence there;
   follow(*fit, other);

@@ -18,7 +18,7 @@ Evidence good() {
   e.visible_fraction = 0.9;
   e.zncc = 0.95;
   e.esm.sigma = 2.0;
-  for (int k = 0; k < 50; ++k) e.record.add(0.95, 2.0, 1.0, 0.9);
+  for (int k = 0; k < 50; ++k) e.record.add(0.95, 2.0, 1.0, 0.9, 0.04);
   return e;
 }
 
@@ -108,7 +108,7 @@ TEST(Doubt, AsksMoreOfASearch) {
 // A feed with hardly any noise leaves a record that the same tissue never reaches again.
 TEST(Doubt, ARecordDoesNotAskForMoreThanIsGood) {
   Evidence e = good();
-  for (int k = 0; k < 200; ++k) e.record.add(0.999, 1.0, 0.1, 1.0);
+  for (int k = 0; k < 200; ++k) e.record.add(0.999, 1.0, 0.1, 1.0, 0.04);
   e.from_track = false;
   e.zncc = 0.92;
   e.esm.sigma = 3.5;
@@ -202,12 +202,12 @@ TEST(AllowedJump, ShrinksWithWhatIsVisible) {
 
 TEST(TrackRecord, BeginsWithTheFirstImageAndThenFollowsSlowly) {
   TrackRecord record;
-  record.add(0.9, 3.0, 2.0, 1.0);
+  record.add(0.9, 3.0, 2.0, 1.0, 0.04);
   EXPECT_DOUBLE_EQ(record.zncc(), 0.9);
   EXPECT_DOUBLE_EQ(record.sigma(), 3.0);
   EXPECT_DOUBLE_EQ(record.innovation(), 2.0);
-  for (int k = 0; k < 200; ++k) record.add(0.9, 3.0, 2.0, 1.0);
-  record.add(0.5, 30.0, 20.0, 1.0);
+  for (int k = 0; k < 200; ++k) record.add(0.9, 3.0, 2.0, 1.0, 0.04);
+  record.add(0.5, 30.0, 20.0, 1.0, 0.04);
   EXPECT_GT(record.zncc(), 0.87);
   EXPECT_LT(record.sigma(), 5.0);
 }
@@ -215,7 +215,7 @@ TEST(TrackRecord, BeginsWithTheFirstImageAndThenFollowsSlowly) {
 TEST(TrackRecord, LearnsNothingOfLikenessFromWhatIsHardlyVisible) {
   TrackRecord record;
   const double zncc = record.zncc();
-  record.add(0.2, 50.0, 1.0, 0.1);
+  record.add(0.2, 50.0, 1.0, 0.1, 0.04);
   EXPECT_EQ(record.zncc(), zncc);
   EXPECT_DOUBLE_EQ(record.innovation(), 1.0);
 }
