@@ -8,12 +8,12 @@ namespace laparoscope_servo::tracking {
 
 namespace {
 
-constexpr double kRate = 0.05;          // share of a new image in what is learned: it follows within a second of video
-constexpr int kImagesOfDoubt = 5;       // as many images as the first guess of the innovations counts
-constexpr double kMaxIntervals = 10.0;  // images that were missed, for which the innovation still grows
+constexpr double kLearningTime = 0.8;  // s, in which what is learned follows
+constexpr int kImagesOfDoubt = 5;      // as many images as the first guess of the innovations counts
+constexpr double kLongestGap = 0.4;    // s without an image, for which the innovation still grows
 
-// px, standard deviations by which shift, affine motion and perspective move the ROI's border unexpectedly: the first
-// guess, and what even a target that has stood still may do in the next image.
+// lengthUnit()s, standard deviations by which shift, affine motion and perspective move the ROI's border unexpectedly:
+// the first guess, and what even a target that has stood still may do in the next image.
 struct Spread {
   double shift, affine, perspective;
 };
@@ -36,8 +36,8 @@ void MotionFilter::start(const geometry::Rectangle& roi, const Eigen::Matrix3d& 
   roi_ = roi;
   steps_ = geometry::Sl3Steps(normalisation);
   last_stamp_ = stamp;
-  innovation_ = covariance(kGuess, half_size);
-  least_ = covariance(kLeast, half_size);
+  innovation_ = covariance(kGuess, half_size / lengthUnit(roi));
+  least_ = covariance(kLeast, half_size / lengthUnit(roi));
   noise_ = kGuessedNoise;
 }
 
@@ -51,7 +51,7 @@ MotionPrior MotionFilter::predict(double stamp, const std::optional<Eigen::Matri
   const Eigen::Matrix3d from = carried.value_or(last_);
   prior.predicted = steps_.plus(from, damping_ * dt * (carried ? rest_ : velocity_));
   if (!geometry::isConvex(geometry::apply(prior.predicted, roi_.corners()))) prior.predicted = from;
-  const double images = interval_ > 0.0 ? std::clamp(dt / interval_, 1.0, kMaxIntervals) : 1.0;
+  const double images = interval_ > 0.0 ? std::max(1.0, std::min(dt, kLongestGap) / interval_) : 1.0;
   const Matrix8d expected = covariance_ + images * images * (innovation_ + least_);
   prior.information = expected.ldlt().solve(Matrix8d::Identity());
   prior.noise = noise_;
@@ -64,7 +64,7 @@ void MotionFilter::update(const MotionPrior& prior, const EsmResult& estimate, d
   const geometry::Vector8d x = deviation(prior.predicted, estimate.state.g);
   if (learn && x.allFinite()) {
     ++learned_;
-    const double rate = std::max(kRate, 1.0 / (kImagesOfDoubt + learned_));
+    const double rate = std::clamp(dt / kLearningTime, 1.0 / (kImagesOfDoubt + learned_), 1.0);
     innovation_ += rate * (x * x.transpose() - innovation_);
     noise_ += rate * (estimate.noise - noise_);
     if (dt > 0.0) interval_ = interval_ > 0.0 ? interval_ + rate * (dt - interval_) : dt;

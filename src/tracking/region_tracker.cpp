@@ -21,7 +21,7 @@ namespace {
 
 // px, by how much a corner is searched for around its prediction: so many times what is usual, never less than this.
 constexpr double kReach = 4.0;
-constexpr double kLeastReach = 12.0;
+constexpr double kLeastReach = 12.0;   // lengthUnit()s
 constexpr double kSearchReach = 0.25;  // of the ROI's larger side, when it has been lost
 
 }  // namespace
@@ -179,7 +179,7 @@ const TrackResult& RegionTracker::Implementation::track(const cv::Mat& image, do
     best = search(image, stamp);
   }
   decide(best, prior, stamp);
-  if (state_ == State::kTracking) search_.keepKeyframe(image, best.evidence, last_.g, aligner_);
+  if (state_ == State::kTracking) search_.keepKeyframe(image, stamp, best.evidence, last_.g, aligner_);
   aligner_.advance();
   last_stamp_ = stamp;
   return report(best);
@@ -200,7 +200,7 @@ std::optional<Eigen::Matrix3d> RegionTracker::Implementation::carriedBy(
 Attempt RegionTracker::Implementation::attempt(const cv::Mat& image, double stamp, const EsmState& start,
                                                const MotionPrior* prior) {
   const geometry::Rectangle& roi = aligner_.roi();
-  const double reach = prior != nullptr ? std::max(kLeastReach, kReach * record_.innovation())
+  const double reach = prior != nullptr ? std::max(kLeastReach * lengthUnit(roi), kReach * record_.innovation())
                                         : std::max(32.0, kSearchReach * std::max(roi.width, roi.height));
   const Alignment found = aligner_.align(image, start, prior, reach);
   Attempt result;
@@ -252,7 +252,7 @@ void RegionTracker::Implementation::decide(const Attempt& best, const MotionPrio
     filter_.restart(e.esm, stamp);
   } else {
     record_.add(e.zncc, e.esm.sigma, geometry::cornerDistance(e.predicted, e.esm.state.g, aligner_.roi()),
-                e.visible_fraction);
+                e.visible_fraction, stamp - filter_.lastStamp());
     filter_.update(prior, e.esm, stamp, e.visible_fraction >= kRecordVisible, carried_);
   }
   search_.confirmation().forget();

@@ -8,6 +8,7 @@ namespace laparoscope_servo::tracking {
 
 namespace {
 
+// All px of this file are lengthUnit()s of the image.
 // px: an alignment that still moves by less than this after all its iterations is as good as converged.
 constexpr double kNearlyConverged = 1.0;
 
@@ -15,7 +16,7 @@ constexpr double kNearlyConverged = 1.0;
 // estimate is wrong: the areas that are left are those that agree with it.
 constexpr double kMinOfImage = 0.15;
 
-constexpr double kRecordRate = 0.05;  // share of a new image in the record: it follows within a second of video
+constexpr double kRecordTime = 0.8;  // s, in which the record follows what it is told
 
 // How much worse than the record an estimate may be: factor and constant on the unexplained share 1 - zncc, and on
 // sigma [grey levels]. A search starts anywhere, and picks the areas that agree; false fits have 1.5 to 4 times the
@@ -35,8 +36,8 @@ constexpr double kGainChangeRate = 0.5;  // 1/s
 // whatever its light and noise are like; in images of other scenes not three moved alike.
 constexpr int kEnoughBlocks = 6;
 constexpr double kRecognised = 0.3;
-constexpr double kNear = 3.0;       // px of the image, the median of the blocks
-constexpr double kMostOff = 4.0;    // px of the image: from 5 px on an estimate is wrong
+constexpr double kNear = 3.0;       // px, the median of the blocks
+constexpr double kMostOff = 4.0;    // px: from 5 px on an estimate is wrong
 constexpr int kTelling = 8;         // blocks; where fewer can be told from their surroundings, they tell nothing
 constexpr int kVisibleTelling = 6;  // the same of those that nothing covers
 constexpr int kFewBlocks = 3;       // that moved alike: as many as it takes to be confident of any
@@ -65,9 +66,9 @@ std::string text(const char* what, double value, const char* limit, double bound
 
 }  // namespace
 
-void TrackRecord::add(double zncc, double sigma, double innovation, double visible_fraction) {
+void TrackRecord::add(double zncc, double sigma, double innovation, double visible_fraction, double dt) {
   ++count_;
-  const double rate = std::max(kRecordRate, 1.0 / count_);
+  const double rate = std::clamp(dt / kRecordTime, 1.0 / count_, 1.0);
   innovation_ += rate * (innovation - innovation_);
   if (!(visible_fraction >= kRecordVisible)) return;
   zncc_ += rate * (zncc - zncc_);
@@ -76,7 +77,7 @@ void TrackRecord::add(double zncc, double sigma, double innovation, double visib
 
 double allowedJump(const TrackRecord& record, const QualityConfig& config, const geometry::Rectangle& roi,
                    double visible_fraction, double corner_error) {
-  const double expected = 3.0 + 4.0 * record.innovation() + 3.0 * corner_error;
+  const double expected = 3.0 * lengthUnit(roi) + 4.0 * record.innovation() + 3.0 * corner_error;
   const double trust = std::clamp((visible_fraction - 0.25) / 0.25, 0.0, 1.0);
   return std::max(expected, trust * config.max_jump * std::hypot(roi.width, roi.height));
 }
@@ -90,17 +91,18 @@ double leastBlocks(const BlockEvidence& blocks, double visible_fraction) {
 std::string doubt(const Evidence& e, const QualityConfig& q) {
   if (e.esm.status == EsmStatus::kOutOfView) return "the ROI's image crosses infinity";
   if (e.esm.status == EsmStatus::kIllConditioned) return "the pixels kept do not determine the motion";
+  const double unit = lengthUnit(e.roi);
   const BlockEvidence& blocks = e.blocks;
   const bool recognised =
-      blocks.confident >= std::max<double>(kEnoughBlocks, kRecognised * blocks.seen) && blocks.off <= kNear;
+      blocks.confident >= std::max<double>(kEnoughBlocks, kRecognised * blocks.seen) && blocks.off <= kNear * unit;
   const double min_visible = e.from_track ? q.min_visible_fraction : q.min_return_fraction;
   if (!(e.visible_fraction >= min_visible))
     return text("visible fraction", e.visible_fraction, "at least", min_visible);
   const double of_image = e.visible_fraction / std::max(e.in_image, 1e-9);
   if (!(of_image >= kMinOfImage))
     return text("visible fraction of what is in the image", of_image, "at least", kMinOfImage);
-  if (e.esm.status == EsmStatus::kMaxIterations && !(e.esm.last_step <= kNearlyConverged)) {
-    return text("still moving by [px]", e.esm.last_step, "at most", kNearlyConverged);
+  if (e.esm.status == EsmStatus::kMaxIterations && !(e.esm.last_step <= kNearlyConverged * unit)) {
+    return text("still moving by [px]", e.esm.last_step, "at most", kNearlyConverged * unit);
   }
   const geometry::Quadrilateral corners = geometry::apply(e.esm.state.g, e.roi.corners());
   if (!geometry::isConvex(corners)) return "the ROI's image is not convex";
@@ -108,8 +110,8 @@ std::string doubt(const Evidence& e, const QualityConfig& q) {
   if (!(std::max(ratio, 1.0 / ratio) <= q.max_area_ratio)) {
     return text("area ratio", ratio, "within a factor of", q.max_area_ratio);
   }
-  if (blocks.confident >= kFewBlocks && !(blocks.off <= kMostOff))
-    return text("pieces of the region off by [px]", blocks.off, "at most", kMostOff);
+  if (blocks.confident >= kFewBlocks && !(blocks.off <= kMostOff * unit))
+    return text("pieces of the region off by [px]", blocks.off, "at most", kMostOff * unit);
   const bool asked = !e.from_track || e.visible_fraction >= kMostlyVisible || blocks.visible >= kVisibleTelling ||
                      e.unproven > kUnproven;
   const double least = leastBlocks(blocks, e.visible_fraction);

@@ -16,8 +16,9 @@ constexpr double kRecordVisible = 0.4;
 // plane does, and a noisy camera leaves larger residuals than a good one: what is too bad is relative.
 class TrackRecord {
  public:
-  // An estimate that was believed while tracking. `innovation` [px]: how far its worst corner was from the prediction.
-  void add(double zncc, double sigma, double innovation, double visible_fraction);
+  // An estimate that was believed while tracking, `dt` [s] after the one before. `innovation` [px]: how far its worst
+  // corner was from the prediction.
+  void add(double zncc, double sigma, double innovation, double visible_fraction, double dt);
 
   double zncc() const { return zncc_; }
   double sigma() const { return sigma_; }            // grey levels

@@ -23,13 +23,14 @@ constexpr int kMostCorrections = 2;  // blocks that were too far to be found are
 constexpr double kSignificant = 1.0;
 // px of the level that blocks are searched on, their median: as near as this ESM knows better.
 constexpr double kNearOff = 0.3;
-constexpr double kFarOff = 1.5;  // px of the image, the blocks' median: ESM is off, however the blocks scatter
-// px of the image, the same: the place is not the region's, and what few blocks say for it is chance.
+constexpr double kFarOff = 1.5;  // lengthUnit()s of the image, the blocks' median: ESM is off, however they scatter
+// lengthUnit()s of the image, the same: the place is not the region's, and what few blocks say for it is chance.
 constexpr double kMostOff = 4.0;
 constexpr double kMostMissing = 0.5;  // share of the blocks that are found, from which on they are not searched further
 constexpr double kBlockVisible = 0.8;  // share of a visible block's pixels that have weight
-constexpr double kGateShift = 2.0;     // px: masks drawn further from the estimate than this are drawn again
-constexpr double kBorder = 4.0;        // px of the coarsest level, of what smoothing takes in from beyond the ROI
+constexpr double kGateShift =
+    2.0;  // lengthUnit()s of the image: masks drawn further from the estimate than this are drawn again
+constexpr double kBorder = 4.0;  // px of the coarsest level, of what smoothing takes in from beyond the ROI
 
 bool usable(const EsmResult& estimate) {
   return estimate.status == EsmStatus::kConverged || estimate.status == EsmStatus::kMaxIterations;
@@ -113,7 +114,8 @@ Alignment RegionAligner::align(const cv::Mat& image, const EsmState& start, cons
     iterations += result.esm.iterations;
   };
   for (int k = 0; k < 2 && usable(result.esm); ++k) {
-    const bool outdated = !looked || geometry::cornerDistance(shown_, result.esm.state.g, roi()) > kGateShift;
+    const bool outdated =
+        !looked || geometry::cornerDistance(shown_, result.esm.state.g, roi()) > kGateShift * lengthUnit(roi());
     if (k > 0 && !outdated) break;
     if (outdated) look(image, result.esm.state.g);
     looked = true;
@@ -170,8 +172,8 @@ void RegionAligner::correct(EsmResult& estimate, BlockEvidence& evidence) {
   for (int round = 0; round < kMostCorrections; ++round) {
     const std::optional<ShiftFit> fit = fitShifts(*shifts, roi(), blocks_.side());
     if (!fit) break;
-    const bool contradicts =
-        evidence.off > kNearOff * blocks_.scale() && (fit->significance > kSignificant || evidence.off > kFarOff);
+    const bool contradicts = evidence.off > kNearOff * blocks_.scale() &&
+                             (fit->significance > kSignificant || evidence.off > kFarOff * lengthUnit(roi()));
     if (!contradicts && std::isfinite(estimate.corner_error)) break;
     follow(*fit, estimate);
     shifts = &measure(estimate, evidence);
@@ -187,7 +189,7 @@ void RegionAligner::lookFurther(EsmResult& estimate, BlockEvidence& evidence) {
   const BlockEvidence further = {static_cast<int>(shifts.size()), confidentShifts(shifts),
                                  medianShift(shifts, estimate.state.g), visibleBlocks(shifts, far_blocks_.side())};
   const std::optional<ShiftFit> fit = fitShifts(shifts, roi(), far_blocks_.side());
-  if (!fit || !(further.off > kFarOff) || further.confident <= evidence.confident) return;
+  if (!fit || !(further.off > kFarOff * lengthUnit(roi())) || further.confident <= evidence.confident) return;
   EsmResult other = estimate;
   BlockEvidence there;
   follow(*fit, other);
@@ -195,7 +197,7 @@ void RegionAligner::lookFurther(EsmResult& estimate, BlockEvidence& evidence) {
   if (there.confident > evidence.confident) {
     estimate = other;
     evidence = there;
-  } else if (further.off > kMostOff) {
+  } else if (further.off > kMostOff * lengthUnit(roi())) {
     evidence = further;  // neither place is the region's
   }
 }

@@ -20,8 +20,8 @@ namespace {
 // Steps shrink by about this factor from one to the next before that has been measured.
 constexpr double kContraction = 0.3;
 constexpr double kSlowest = 0.9;         // steps that shrink by less do not converge
-constexpr double kCoarseAccuracy = 0.1;  // px of the level, enough for the next finer one
-constexpr double kSettled = 0.2;         // standard deviations of the estimate that are still to go
+constexpr double kCoarseAccuracy = 0.1;  // px of the level: 0.2 px of the next finer one, which takes kFar for near
+constexpr double kSettled = 0.2;  // standard deviations of the estimate that are still to go: they add 2 % to its error
 // Pixels of level 0 that have one error in common, from which on two steps there are enough: a pixel of level 1
 // takes in as many (4 x 4 with its smoothing), so that level has told all. Noise: 1 to 2; tissue that bends: 5 to 30.
 constexpr double kCorrelated = 16.0;

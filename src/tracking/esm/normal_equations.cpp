@@ -49,6 +49,11 @@ double halfSize(const geometry::Rectangle& roi) {
   return std::max(roi.width, roi.height) / 2.0;
 }
 
+double lengthUnit(const geometry::Rectangle& roi) {
+  constexpr double kMeasured = 340.0;  // px, the larger side
+  return std::max(1.0, std::max(roi.width, roi.height) / kMeasured);
+}
+
 Eigen::Matrix3d templateFromPixels(const geometry::Rectangle& roi) {
   const double unit = halfSize(roi);
   Eigen::Matrix3d n;

@@ -26,6 +26,11 @@ using Matrix8d = Eigen::Matrix<double, 8, 8>;
 double halfSize(const geometry::Rectangle& roi);
 Eigen::Matrix3d templateFromPixels(const geometry::Rectangle& roi);
 
+// px of the image, the unit of lengths that grow with a region: how far it moves, what a plane cannot follow. They were
+// measured on films, in regions whose larger side is 60 to 340 px, where the unit is 1. In a larger region, or the same
+// one in an image with more pixels, it is as many px as the region is larger than those.
+double lengthUnit(const geometry::Rectangle& roi);
+
 // The eight entries of J for one pixel, as above. Reference for tests, and readable beside the papers.
 Eigen::Matrix<double, 1, 8> esmJacobianRow(double gx, double gy, double u, double v);
 // The derivative by x of where exp(A(x)) takes the point p, all in normalised template units: rows for unit gradients.

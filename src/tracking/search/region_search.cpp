@@ -24,7 +24,7 @@ constexpr double kKeyframeVisible = 0.7;
 constexpr double kKeyframeZncc = 0.85;
 // The most recent keyframe may be worse: tissue that has changed is what it is for.
 constexpr double kRecentVisible = 0.5;
-constexpr int kRecentAge = 10;  // images
+constexpr double kRecentAge = 0.4;  // s
 
 }  // namespace
 
@@ -41,15 +41,15 @@ void RegionSearch::setReference(const cv::Mat& image, RegionAligner& aligner) {
   start_check_.setReference(image, aligner.roi(), aligner.channels().weights[0]);
 }
 
-void RegionSearch::keepKeyframe(const cv::Mat& image, const Evidence& seen, const Eigen::Matrix3d& g,
+void RegionSearch::keepKeyframe(const cv::Mat& image, double stamp, const Evidence& seen, const Eigen::Matrix3d& g,
                                 RegionAligner& aligner) {
-  ++since_keyframe_;
   if (!config_.search.features) return;
   const bool clear = seen.visible_fraction >= kKeyframeVisible && seen.zncc >= kKeyframeZncc;
   if (clear && keyframes_.wants(g)) keyframes_.add(image, g, aligner.weights());
-  if (since_keyframe_ < kRecentAge || !(seen.visible_fraction >= kRecentVisible)) return;
+  if (!recent_stamp_) recent_stamp_ = stamp;
+  if (stamp - *recent_stamp_ < kRecentAge || !(seen.visible_fraction >= kRecentVisible)) return;
   keyframes_.addRecent(image, g, aligner.weights());
-  since_keyframe_ = 0;
+  recent_stamp_ = stamp;
 }
 
 void RegionSearch::retune(const TrackerConfig& config) {

@@ -49,9 +49,10 @@ class RegionSearch {
 
   // `aligner` has the image and its ROI for the reference.
   void setReference(const cv::Mat& image, RegionAligner& aligner);
-  // The ROI was tracked at `g`, as `aligner` has just seen it: stores what the image shows of it, when it is clear, and
-  // new, or none was stored for some images.
-  void keepKeyframe(const cv::Mat& image, const Evidence& seen, const Eigen::Matrix3d& g, RegionAligner& aligner);
+  // The ROI was tracked at `g`, as `aligner` has just seen it at `stamp` [s]: stores what the image shows of it, when
+  // it is clear, and new, or none was stored for some time.
+  void keepKeyframe(const cv::Mat& image, double stamp, const Evidence& seen, const Eigen::Matrix3d& g,
+                    RegionAligner& aligner);
 
   // See RegionTracker::retune.
   void retune(const TrackerConfig& config);
@@ -89,7 +90,7 @@ class RegionSearch {
   TrackerConfig config_;
   std::shared_ptr<const image::Lens> lens_;  // null: none
   Keyframes keyframes_;
-  int since_keyframe_ = 0;  // images since the most recent keyframe was stored
+  std::optional<double> recent_stamp_;  // s, of the most recent keyframe; at first, of the first image
   FeatureSearch feature_search_;
   StartCheck start_check_;
   Confirmation confirmation_;

@@ -18,7 +18,7 @@ Evidence good() {
   e.visible_fraction = 0.9;
   e.zncc = 0.95;
   e.esm.sigma = 2.0;
-  for (int k = 0; k < 50; ++k) e.record.add(0.95, 2.0, 1.0, 0.9);
+  for (int k = 0; k < 50; ++k) e.record.add(0.95, 2.0, 1.0, 0.9, 0.04);
   return e;
 }
 
@@ -72,6 +72,10 @@ TEST(Doubt, NamesEachFlawByItself) {
        [=](Evidence& e) {
          e.blocks = {30, 20, nan};
        }},
+      {"few pieces elsewhere", "pieces of the region off",
+       [](Evidence& e) {
+         e.blocks = {10, 3, 4.5};
+       }},
       {"no piece", "pieces of the region found",
        [=](Evidence& e) {
          e.blocks = {30, 2, 0.1};
@@ -108,7 +112,7 @@ TEST(Doubt, AsksMoreOfASearch) {
 // A feed with hardly any noise leaves a record that the same tissue never reaches again.
 TEST(Doubt, ARecordDoesNotAskForMoreThanIsGood) {
   Evidence e = good();
-  for (int k = 0; k < 200; ++k) e.record.add(0.999, 1.0, 0.1, 1.0);
+  for (int k = 0; k < 200; ++k) e.record.add(0.999, 1.0, 0.1, 1.0, 0.04);
   e.from_track = false;
   e.zncc = 0.92;
   e.esm.sigma = 3.5;
@@ -202,12 +206,12 @@ TEST(AllowedJump, ShrinksWithWhatIsVisible) {
 
 TEST(TrackRecord, BeginsWithTheFirstImageAndThenFollowsSlowly) {
   TrackRecord record;
-  record.add(0.9, 3.0, 2.0, 1.0);
+  record.add(0.9, 3.0, 2.0, 1.0, 0.04);
   EXPECT_DOUBLE_EQ(record.zncc(), 0.9);
   EXPECT_DOUBLE_EQ(record.sigma(), 3.0);
   EXPECT_DOUBLE_EQ(record.innovation(), 2.0);
-  for (int k = 0; k < 200; ++k) record.add(0.9, 3.0, 2.0, 1.0);
-  record.add(0.5, 30.0, 20.0, 1.0);
+  for (int k = 0; k < 200; ++k) record.add(0.9, 3.0, 2.0, 1.0, 0.04);
+  record.add(0.5, 30.0, 20.0, 1.0, 0.04);
   EXPECT_GT(record.zncc(), 0.87);
   EXPECT_LT(record.sigma(), 5.0);
 }
@@ -215,7 +219,7 @@ TEST(TrackRecord, BeginsWithTheFirstImageAndThenFollowsSlowly) {
 TEST(TrackRecord, LearnsNothingOfLikenessFromWhatIsHardlyVisible) {
   TrackRecord record;
   const double zncc = record.zncc();
-  record.add(0.2, 50.0, 1.0, 0.1);
+  record.add(0.2, 50.0, 1.0, 0.1, 0.04);
   EXPECT_EQ(record.zncc(), zncc);
   EXPECT_DOUBLE_EQ(record.innovation(), 1.0);
 }
@@ -245,6 +249,24 @@ TEST(Doubt, AsksForMoreBlocksTheMoreIsVisible) {
   EXPECT_FALSE(refused(0.3, 0, true)) << "beside an instrument a block is covered, too";
   EXPECT_TRUE(refused(0.3, 2, false));
   EXPECT_FALSE(refused(0.3, 3, false));
+}
+
+// The gates may take all that has texture for covered, and what is left agrees with any place.
+TEST(Doubt, AsksForBlocksThatNothingCoversAndForOthersAfterAWhile) {
+  Evidence e = good();
+  e.visible_fraction = 0.3;
+  e.blocks = {36, 0, std::numeric_limits<double>::quiet_NaN(), 5};
+  EXPECT_EQ(doubt(e, QualityConfig()), "");
+  e.blocks.visible = 6;
+  EXPECT_NE(doubt(e, QualityConfig()).find("pieces of the region found"), std::string::npos);
+  e.blocks.visible = 5;
+  e.unproven = 0.6;
+  EXPECT_NE(doubt(e, QualityConfig()).find("pieces of the region found"), std::string::npos);
+  e.blocks.confident = 3;
+  e.blocks.off = 1.0;
+  EXPECT_EQ(doubt(e, QualityConfig()), "");
+  e.blocks = {7, 0, std::numeric_limits<double>::quiet_NaN(), 7};
+  EXPECT_EQ(doubt(e, QualityConfig()), "") << "fewer than can tell";
 }
 
 }  // namespace

@@ -211,7 +211,7 @@ TEST_F(RegionSearchTest, KeepsClearAndNewViewsThatItThenFinds) {
     clear.visible_fraction = visible_fraction;
     clear.zncc = zncc;
     for (int k = 0; k < images; ++k)
-      s.search.keepKeyframe(test::view(changed, close, 1.0, 0.0, 2.0), clear, close, s.aligner);
+      s.search.keepKeyframe(test::view(changed, close, 1.0, 0.0, 2.0), 0.05 * k, clear, close, s.aligner);
     searchIn(now, s);
     for (const SearchPlace& place : tried_) {
       if (geometry::cornerDistance(place.start.g, truth_, kRoi) < 40.0) return true;
