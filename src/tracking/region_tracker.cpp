@@ -47,11 +47,13 @@ class RegionTracker::Implementation {
 
   void setLens(const std::optional<image::Lens>& lens);
   TrackResult select(const cv::Mat& image, double stamp, const geometry::Rectangle& roi);
+  double check(const cv::Mat& image, const geometry::Rectangle& wanted, RegionAligner& aligner) const;
   void recall(const cv::Mat& reference, double reference_stamp, const geometry::Rectangle& roi, double now);
   const TrackResult& track(const cv::Mat& image, double stamp, const std::optional<Eigen::Matrix3d>& motion);
   void reset();
   cv::Mat occlusionMask() const;
   bool hasRoi() const { return state_ != State::kIdle; }
+  const std::shared_ptr<const image::Lens>& lens() const { return lens_; }
   const TrackerConfig& config() const { return config_; }
   void retune(const TrackerConfig& config);
 
@@ -92,16 +94,19 @@ void RegionTracker::Implementation::setLens(const std::optional<image::Lens>& le
   if (had_roi) reset_reason_ = "the lens changed since the ROI was selected: select it again";
 }
 
-// The expected corner error [px] of the reference with itself.
+// Makes it the reference of an aligner. Returns the expected corner error [px] of the reference with itself.
+double RegionTracker::Implementation::check(const cv::Mat& image, const geometry::Rectangle& wanted,
+                                            RegionAligner& aligner) const {
+  checkImage(image);
+  aligner.setReference(image, checkedRoi(image, wanted, config_.min_roi_side, lens_.get()));
+  return checkedCornerError(aligner, config_.min_texture);
+}
+
 double RegionTracker::Implementation::setReference(const cv::Mat& image, double stamp,
                                                    const geometry::Rectangle& wanted) {
-  checkImage(image);
-  const geometry::Rectangle roi = checkedRoi(image, wanted, config_.min_roi_side, lens_.get());
-
   // Everything is built aside, so that a ROI that is refused leaves the tracker as it was.
   Implementation fresh(config_, lens_);
-  fresh.aligner_.setReference(image, roi);
-  const double error = checkedCornerError(fresh.aligner_, config_.min_texture);
+  const double error = check(image, wanted, fresh.aligner_);
   fresh.search_.setReference(image, fresh.aligner_);
   fresh.image_size_ = image.size();
   fresh.reference_stamp_ = stamp;
@@ -292,6 +297,7 @@ const TrackResult& RegionTracker::Implementation::report(const Attempt& attempt)
   result.areas.distance = gates.distances();
   result.areas.occluded.resize(grid.count());
   for (int area = 0; area < grid.count(); ++area) result.areas.occluded[area] = gates.occluded(area);
+  gates.causes(result.areas.cause);
   return result;
 }
 
@@ -336,6 +342,10 @@ void RegionTracker::setLens(const std::optional<image::Lens>& lens) {
 
 TrackResult RegionTracker::select(const cv::Mat& image, double stamp, const geometry::Rectangle& roi) {
   return implementation_->select(image, stamp, roi);
+}
+void RegionTracker::check(const cv::Mat& image, const geometry::Rectangle& roi) const {
+  RegionAligner aligner(config(), implementation_->lens());
+  implementation_->check(image, roi, aligner);
 }
 void RegionTracker::recall(const cv::Mat& reference, double reference_stamp, const geometry::Rectangle& roi,
                            double now) {
