@@ -45,9 +45,11 @@ constexpr int kFewBlocks = 3;       // that moved alike: as many as it takes to 
 // overlapping blocks agreed by chance for 20 images.
 constexpr double kFoundOfVisible = 0.25;
 
-// While tracking, blocks are asked only where most of the ROI is visible, or for so long: next to an instrument a block
-// is covered, too; but where the gates take all that has texture for covered, the estimate may as well be wrong.
+// While tracking, blocks are asked only where most of the ROI is visible: next to an instrument a block is covered,
+// too. But where the gates take all that has texture for covered, the estimate may as well be wrong: so much is not
+// visible for so long without a block that is.
 constexpr double kMostlyVisible = 0.5;
+constexpr double kPartlyVisible = 0.35;
 constexpr double kUnproven = 0.5;  // s
 
 // A record can be so good that what is real never reaches it again: these are always good enough.
@@ -113,7 +115,7 @@ std::string doubt(const Evidence& e, const QualityConfig& q) {
   if (blocks.confident >= kFewBlocks && !(blocks.off <= kMostOff * unit))
     return text("pieces of the region off by [px]", blocks.off, "at most", kMostOff * unit);
   const bool asked = !e.from_track || e.visible_fraction >= kMostlyVisible || blocks.visible >= kVisibleTelling ||
-                     e.unproven > kUnproven;
+                     (e.visible_fraction >= kPartlyVisible && e.unproven > kUnproven);
   const double least = leastBlocks(blocks, e.visible_fraction);
   if (asked && !(blocks.confident >= least))
     return text("pieces of the region found", blocks.confident, "at least", least);

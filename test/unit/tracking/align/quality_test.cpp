@@ -262,6 +262,8 @@ TEST(Doubt, AsksForBlocksThatNothingCoversAndForOthersAfterAWhile) {
   EXPECT_NE(doubt(e, QualityConfig()).find("pieces of the region found"), std::string::npos);
   e.blocks.visible = 5;
   e.unproven = 0.6;
+  EXPECT_EQ(doubt(e, QualityConfig()), "") << "beside an instrument a block is covered, too";
+  e.visible_fraction = 0.4;
   EXPECT_NE(doubt(e, QualityConfig()).find("pieces of the region found"), std::string::npos);
   e.blocks.confident = 3;
   e.blocks.off = 1.0;
