@@ -59,7 +59,9 @@ Tracker::~Tracker() {
   request_.close();
   if (request_spinner_) request_spinner_->stop();
   if (view_spinner_) view_spinner_->stop();
-  select_server_.shutdown();
+  for (ros::ServiceServer* server :
+       {&select_server_, &check_server_, &freeze_server_, &select_frozen_server_, &list_server_})
+    server->shutdown();
   store_server_.shutdown();
   recall_server_.shutdown();
 }
@@ -94,6 +96,7 @@ void Tracker::standAside(const std::string& why) {
 void Tracker::start(const TrackerParameters& parameters) {
   session_ = std::make_unique<TrackerSession>(parameters);
   views_ = std::make_unique<ViewLibrary>(parameters);
+  desk_ = std::make_unique<RegionDesk>(parameters);
   statistics_ = std::make_unique<TrackerDiagnostics>(parameters.tracking, parameters.robot_motion.enabled);
   if (parameters.robot_motion.enabled) followRobot(parameters.robot_motion);
 
@@ -118,6 +121,9 @@ void Tracker::start(const TrackerParameters& parameters) {
   ros::NodeHandle request_node(private_node);
   request_node.setCallbackQueue(&request_queue_);
   select_server_ = request_node.advertiseService("select_roi", &Tracker::selectRoi, this);
+  check_server_ = request_node.advertiseService("check_roi", &Tracker::checkRoi, this);
+  freeze_server_ = request_node.advertiseService("freeze_image", &Tracker::freezeImage, this);
+  select_frozen_server_ = request_node.advertiseService("select_frozen_roi", &Tracker::selectFrozenRoi, this);
   request_spinner_ = std::make_unique<ros::AsyncSpinner>(1, &request_queue_);
   request_spinner_->start();
 
@@ -125,6 +131,7 @@ void Tracker::start(const TrackerParameters& parameters) {
   view_node.setCallbackQueue(&view_queue_);
   store_server_ = view_node.advertiseService("store_view", &Tracker::storeView, this);
   recall_server_ = view_node.advertiseService("recall_view", &Tracker::recallView, this);
+  list_server_ = view_node.advertiseService("list_views", &Tracker::listViews, this);
   view_spinner_ = std::make_unique<ros::AsyncSpinner>(1, &view_queue_);
   view_spinner_->start();
 }

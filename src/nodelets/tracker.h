@@ -3,6 +3,9 @@
 
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <image_transport/image_transport.h>
+#include <laparoscope_servo/CheckRoi.h>
+#include <laparoscope_servo/FreezeImage.h>
+#include <laparoscope_servo/ListViews.h>
 #include <laparoscope_servo/SelectRoi.h>
 #include <laparoscope_servo/StoredView.h>
 #include <nodelet/nodelet.h>
@@ -20,6 +23,7 @@
 #include "ros/common/reconfigure_server.h"
 #include "ros/tracker/feed_owner.h"
 #include "ros/tracker/preview.h"
+#include "ros/tracker/region_desk.h"
 #include "ros/tracker/tracker_diagnostics.h"
 #include "ros/tracker/tracker_request.h"
 #include "ros/tracker/tracker_session.h"
@@ -49,10 +53,13 @@ class Tracker : public nodelet::Nodelet {
   void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
   // In a queue and a thread of its own, because it waits for an image.
   bool selectRoi(SelectRoi::Request& request, SelectRoi::Response& response);
+  bool checkRoi(CheckRoi::Request& request, CheckRoi::Response& response);
+  bool freezeImage(FreezeImage::Request& request, FreezeImage::Response& response);
+  bool selectFrozenRoi(CheckRoi::Request& request, CheckRoi::Response& response);
   // In one of theirs, too: comparing views takes seconds, for which no selection should wait.
-
   bool storeView(StoredView::Request& request, StoredView::Response& response);
   bool recallView(StoredView::Request& request, StoredView::Response& response);
+  bool listViews(ListViews::Request& request, ListViews::Response& response);
   TrackerRequest::Answer ask(const TrackerRequest::Question& question);
 
   void process(const sensor_msgs::ImageConstPtr& message);
@@ -70,6 +77,7 @@ class Tracker : public nodelet::Nodelet {
   Preview preview_;
 
   TrackerRequest request_;
+  std::unique_ptr<RegionDesk> desk_;  // of the requests' thread
   ros::CallbackQueue request_queue_;
   std::unique_ptr<ros::AsyncSpinner> request_spinner_;
   std::unique_ptr<ViewLibrary> views_;  // of the views' thread
@@ -92,6 +100,10 @@ class Tracker : public nodelet::Nodelet {
   ros::Publisher preview_publisher_;
   ros::Publisher state_publisher_;
   ros::ServiceServer select_server_;
+  ros::ServiceServer check_server_;
+  ros::ServiceServer freeze_server_;
+  ros::ServiceServer select_frozen_server_;
+  ros::ServiceServer list_server_;
   ros::ServiceServer store_server_;
   ros::ServiceServer recall_server_;
   ros::ServiceServer reset_server_;

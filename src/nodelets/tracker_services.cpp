@@ -4,8 +4,18 @@
 #include <stdexcept>
 
 #include "nodelets/tracker.h"
+#include "ros/tracker/result_messages.h"
 
 namespace laparoscope_servo::nodelets {
+
+namespace {
+
+geometry::Rectangle rectangleOf(const sensor_msgs::RegionOfInterest& roi) {
+  return {static_cast<double>(roi.x_offset), static_cast<double>(roi.y_offset), static_cast<double>(roi.width),
+          static_cast<double>(roi.height)};
+}
+
+}  // namespace
 
 TrackerRequest::Answer Tracker::ask(const TrackerRequest::Question& question) {
   std::ostringstream timeout;
@@ -15,11 +25,60 @@ TrackerRequest::Answer Tracker::ask(const TrackerRequest::Question& question) {
 }
 
 bool Tracker::selectRoi(SelectRoi::Request& request, SelectRoi::Response& response) {
-  const geometry::Rectangle roi{static_cast<double>(request.roi.x_offset), static_cast<double>(request.roi.y_offset),
-                                static_cast<double>(request.roi.width), static_cast<double>(request.roi.height)};
-  const TrackerRequest::Answer answer = ask(roi);
+  const TrackerRequest::Answer answer = ask(rectangleOf(request.roi));
   response.success = static_cast<std::uint8_t>(answer.success);
   response.message = answer.message;
+  return true;
+}
+
+bool Tracker::checkRoi(CheckRoi::Request& request, CheckRoi::Response& response) {
+  response.success = static_cast<std::uint8_t>(false);
+  try {
+    if (!request.stamp.isZero()) {
+      desk_->check(desk_->kept(request.stamp), rectangleOf(request.roi));
+    } else {
+      const TrackerRequest::Answer answer = ask(TrackerRequest::WantSnapshot());
+      if (!answer.snapshot) throw std::runtime_error(answer.message);
+      desk_->check(*answer.snapshot, rectangleOf(request.roi));
+    }
+    response.success = static_cast<std::uint8_t>(true);
+  } catch (const std::exception& error) {
+    response.message = error.what();
+  }
+  return true;
+}
+
+bool Tracker::freezeImage(FreezeImage::Request&, FreezeImage::Response& response) {
+  const TrackerRequest::Answer answer = ask(TrackerRequest::WantSnapshot());
+  response.success = static_cast<std::uint8_t>(answer.snapshot != nullptr);
+  response.message = answer.message;
+  if (!answer.snapshot) return true;
+  desk_->keep(answer.snapshot);
+  std_msgs::Header header;
+  header.stamp = answer.snapshot->stamp;
+  response.preview = *imageMessage(header, desk_->preview());
+  response.width = static_cast<std::uint32_t>(answer.snapshot->image.cols);
+  response.height = static_cast<std::uint32_t>(answer.snapshot->image.rows);
+  return true;
+}
+
+bool Tracker::selectFrozenRoi(CheckRoi::Request& request, CheckRoi::Response& response) {
+  response.success = static_cast<std::uint8_t>(false);
+  try {
+    TrackerRequest::Answer answer = ask(TrackerRequest::WantSnapshot());
+    if (!answer.snapshot) throw std::runtime_error(answer.message);
+    answer = ask(desk_->route(request.stamp, rectangleOf(request.roi), *answer.snapshot));
+    response.success = static_cast<std::uint8_t>(answer.success);
+    response.message = answer.message;
+  } catch (const std::exception& error) {
+    response.message = error.what();
+  }
+  if (!response.success) NODELET_WARN("the region of the frozen picture is not taken: %s", response.message.c_str());
+  return true;
+}
+
+bool Tracker::listViews(ListViews::Request& request, ListViews::Response& response) {
+  response.views = views_->list(request.thumbnails != 0);
   return true;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "screen/preview_image.h"
 
@@ -54,7 +55,7 @@ void FactKeeper::take(const sensor_msgs::Image& preview, double age, double now)
   match();
 }
 
-void FactKeeper::take(const Homography& homography) {
+void FactKeeper::take(const Homography& homography, double delay, double now) {
   Result result;
   result.stamp = nanoseconds(homography.header.stamp);
   result.reference_stamp = nanoseconds(homography.reference_stamp);
@@ -63,6 +64,10 @@ void FactKeeper::take(const Homography& homography) {
   std::copy(homography.corners.begin(), homography.corners.end(), result.corners.begin());
   result.visible_fraction = homography.visible_fraction;
   const std::lock_guard<std::mutex> lock(mutex_);
+  const bool region = homography.state != Homography::IDLE;
+  const auto ofRegion = [region](double value) { return region ? value : std::numeric_limits<double>::quiet_NaN(); };
+  history_.add(now, homography.state == Homography::TRACKING, ofRegion(homography.zncc),
+               ofRegion(homography.corner_error), ofRegion(homography.visible_fraction), delay);
   keep(results_, result);
   if (result.stamp == facts_.picture.stamp) match();
 }
@@ -74,6 +79,7 @@ void FactKeeper::take(const AreaSelection& message) {
     areas.rows = message.rows;
     areas.columns = message.columns;
     areas.covered.assign(message.occluded.begin(), message.occluded.end());
+    if (message.cause.size() == message.occluded.size()) areas.cause = message.cause;
   }
   const std::lock_guard<std::mutex> lock(mutex_);
   keep(areas_, areas);
@@ -130,6 +136,11 @@ void FactKeeper::take(const Answer& answer) {
 void FactKeeper::change(const std::function<void(Facts&)>& change) {
   const std::lock_guard<std::mutex> lock(mutex_);
   change(facts_);
+}
+
+std::vector<MinuteHistory::Step> FactKeeper::minute(double now) const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return history_.steps(now);
 }
 
 Facts FactKeeper::facts() const {

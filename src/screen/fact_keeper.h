@@ -11,8 +11,10 @@
 #include <deque>
 #include <functional>
 #include <mutex>
+#include <vector>
 
 #include "screen/facts.h"
+#include "screen/minute_history.h"
 
 namespace laparoscope_servo::screen {
 
@@ -20,7 +22,8 @@ class FactKeeper {
  public:
   // `age`: s, of the image by its stamp when it came; 0 where the clocks do not tell.
   void take(const sensor_msgs::Image& preview, double age, double now);
-  void take(const Homography& homography);
+  // `delay`: s, from the image's stamp; NaN where the clocks do not tell.
+  void take(const Homography& homography, double delay, double now);
   void take(const AreaSelection& areas);
   void take(const TrackerState& state, double now);
   void take(const ControllerState& state);
@@ -30,12 +33,14 @@ class FactKeeper {
   void change(const std::function<void(Facts&)>& change);
 
   Facts facts() const;
+  std::vector<MinuteHistory::Step> minute(double now) const;
 
  private:
   void match();
 
   mutable std::mutex mutex_;
   Facts facts_;
+  MinuteHistory history_;
   std::deque<Result> results_;
   std::deque<Areas> areas_;
 };

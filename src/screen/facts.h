@@ -4,8 +4,11 @@
 #pragma once
 
 #include <QImage>
+#include <QRect>
+#include <QSize>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -57,7 +60,8 @@ struct Areas {
   std::int64_t stamp = 0;
   int rows = 0;
   int columns = 0;
-  std::vector<bool> covered;  // row by row
+  std::vector<bool> covered;             // row by row
+  std::vector<std::uint8_t> cause = {};  // of AreaSelection, row by row; empty: it is not told
 };
 
 struct Picture {
@@ -66,6 +70,50 @@ struct Picture {
   double arrived_at = kNever;
   double changed_at = kNever;   // when a picture came that differs from the one before
   double age_at_arrival = 0.0;  // s, by its stamp
+};
+
+// What the tracker says of a region before it is selected.
+struct Verdict {
+  QRect region;            // px of the original image
+  std::int64_t stamp = 0;  // of the picture that is frozen; 0: the live one
+  bool taken = false;      // it would be
+  std::string why;         // not
+};
+
+// A picture that the tracker keeps, to draw a region in.
+struct Frozen {
+  QImage image;
+  std::int64_t stamp = 0;
+  QSize size;          // px, of the original image
+  double at = kNever;  // when it came
+};
+
+// Of a recording.
+struct PlaybackFacts {
+  bool connected = false;
+  std::string state;      // of PlaybackState
+  double position = 0.0;  // s
+  double duration = 0.0;  // s; 0: not known
+};
+
+struct StoredView {
+  std::string name;
+  std::int64_t stamp = 0;
+  QImage thumbnail;
+  QSize size;  // px, of the original image
+  QRect roi;   // px, in it
+  std::vector<std::string> leads_to;
+};
+
+// A parameter that may change while its node runs, as the node describes it.
+struct LiveParameter {
+  std::string node;     // "tracker"
+  std::string name;     // as reconfigure has it: quality__min_zncc
+  std::string type;     // bool, int, double, str
+  std::string meaning;  // with range and unit
+  std::string value;
+  double low = 0.0;  // of int and double
+  double high = 0.0;
 };
 
 // Of a service.
@@ -90,6 +138,12 @@ struct Facts {
   Answer answer;                 // the newest
   bool dead_man_wanted = false;  // somebody listens to the dead-man switch
   std::optional<Limits> limits;  // pan, tilt, spin, insertion
+  PlaybackFacts playback;
+  std::optional<Verdict> verdict;
+  std::optional<Frozen> frozen;
+  std::shared_ptr<const std::vector<StoredView>> views;          // null: not known
+  std::shared_ptr<const std::vector<LiveParameter>> parameters;  // the same
+  double max_image_age = kNever;  // s, above which the controller stops; negative: not known
 };
 
 }  // namespace laparoscope_servo::screen

@@ -1,15 +1,19 @@
 #include "screen/image_view.h"
 
+#include <QKeyEvent>
 #include <QMouseEvent>
 #include <QPainter>
+#include <algorithm>
 
 #include "screen/overlay_painter.h"
+#include "screen/region_painter.h"
 
 namespace laparoscope_servo::screen {
 
 namespace {
 
 const QColor kAround(0x10, 0x12, 0x16);
+const QColor kFrozen(0xff, 0xb0, 0x20);
 
 // Text over anything: white, with a dark box about it.
 void drawWords(QPainter& painter, const QRectF& area, const QString& words, const QString& detail) {
@@ -31,7 +35,8 @@ void drawWords(QPainter& painter, const QRectF& area, const QString& words, cons
 
 }  // namespace
 
-ImageView::ImageView(const std::function<void(const QRect&)>& drawn, QWidget* parent) : QWidget(parent), drawn_(drawn) {
+ImageView::ImageView(const Region& drawn, const Region& changed, QWidget* parent)
+    : QWidget(parent), drawn_(drawn), changed_(changed) {
   setObjectName("image");
   setMouseTracking(true);
   setFocusPolicy(Qt::ClickFocus);
@@ -40,24 +45,59 @@ ImageView::ImageView(const std::function<void(const QRect&)>& drawn, QWidget* pa
 
 // Painted is only what has changed: that is most of what the screen costs.
 void ImageView::show(const Facts& facts, double now) {
-  const PictureWords words = pictureWords(facts.picture, now);
+  const PictureWords words = pictureWords(facts.picture, now, facts.playback.connected ? facts.playback.state : "");
   const bool same =
       facts.picture.arrived_at == facts_.picture.arrived_at && facts.result.has_value() == facts_.result.has_value() &&
       facts.areas.has_value() == facts_.areas.has_value() &&
       facts.tracker.reference_stamp == facts_.tracker.reference_stamp && facts.tracker.width == facts_.tracker.width &&
-      facts.tracker.height == facts_.tracker.height && words.words == words_.words && words.detail == words_.detail;
+      facts.tracker.height == facts_.tracker.height && words.words == words_.words && words.detail == words_.detail &&
+      facts.frozen.has_value() == facts_.frozen.has_value() &&
+      facts.verdict.has_value() == facts_.verdict.has_value() &&
+      (!facts.verdict || facts.verdict->region == facts_.verdict->region);
+  if (facts.frozen.has_value() != facts_.frozen.has_value()) cancelDrag();
   facts_ = facts;
   words_ = words;
+  now_ = now;
   if (!same) update();
 }
 
 void ImageView::cancelDrag() {
   drag_.cancel();
+  draft_.reset();
   update();
+}
+
+// What is drawn on a live picture that is none would be cut from an image that looks otherwise, or has another size.
+bool ImageView::canDraw() const {
+  return letterbox().isValid() && (facts_.frozen || (words_.live && facts_.tracker.width > 0));
+}
+
+std::optional<QRectF> ImageView::present() const {
+  if (draft_) return letterbox().fromPixels(*draft_);
+  return facts_.frozen ? std::nullopt : presentRegion(facts_, letterbox());
+}
+
+std::optional<QRect> ImageView::shown() const {
+  const std::optional<QRectF> drag = drag_.shown();
+  return drag ? std::optional<QRect>(letterbox().pixelsOf(*drag)) : draft_;
+}
+
+void ImageView::tellChange() {
+  const std::optional<QRect> pixels = shown();
+  update();
+  if (!pixels || pixels->isEmpty() || *pixels == asked_) return;
+  asked_ = *pixels;
+  changed_(*pixels);
+}
+
+void ImageView::give(const QRect& pixels) {
+  cancelDrag();
+  if (!pixels.isEmpty()) drawn_(pixels);
 }
 
 // Of the original image, whose size the tracker tells; until then of the preview.
 Letterbox ImageView::letterbox() const {
+  if (facts_.frozen) return {facts_.frozen->size, QRectF(rect())};
   const bool known = facts_.tracker.width > 0 && facts_.tracker.height > 0;
   const QSize size = known ? QSize(facts_.tracker.width, facts_.tracker.height) : facts_.picture.image.size();
   return {size, QRectF(rect())};
@@ -72,26 +112,30 @@ void ImageView::drawPicture(QPainter& painter, const QRectF& area) {
   painter.fillRect(area, QColor(90, 90, 90, 110));
 }
 
-void ImageView::drawDrag(QPainter& painter) {
-  const std::optional<QRectF> shown = drag_.shown();
-  if (!shown) return;
-  const Letterbox box = letterbox();
-  const QRect pixels = box.pixelsOf(*shown);
-  const QRectF outline = box.fromPixels(pixels);
-  painter.setBrush(QColor(255, 255, 255, 40));
-  painter.setPen(QPen(Qt::black, 4));
-  painter.drawRect(outline);
-  painter.setPen(QPen(Qt::white, 2));
-  painter.drawRect(outline);
+// The picture that is frozen, and small at the top right what is now: the arm may move meanwhile.
+void ImageView::drawFrozen(QPainter& painter, const QRectF& area, double now) {
+  const Frozen& frozen = *facts_.frozen;
+  painter.setRenderHint(QPainter::SmoothPixmapTransform);
+  painter.drawImage(area, frozen.image);
+  const QSizeF small = 0.25 * area.size();
+  const QRectF inset(area.right() - small.width() - 8, area.top() + 40, small.width(), small.height());
+  drawPicture(painter, inset);
+  painter.setBrush(Qt::NoBrush);
+  painter.setPen(QPen(kFrozen, 3));
+  painter.drawRect(inset);
   QFont font = painter.font();
   font.setPixelSize(16);
   font.setBold(true);
   painter.setFont(font);
-  const QString text = QString("%1 x %2 px").arg(pixels.width()).arg(pixels.height());
-  const QRectF label(outline.left(), std::max(0.0, outline.top() - 24), 140, 22);
-  painter.fillRect(label, QColor(0, 0, 0, 190));
+  painter.setPen(QPen(kFrozen, 6));
+  painter.drawRect(area.adjusted(3, 3, -3, -3));
+  painter.fillRect(QRectF(area.left(), area.top(), area.width(), 32), QColor(0, 0, 0, 200));
+  painter.setPen(kFrozen);
+  painter.drawText(QRectF(area.left() + 10, area.top(), area.width() - 20, 32), Qt::AlignLeft | Qt::AlignVCenter,
+                   QString("FROZEN %1 s ago. Draw the region here; \"Live\" returns.").arg(now - frozen.at, 0, 'f', 0));
   painter.setPen(Qt::white);
-  painter.drawText(label, Qt::AlignCenter, text);
+  painter.drawText(inset, Qt::AlignHCenter | Qt::AlignBottom,
+                   words_.live ? "live" : QString::fromStdString(words_.words));
 }
 
 void ImageView::paintEvent(QPaintEvent*) {
@@ -99,24 +143,32 @@ void ImageView::paintEvent(QPaintEvent*) {
   painter.fillRect(rect(), kAround);
   const Letterbox box = letterbox();
   const QRectF area = box.isValid() ? box.area() : QRectF(rect());
-  if (box.isValid()) drawPicture(painter, area);
-  if (words_.live) drawOverlay(painter, facts_, box);
-  drawLegend(painter, rect());
-  drawDrag(painter);
-  if (!words_.live)
+  if (facts_.frozen) {
+    drawFrozen(painter, area, now_);
+  } else {
+    if (box.isValid()) drawPicture(painter, area);
+    if (words_.live) drawOverlay(painter, facts_, box);
+    drawLegend(painter, rect());
+  }
+  if (const std::optional<QRect> pixels = shown()) {
+    const std::int64_t stamp = facts_.frozen ? facts_.frozen->stamp : 0;
+    const bool told = facts_.verdict && facts_.verdict->region == *pixels && facts_.verdict->stamp == stamp;
+    drawRegion(painter, box.fromPixels(*pixels), *pixels, told ? &*facts_.verdict : nullptr, draft_ == pixels, rect());
+  }
+  if (!words_.live && !facts_.frozen)
     drawWords(painter, area, QString::fromStdString(words_.words), QString::fromStdString(words_.detail));
 }
 
 void ImageView::mousePressEvent(QMouseEvent* event) {
   if (event->button() != Qt::LeftButton) return cancelDrag();
   const Letterbox box = letterbox();
-  // What is drawn would be cut from an image that looks otherwise, or has another size.
-  if (!words_.live || facts_.tracker.width <= 0 || !box.isValid()) return;
-  drag_.press(event->localPos(), presentRegion(facts_, box), box.area(), (event->modifiers() & Qt::ShiftModifier) != 0);
+  if (!canDraw()) return;
+  asked_ = {};
+  drag_.press(event->localPos(), present(), box.area(), (event->modifiers() & Qt::ShiftModifier) != 0);
 }
 
 void ImageView::showCursor(const QPointF& at, bool anew) {
-  switch (RegionDrag::kindAt(at, presentRegion(facts_, letterbox()), anew)) {
+  switch (RegionDrag::kindAt(at, present(), anew)) {
     case RegionDrag::Kind::kMove:
       return setCursor(Qt::SizeAllCursor);
     case RegionDrag::Kind::kResize:
@@ -130,20 +182,38 @@ void ImageView::mouseMoveEvent(QMouseEvent* event) {
   if (!drag_.isActive()) return showCursor(event->localPos(), (event->modifiers() & Qt::ShiftModifier) != 0);
   if (!(event->buttons() & Qt::LeftButton)) return cancelDrag();  // its release went elsewhere
   drag_.move(event->localPos());
-  update();
+  tellChange();
 }
 
 void ImageView::mouseReleaseEvent(QMouseEvent* event) {
   if (event->button() != Qt::LeftButton || !drag_.isActive()) return;
   const std::optional<QRectF> region = drag_.release(event->localPos());
   update();
-  if (!region) return;
-  const QRect pixels = letterbox().pixelsOf(*region);
-  if (!pixels.isEmpty()) drawn_(pixels);
+  if (region) give(letterbox().pixelsOf(*region));
+}
+
+// Arrows move the region by one pixel, with Shift by ten; Return gives it to the tracker.
+void ImageView::keyPressEvent(QKeyEvent* event) {
+  if ((event->key() == Qt::Key_Return || event->key() == Qt::Key_Enter) && draft_) return give(QRect(*draft_));
+  const int step = (event->modifiers() & Qt::ShiftModifier) != 0 ? 10 : 1;
+  QPoint by;
+  if (event->key() == Qt::Key_Left) by = {-step, 0};
+  if (event->key() == Qt::Key_Right) by = {step, 0};
+  if (event->key() == Qt::Key_Up) by = {0, -step};
+  if (event->key() == Qt::Key_Down) by = {0, step};
+  if (by.isNull()) return QWidget::keyPressEvent(event);
+  const std::optional<QRectF> from = present();
+  if (drag_.isActive() || !canDraw() || !from) return;
+  const QSize image = facts_.frozen ? facts_.frozen->size : QSize(facts_.tracker.width, facts_.tracker.height);
+  QRect moved = letterbox().pixelsOf(*from).translated(by);
+  moved.moveLeft(std::clamp(moved.left(), 0, std::max(0, image.width() - moved.width())));
+  moved.moveTop(std::clamp(moved.top(), 0, std::max(0, image.height() - moved.height())));
+  draft_ = moved;
+  tellChange();
 }
 
 void ImageView::hideEvent(QHideEvent*) {
-  drag_.cancel();
+  cancelDrag();
 }
 
 }  // namespace laparoscope_servo::screen

@@ -14,8 +14,9 @@ namespace laparoscope_servo::screen {
 class ImageView : public QWidget {
   Q_OBJECT
  public:
-  // `drawn`: a region, in whole pixels of the original image. A click draws none.
-  ImageView(const std::function<void(const QRect&)>& drawn, QWidget* parent);
+  using Region = std::function<void(const QRect&)>;  // in whole pixels of the original image
+  // `drawn`: a region. A click draws none. `changed`: it is being drawn, and may be asked for.
+  ImageView(const Region& drawn, const Region& changed, QWidget* parent);
 
   void show(const Facts& facts, double now);
   void cancelDrag();
@@ -27,16 +28,26 @@ class ImageView : public QWidget {
   void mousePressEvent(QMouseEvent* event) override;
   void mouseMoveEvent(QMouseEvent* event) override;
   void mouseReleaseEvent(QMouseEvent* event) override;
+  void keyPressEvent(QKeyEvent* event) override;
   void hideEvent(QHideEvent* event) override;
+  bool canDraw() const;
+  std::optional<QRectF> present() const;  // what may be moved
+  std::optional<QRect> shown() const;     // what is being drawn, px of the original image
+  void tellChange();
+  void give(const QRect& pixels);
   Letterbox letterbox() const;
   void drawPicture(QPainter& painter, const QRectF& area);
-  void drawDrag(QPainter& painter);
+  void drawFrozen(QPainter& painter, const QRectF& area, double now);
   void showCursor(const QPointF& at, bool anew);
 
-  std::function<void(const QRect&)> drawn_;
+  Region drawn_;
+  Region changed_;
   Facts facts_;
+  double now_ = 0.0;
   PictureWords words_;
   RegionDrag drag_;
+  std::optional<QRect> draft_;  // moved by keys, not given yet
+  QRect asked_;
 };
 
 }  // namespace laparoscope_servo::screen

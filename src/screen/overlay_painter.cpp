@@ -1,10 +1,12 @@
 #include "screen/overlay_painter.h"
 
+#include <laparoscope_servo/AreaSelection.h>
 #include <laparoscope_servo/Homography.h>
 
 #include <QPolygonF>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace laparoscope_servo::screen {
 
@@ -44,8 +46,35 @@ void drawTarget(QPainter& painter, const QPolygonF& polygon) {
   for (const QPointF& corner : polygon) painter.drawRect(QRectF(corner - QPointF(4, 4), QSizeF(8, 8)));
 }
 
-QBrush hatching() {
-  return {QColor(255, 255, 255, 210), Qt::BDiagPattern};
+// What hides an area: each cause has a form of its own.
+struct Cause {
+  std::uint8_t code;
+  const char* words;
+  QColor colour;
+  Qt::BrushStyle form;
+};
+const Cause kCauses[] = {
+    {AreaSelection::COLOUR, "covered: another colour", {0x20, 0x40, 0xe0}, Qt::BDiagPattern},
+    {AreaSelection::STRUCTURE, "covered: another structure", {0xa0, 0x20, 0xb0}, Qt::DiagCrossPattern},
+    {AreaSelection::HIGHLIGHT, "highlight", {0x60, 0x60, 0x60}, Qt::Dense6Pattern},
+    {AreaSelection::BORDER, "outside of the picture", {0x10, 0x10, 0x10}, Qt::HorPattern}};
+
+const Cause* causeOf(const Areas& areas, std::size_t area) {
+  const std::uint8_t code = area < areas.cause.size() ? areas.cause[area] : std::uint8_t{0};
+  for (const Cause& cause : kCauses) {
+    if (cause.code == code) return &cause;
+  }
+  return areas.covered[area] ? &kCauses[0] : nullptr;
+}
+
+template <class Shape>
+void fill(QPainter& painter, const Shape& shape, const Cause& cause) {
+  QColor background = cause.colour;
+  background.setAlpha(120);
+  for (const QBrush& brush : {QBrush(background), QBrush(QColor(255, 255, 255, 210), cause.form)}) {
+    painter.setBrush(brush);
+    painter.drawPolygon(shape);
+  }
 }
 
 // As in the tracker: each area is the same share of the region.
@@ -58,7 +87,8 @@ void drawAreas(QPainter& painter, const Areas& areas, const Result& result, cons
   painter.setPen(Qt::NoPen);
   for (int row = 0; row < areas.rows; ++row) {
     for (int column = 0; column < areas.columns; ++column) {
-      if (!areas.covered[static_cast<std::size_t>(row) * areas.columns + column]) continue;
+      const Cause* cause = causeOf(areas, static_cast<std::size_t>(row) * areas.columns + column);
+      if (cause == nullptr) continue;
       QPolygonF cell;
       for (const auto& [u, v] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}}) {
         const double x = left + (column + u) * width;
@@ -68,11 +98,7 @@ void drawAreas(QPainter& painter, const Areas& areas, const Result& result, cons
                         (result.g[3] * x + result.g[4] * y + result.g[5]) / w);
         if (std::abs(p.x()) < kFarAway && std::abs(p.y()) < kFarAway) cell << letterbox.fromCentre(p);
       }
-      if (cell.size() != 4) continue;
-      painter.setBrush(QColor(0x30, 0x40, 0xd0, 110));
-      painter.drawPolygon(cell);
-      painter.setBrush(hatching());
-      painter.drawPolygon(cell);
+      if (cell.size() == 4) fill(painter, cell, *cause);
     }
   }
 }
@@ -102,8 +128,9 @@ void drawOverlay(QPainter& painter, const Facts& facts, const Letterbox& letterb
 }
 
 void drawLegend(QPainter& painter, const QRectF& canvas) {
-  constexpr double kLine = 18.0, kSample = 34.0, kWidth = 190.0;
-  const QRectF box(canvas.left() + 6, canvas.bottom() - 4 * kLine - 12, kWidth, 4 * kLine + 8);
+  constexpr double kLine = 16.0, kSample = 34.0, kWidth = 220.0;
+  constexpr int kLines = 3 + static_cast<int>(std::size(kCauses));
+  const QRectF box(canvas.left() + 6, canvas.bottom() - kLines * kLine - 12, kWidth, kLines * kLine + 8);
   painter.save();
   painter.setRenderHint(QPainter::Antialiasing);
   painter.fillRect(box, QColor(0, 0, 0, 170));
@@ -129,10 +156,12 @@ void drawLegend(QPainter& painter, const QRectF& canvas) {
   painter.setBrush(kTarget);
   painter.drawRect(QRectF(place(2).left() - 3, place(2).center().y() - 4, 8, 8));
   words(2, "where it shall be");
-  painter.setPen(Qt::NoPen);
-  painter.fillRect(place(3).adjusted(0, 3, 0, -3), QColor(0x30, 0x40, 0xd0, 160));
-  painter.fillRect(place(3).adjusted(0, 3, 0, -3), hatching());
-  words(3, "covered");
+  for (int line = 3; line < kLines; ++line) {
+    const Cause& cause = kCauses[line - 3];
+    painter.setPen(Qt::NoPen);
+    fill(painter, QPolygonF(place(line).adjusted(0, 2, 0, -2)), cause);
+    words(line, cause.words);
+  }
   painter.restore();
 }
 

@@ -1,16 +1,56 @@
 #include "screen/panel.h"
 
-#include <QVBoxLayout>
-#include <pluginlib/class_list_macros.hpp>
+#include <ros/names.h>
+#include <rviz/config.h>
 
-#include "screen/screen_widget.h"
+#include <QLabel>
+#include <pluginlib/class_list_macros.hpp>
 
 namespace laparoscope_servo::screen {
 
 Panel::Panel(QWidget* parent) : rviz::Panel(parent) {
-  auto* layout = new QVBoxLayout(this);
-  layout->setContentsMargins(0, 0, 0, 0);
-  layout->addWidget(new ScreenWidget(this));
+  layout_ = new QVBoxLayout(this);
+  layout_->setContentsMargins(0, 0, 0, 0);
+  auto* row = new QHBoxLayout;
+  row->addWidget(new QLabel("Namespace of the cart", this));
+  row->addWidget(space_ = new QLineEdit(this));
+  space_->setObjectName("space");
+  space_->setPlaceholderText("that of rviz");
+  space_->setFocusPolicy(Qt::ClickFocus);
+  layout_->addLayout(row);
+  connect(space_, &QLineEdit::editingFinished, this, [this] {
+    if (screen_ && screen_->property("space").toString() == space_->text()) return;
+    follow(space_->text());
+    Q_EMIT configChanged();
+  });
+  follow("");
+}
+
+// What is no name leaves the panel where it was.
+void Panel::follow(const QString& space) {
+  std::string error;
+  if (!space.isEmpty() && !ros::names::validate(space.toStdString(), error)) {
+    space_->setText(screen_ ? screen_->property("space").toString() : QString());
+    space_->setToolTip(QString::fromStdString(error).toHtmlEscaped());
+    return;
+  }
+  screen_.reset();
+  screen_ = std::make_unique<ScreenWidget>(this, space.toStdString());
+  screen_->setProperty("space", space);
+  layout_->addWidget(screen_.get(), 1);
+}
+
+void Panel::load(const rviz::Config& config) {
+  rviz::Panel::load(config);
+  QString space;
+  if (!config.mapGetString("Namespace", &space) || space.isEmpty()) return;
+  space_->setText(space);
+  follow(space);
+}
+
+void Panel::save(rviz::Config config) const {
+  rviz::Panel::save(config);
+  config.mapSetValue("Namespace", space_->text());
 }
 
 }  // namespace laparoscope_servo::screen

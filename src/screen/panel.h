@@ -1,7 +1,14 @@
-// The screen as a panel of rviz: laparoscope_servo/Laparoscope.
+// The screen as a panel of rviz: laparoscope_servo/Laparoscope. Several may be there, each of a cart of its own: which
+// one, its field says, and rviz keeps it with the panel.
 #pragma once
 
 #include <rviz/panel.h>
+
+#include <QLineEdit>
+#include <QVBoxLayout>
+#include <memory>
+
+#include "screen/screen_widget.h"
 
 namespace laparoscope_servo::screen {
 
@@ -9,6 +16,15 @@ class Panel : public rviz::Panel {
   Q_OBJECT
  public:
   explicit Panel(QWidget* parent = nullptr);
+  void load(const rviz::Config& config) override;
+  void save(rviz::Config config) const override;
+
+ private:
+  void follow(const QString& space);
+
+  QVBoxLayout* layout_;
+  QLineEdit* space_;
+  std::unique_ptr<ScreenWidget> screen_;
 };
 
 }  // namespace laparoscope_servo::screen

@@ -15,6 +15,7 @@ struct PictureWords {
   std::string detail;  // below them
 };
 
-PictureWords pictureWords(const Picture& picture, double now);
+// `playback`: the state of the player of a recording; empty: there is none.
+PictureWords pictureWords(const Picture& picture, double now, const std::string& playback = "");
 
 }  // namespace laparoscope_servo::screen

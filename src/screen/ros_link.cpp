@@ -1,17 +1,20 @@
 #include "screen/ros_link.h"
 
+#include <laparoscope_servo/ControlPlayback.h>
+#include <laparoscope_servo/PlaybackState.h>
 #include <laparoscope_servo/ScopeVelocity.h>
-#include <laparoscope_servo/SelectRoi.h>
 #include <laparoscope_servo/SelectTask.h>
 #include <ros/console.h>
 #include <ros/init.h>
 #include <ros/master.h>
+#include <ros/param.h>
 #include <std_msgs/Empty.h>
 #include <std_srvs/SetBool.h>
 #include <std_srvs/Trigger.h>
 
 #include <chrono>
 #include <exception>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -23,10 +26,16 @@ namespace {
 
 constexpr std::chrono::milliseconds kMasterPause{300};  // between two looks for a master
 constexpr std::chrono::milliseconds kTurn{100};         // between two looks at the connections
+constexpr unsigned kMasterTurns = 10;                   // turns between two questions to the master
+constexpr unsigned kViewTurns = 30;                     // turns between two looks at the stored views
 
 // By its stamp; 0 where the clock is that of a recording, which may stand still.
 double ageOf(const ros::Time& stamp) {
   return ros::Time::isSimTime() || stamp.isZero() ? 0.0 : (ros::Time::now() - stamp).toSec();
+}
+
+double delayOf(const ros::Time& stamp) {
+  return ros::Time::isSimTime() || stamp.isZero() ? std::numeric_limits<double>::quiet_NaN() : ageOf(stamp);
 }
 
 // Nothing that a topic carries may end the screen.
@@ -54,19 +63,26 @@ std::optional<Limits> limitsOf(const ros::NodeHandle& node) {
 
 }  // namespace
 
-RosLink::RosLink(const std::function<void()>& news)
+RosLink::RosLink(const std::function<void()>& news, const std::string& space)
     : news_(news),
-      calls_([this](const Answer& answer) {
-        keeper_.take(answer);
-        news_();
-      }),
+      space_(space),
+      tracker_(
+          keeper_, calls_, [this](const std::string& name) { return resolved(name); }, news),
+      parameters_(keeper_, [this](const Answer& answer) { take(answer); }),
+      calls_([this](const Answer& answer) { take(answer); }),
       thread_([this] { run(); }) {}
+
+void RosLink::take(const Answer& answer) {
+  keeper_.take(answer);
+  news_();
+}
 
 RosLink::~RosLink() {
   dead_man_.letGo();
   slider_.letGo();
   ends_ = true;
   thread_.join();
+  parameters_.disconnect();
   const std::lock_guard<std::mutex> lock(mutex_);
   connection_.reset();
 }
@@ -84,15 +100,26 @@ void RosLink::run() {
   keeper_.change([](Facts& facts) { facts.master = true; });
   ros::AsyncSpinner listener(1, &queue_);
   listener.start();
+  Registration registration;
   while (!ends_ && ros::ok()) {
+    if (connection.turns % kMasterTurns == 0 && registration.renew(ends_)) renewed();
     look(connection);
     std::this_thread::sleep_for(kTurn);
   }
   listener.stop();
 }
 
+// The nodes of the new master are others; and whether time is that of a recording is decided once a process.
+void RosLink::renewed() {
+  keeper_.change([](Facts& facts) { facts.limits.reset(); });
+  bool recorded = false;
+  ros::param::get("/use_sim_time", recorded);
+  if (recorded == ros::Time::isSimTime()) return take({"New ROS master", "It knows this screen again.", true, false});
+  take({"New ROS master", "Its time is another one (a recording's): start the screen anew.", false, false});
+}
+
 std::unique_ptr<RosLink::Connection> RosLink::connect() {
-  auto made = std::make_unique<Connection>();
+  auto made = std::make_unique<Connection>(space_);
   ros::NodeHandle& node = made->node;
   node.setCallbackQueue(&queue_);
   made->robot_stop = node.advertise<std_msgs::Empty>("aesop/stop", 10);
@@ -103,8 +130,9 @@ std::unique_ptr<RosLink::Connection> RosLink::connect() {
     keeper_.take(image, ageOf(image.header.stamp), steadyNow());
     news_();
   });
-  made->homography =
-      listen<Homography>(node, "tracker/homography", 100, [this](const Homography& message) { keeper_.take(message); });
+  made->homography = listen<Homography>(node, "tracker/homography", 100, [this](const Homography& message) {
+    keeper_.take(message, delayOf(message.header.stamp), steadyNow());
+  });
   made->areas = listen<AreaSelection>(node, "tracker/areas", 100,
                                       [this](const AreaSelection& message) { keeper_.take(message); });
   made->tracker_state = listen<TrackerState>(
@@ -115,6 +143,15 @@ std::unique_ptr<RosLink::Connection> RosLink::connect() {
                                         [this](const ScopeVelocity&) { keeper_.takeCommand(steadyNow()); });
   made->operating_state = listen<OperatingState>(
       node, "aesop/operating_state", 10, [this](const OperatingState& message) { keeper_.take(message, steadyNow()); });
+  made->playback = listen<PlaybackState>(node, "player/state", 5, [this](const PlaybackState& message) {
+    keeper_.change([&](Facts& facts) {
+      facts.playback.state = message.state;
+      facts.playback.position = message.position;
+      facts.playback.duration = message.duration;
+    });
+    news_();
+  });
+  parameters_.connect(node);
   return made;
 }
 
@@ -122,26 +159,34 @@ void RosLink::look(Connection& connection) {
   const bool tracker = connection.tracker_state.getNumPublishers() > 0;
   const bool controller = connection.controller_state.getNumPublishers() > 0;
   const bool robot = connection.operating_state.getNumPublishers() > 0;
+  const bool playback = connection.playback.getNumPublishers() > 0;
   const bool dead_man = connection.sender->isDeadManWanted();
   keeper_.change([&](Facts& facts) {
     facts.tracker.connected = tracker;
     facts.controller.connected = controller;
     facts.robot.connected = robot;
     facts.dead_man_wanted = dead_man;
+    facts.playback.connected = playback;
   });
+  ++connection.turns;
+  if (tracker && connection.turns % kViewTurns == 1) tracker_.listViews();
+  if (!tracker) keeper_.change([](Facts& facts) { facts.views.reset(), facts.frozen.reset(); });
   // They cannot change while it runs; the next one may have others.
   if (!controller) connection.limits_wanted = true;
   if (!controller || !connection.limits_wanted) return;
   const std::optional<Limits> limits = limitsOf(connection.node);
   if (!limits) return;
   connection.limits_wanted = false;
+  double max_age = kNever;
+  connection.node.getParam("controller/safety/max_task_error_age", max_age);
   connection.sender->setLimits(*limits);
-  keeper_.change([&](Facts& facts) { facts.limits = limits; });
+  keeper_.change([&](Facts& facts) { facts.limits = limits, facts.max_image_age = max_age; });
 }
 
 void RosLink::stop() {
   dead_man_.letGo();
   slider_.letGo();
+  tracker_.thaw();
   const std::lock_guard<std::mutex> lock(mutex_);
   if (!connection_) return;
   connection_->robot_stop.publish(std_msgs::Empty());
@@ -177,14 +222,12 @@ void RosLink::selectTask(const std::string& task) {
   if (!name.empty()) calls_.call(name, "Task", request);
 }
 
-void RosLink::selectRegion(const QRect& pixels) {
-  SelectRoi request;
-  request.request.roi.x_offset = static_cast<std::uint32_t>(pixels.x());
-  request.request.roi.y_offset = static_cast<std::uint32_t>(pixels.y());
-  request.request.roi.width = static_cast<std::uint32_t>(pixels.width());
-  request.request.roi.height = static_cast<std::uint32_t>(pixels.height());
-  const std::string name = resolved("tracker/select_roi");
-  if (!name.empty()) calls_.call(name, "Region", request);
+void RosLink::controlPlayback(const std::string& command, double position) {
+  ControlPlayback request;
+  request.request.command = command;
+  request.request.position = position;
+  const std::string name = resolved("player/control");
+  if (!name.empty()) calls_.call(name, "Recording: " + command, request);
 }
 
 void RosLink::setShares(const std::array<double, 4>& shares) {

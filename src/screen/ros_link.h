@@ -8,7 +8,6 @@
 #include <ros/node_handle.h>
 #include <ros/spinner.h>
 
-#include <QRect>
 #include <array>
 #include <atomic>
 #include <functional>
@@ -16,23 +15,32 @@
 #include <mutex>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "screen/fact_keeper.h"
 #include "screen/held_control.h"
 #include "screen/hold_sender.h"
+#include "screen/parameter_link.h"
+#include "screen/registration.h"
 #include "screen/service_calls.h"
+#include "screen/tracker_link.h"
 
 namespace laparoscope_servo::screen {
 
 class RosLink {
  public:
   // After ros::init. `news` is called from the link's threads when there is a new picture, or an answer.
-  explicit RosLink(const std::function<void()>& news);
+  // `space`: the namespace of the cart, seen from that of the process; empty: the same.
+  explicit RosLink(const std::function<void()>& news, const std::string& space = "");
   ~RosLink();
   RosLink(const RosLink&) = delete;
   RosLink& operator=(const RosLink&) = delete;
 
   Facts facts() const { return keeper_.facts(); }
+  std::vector<MinuteHistory::Step> minute(double now) const { return keeper_.minute(now); }
+  void controlPlayback(const std::string& command, double position);
+  TrackerLink& tracker() { return tracker_; }
+  ParameterLink& parameters() { return parameters_; }
 
   // Over connections that are open already, without a master; then also by the services, if there is one.
   void stop();
@@ -45,7 +53,6 @@ class RosLink {
   void clearRegion() { trigger("tracker/reset", "Clear region"); }
   void engage(bool on);
   void selectTask(const std::string& task);
-  void selectRegion(const QRect& pixels);  // of the original image
 
   HeldControl& deadMan() { return dead_man_; }
   HeldControl& slider() { return slider_; }
@@ -57,21 +64,27 @@ class RosLink {
  private:
   // Everything that needs a master to begin with.
   struct Connection {
+    explicit Connection(const std::string& space) : node(space) {}
     ros::NodeHandle node;
     std::unique_ptr<HoldSender> sender;
     ros::Publisher robot_stop, controller_stop;
-    ros::Subscriber preview, homography, areas, tracker_state, controller_state, command, operating_state;
+    ros::Subscriber preview, homography, areas, tracker_state, controller_state, command, operating_state, playback;
     bool limits_wanted = true;
+    unsigned turns = 0;
   };
 
   void run();
   std::unique_ptr<Connection> connect();
   void look(Connection& connection);
+  void renewed();
   std::string resolved(const std::string& name) const;
   void trigger(const std::string& service, const std::string& what);
+  void take(const Answer& answer);
 
   std::function<void()> news_;
+  std::string space_;
   FactKeeper keeper_;
+  TrackerLink tracker_;
   HeldControl dead_man_;
   HeldControl slider_;
   std::atomic<bool> ends_{false};
@@ -79,6 +92,7 @@ class RosLink {
   ros::CallbackQueue queue_;
   mutable std::mutex mutex_;  // of the pointer that follows; never held while a master is asked
   std::unique_ptr<Connection> connection_;
+  ParameterLink parameters_;
   ServiceCalls calls_;
   std::thread thread_;
 };

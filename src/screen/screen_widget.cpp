@@ -1,5 +1,8 @@
 #include "screen/screen_widget.h"
 
+#include <ros/names.h>
+#include <ros/this_node.h>
+
 #include <QApplication>
 #include <QGridLayout>
 #include <QKeyEvent>
@@ -8,15 +11,17 @@
 
 #include "ros/common/clocks.h"
 #include "screen/band_text.h"
+#include "screen/minute_limits.h"
 
 namespace laparoscope_servo::screen {
 
 namespace {
 
-constexpr int kBeat = 50;           // ms
-constexpr int kColumnWidth = 410;   // px
-constexpr int kActionsHeight = 96;  // px
-constexpr int kAnswerHeight = 40;   // px
+constexpr int kBeat = 50;            // ms
+constexpr double kMinuteBeat = 0.5;  // s between two looks at the last minute
+constexpr int kColumnWidth = 410;    // px
+constexpr int kActionsHeight = 96;   // px
+constexpr int kAnswerHeight = 40;    // px
 
 const char* const kStyle = R"(
   laparoscope_servo--screen--ScreenWidget { background: #10131a; }
@@ -29,7 +34,19 @@ const char* const kStyle = R"(
   QPushButton#stop:hover { background: #d02020; }
   QPushButton#stop:pressed { background: #ff3030; }
   QLabel { color: white; font-size: 14px; }
+  QTabWidget::pane { border: 1px solid #40464f; }
+  QTabBar::tab { background: #242a33; color: #c8d0dc; padding: 5px 11px; font-size: 14px; }
+  QTabBar::tab:selected { background: #414a58; color: white; font-weight: bold; }
+  QListWidget, QTableWidget, QLineEdit { background: #0c0e12; color: white; font-size: 13px;
+                                         border: 1px solid #40464f; gridline-color: #2a3038; }
+  QHeaderView::section { background: #242a33; color: #c8d0dc; border: 0; padding: 2px; }
+  QListWidget::item:selected, QTableWidget::item:selected { background: #1f5a86; color: white; }
 )";
+
+std::string cartName(const std::string& space) {
+  const std::string name = ros::names::append(ros::this_node::getNamespace(), space);
+  return name == "/" || name == "//" ? "" : ros::names::clean(name);
+}
 
 // The one of several that holds.
 void mark(QPushButton* button, bool active) {
@@ -41,23 +58,29 @@ void mark(QPushButton* button, bool active) {
 
 }  // namespace
 
-ScreenWidget::ScreenWidget(QWidget* parent) : QWidget(parent) {
+ScreenWidget::ScreenWidget(QWidget* parent, const std::string& space) : QWidget(parent) {
   setObjectName("laparoscope_screen");
   setAttribute(Qt::WA_StyledBackground);
   setStyleSheet(kStyle);
   setFocusPolicy(Qt::ClickFocus);
   // From the link's threads: what is drawn is drawn by this one.
-  link_ = std::make_unique<RosLink>([this] {
-    QMetaObject::invokeMethod(
-        this, [this] { refresh(); }, Qt::QueuedConnection);
-  });
-  image_ = new ImageView([this](const QRect& pixels) { link_->selectRegion(pixels); }, this);
+  link_ = std::make_unique<RosLink>(
+      [this] {
+        QMetaObject::invokeMethod(
+            this, [this] { refresh(); }, Qt::QueuedConnection);
+      },
+      space);
+  image_ = new ImageView([this](const QRect& pixels) { select(pixels); },
+                         [this](const QRect& pixels) { link_->tracker().checkRegion(pixels); }, this);
   auto* layout = new QGridLayout(this);
   layout->setContentsMargins(6, 6, 6, 6);
   layout->setSpacing(6);
   layout->addWidget(image_, 0, 0);
-  layout->addWidget(makeActions(), 1, 0);
-  layout->addWidget(makeColumn(), 0, 1, 2, 1);
+  playback_ = new PlaybackBar(
+      [this](const std::string& command, double position) { link_->controlPlayback(command, position); }, this);
+  layout->addWidget(playback_, 1, 0);
+  layout->addWidget(makeActions(), 2, 0);
+  layout->addWidget(makeColumn(space), 0, 1, 3, 1);
   layout->setColumnStretch(0, 1);
   layout->setRowStretch(0, 1);
   qApp->installEventFilter(this);
@@ -74,6 +97,14 @@ ScreenWidget::~ScreenWidget() {
   dead_man_->letGo();
   for (VelocitySlider* slider : sliders_) slider->letGo();
   link_.reset();
+}
+
+// A recording that is paused shows its next picture, for the region is cut from that.
+void ScreenWidget::select(const QRect& pixels) {
+  const Facts facts = link_->facts();
+  link_->tracker().selectRegion(pixels);
+  if (facts.playback.connected && facts.playback.state == "PAUSED" && !facts.frozen)
+    link_->controlPlayback("STEP", 0.0);
 }
 
 QPushButton* ScreenWidget::makeButton(const QString& text, const QString& tip, const std::function<void()>& act) {
@@ -101,27 +132,74 @@ QWidget* ScreenWidget::makeActions() {
   grid->addWidget(makeButton("Resume", "A paused arm goes on", [this] { link_->resume(); }), 1, 2);
   grid->addWidget(makeButton("Clear region", "The tracker forgets its region", [this] { link_->clearRegion(); }), 0, 3);
   grid->addWidget(makeButton("Clear fault", "After its cause was removed", [this] { link_->clearFault(); }), 1, 3);
+  grid->addWidget(
+      makeButton("Freeze", "Keeps this picture, to draw a region in it at leisure; the arm is not held by it",
+                 [this] { link_->tracker().freeze(); }),
+      0, 4);
+  grid->addWidget(makeButton("Live", "Back from the frozen picture", [this] { link_->tracker().thaw(); }), 1, 4);
   auto* stop = makeButton("STOP", "Disengages and disables: also by Escape or Pause", [] {});
   // When it is pressed, and not when it is let go.
   connect(stop, &QPushButton::pressed, this, [this] { this->stop(); });
   stop->setMinimumWidth(150);
-  grid->addWidget(stop, 0, 4, 2, 1);
-  for (int column = 0; column < 4; ++column) grid->setColumnStretch(column, 2);
-  grid->setColumnStretch(4, 3);
+  grid->addWidget(stop, 0, 5, 2, 1);
+  for (int column = 0; column < 5; ++column) grid->setColumnStretch(column, 2);
+  grid->setColumnStretch(5, 3);
   return actions;
 }
 
-QWidget* ScreenWidget::makeColumn() {
+QWidget* ScreenWidget::makeColumn(const std::string& space) {
   auto* column = new QWidget(this);
   column->setFixedWidth(kColumnWidth);
   auto* layout = new QVBoxLayout(column);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->setSpacing(6);
+  const std::string cart = cartName(space);
+  if (!cart.empty()) {
+    auto* name = new QLabel("Cart: " + QString::fromStdString(cart), column);
+    name->setObjectName("cart");
+    name->setTextFormat(Qt::PlainText);
+    layout->addWidget(name);
+  }
   layout->addWidget(tracker_ = new StateBand("Tracker", column));
   layout->addWidget(controller_ = new StateBand("Controller", column));
   layout->addWidget(robot_ = new StateBand("Robot", column));
   const auto said = [this] { link_->said(); };
   layout->addWidget(dead_man_ = new DeadManButton(link_->deadMan(), said, column));
+  layout->addWidget(makeTabs(), 1);
+  answer_ = new QLabel(column);
+  answer_->setObjectName("answer");
+  answer_->setTextFormat(Qt::PlainText);
+  answer_->setWordWrap(true);
+  answer_->setAlignment(Qt::AlignLeft | Qt::AlignTop);
+  answer_->setFixedHeight(kAnswerHeight);
+  layout->addWidget(answer_);
+  return column;
+}
+
+// The bands and the dead-man switch stay in sight, whatever is shown below them.
+QWidget* ScreenWidget::makeTabs() {
+  auto* tabs = new QTabWidget(this);
+  tabs->setObjectName("tabs");
+  tabs->tabBar()->setFocusPolicy(Qt::NoFocus);  // or arrow keys would turn the page
+  tabs->setFocusPolicy(Qt::NoFocus);
+  tabs->addTab(makeDrive(), "Drive");
+  views_ = new ViewsPanel([this](const std::string& name) { link_->tracker().storeView(name); },
+                          [this](const std::string& name) { link_->tracker().recallView(name); }, tabs);
+  tabs->addTab(views_, "Views");
+  tabs->addTab(minute_ = new MinutePanel(tabs), "Last minute");
+  parameters_ = new ParameterPanel(
+      [this](const LiveParameter& parameter, const std::string& text) { link_->parameters().set(parameter, text); },
+      tabs);
+  tabs->addTab(parameters_, "Parameters");
+  return tabs;
+}
+
+QWidget* ScreenWidget::makeDrive() {
+  auto* column = new QWidget(this);
+  auto* layout = new QVBoxLayout(column);
+  layout->setContentsMargins(4, 4, 4, 4);
+  layout->setSpacing(4);
+  const auto said = [this] { link_->said(); };
   auto* tasks = new QHBoxLayout;
   follow_ = makeButton("Follow", "The scope keeps the region where it was", [this] { link_->selectTask("HOLD_VIEW"); });
   drive_ = makeButton("Drive by hand", "The scope follows the sliders", [this] { link_->selectTask("MANUAL"); });
@@ -142,14 +220,7 @@ QWidget* ScreenWidget::makeColumn() {
     sliders_[k] = new VelocitySlider(names[k][0], names[k][1], names[k][2], link_->slider(), shares, said, column);
     layout->addWidget(sliders_[k]);
   }
-  answer_ = new QLabel(column);
-  answer_->setObjectName("answer");
-  answer_->setTextFormat(Qt::PlainText);
-  answer_->setWordWrap(true);
-  answer_->setAlignment(Qt::AlignLeft | Qt::AlignTop);
-  answer_->setFixedHeight(kAnswerHeight);
   layout->addStretch(1);
-  layout->addWidget(answer_);
   return column;
 }
 
@@ -161,8 +232,18 @@ void ScreenWidget::refresh() {
   controller_->show(controllerBand(facts, now));
   robot_->show(robotBand(facts, now));
   dead_man_->setWanted(facts.dead_man_wanted);
+  playback_->show(facts.playback);
   showTask(facts);
+  views_->show(facts);
+  parameters_->show(facts);
+  showMinute(facts, now);
   showAnswer(facts.answer);
+}
+
+void ScreenWidget::showMinute(const Facts& facts, double now) {
+  if (!minute_->isVisible() || now - minute_shown_at_ < kMinuteBeat) return;
+  minute_shown_at_ = now;
+  minute_->show(link_->minute(now), minuteLimits(facts));
 }
 
 void ScreenWidget::showTask(const Facts& facts) {
@@ -184,9 +265,9 @@ void ScreenWidget::showAnswer(const Answer& answer) {
   const QString text = QString::fromStdString(answer.text);
   const QString words = QString::fromStdString(answer.what) +
                         (answer.waiting ? " ..." : (answer.success ? ": done. " : ": REFUSED. ") + text);
-  if (words == answer_->toolTip()) return;
+  if (words == answer_->text()) return;
   answer_->setText(words);
-  answer_->setToolTip(words);
+  answer_->setToolTip(words.toHtmlEscaped());
 }
 
 void ScreenWidget::beat() {

@@ -6,6 +6,7 @@
 
 #include <QLabel>
 #include <QPushButton>
+#include <QTabWidget>
 #include <QTimer>
 #include <QWidget>
 #include <array>
@@ -14,17 +15,21 @@
 
 #include "screen/dead_man_button.h"
 #include "screen/image_view.h"
+#include "screen/minute_panel.h"
+#include "screen/parameter_panel.h"
+#include "screen/playback_bar.h"
 #include "screen/ros_link.h"
 #include "screen/state_band.h"
 #include "screen/velocity_slider.h"
+#include "screen/views_panel.h"
 
 namespace laparoscope_servo::screen {
 
 class ScreenWidget : public QWidget {
   Q_OBJECT
  public:
-  // After ros::init.
-  explicit ScreenWidget(QWidget* parent = nullptr);
+  // After ros::init. `space`: the namespace of the cart, seen from that of the process; empty: the same.
+  explicit ScreenWidget(QWidget* parent = nullptr, const std::string& space = "");
   ~ScreenWidget() override;
 
   bool eventFilter(QObject* object, QEvent* event) override;
@@ -35,18 +40,27 @@ class ScreenWidget : public QWidget {
   void stop();
   bool hasFocusWithin() const;
   bool handleKey(int key, bool pressed);
+  void select(const QRect& pixels);
   QWidget* makeActions();
-  QWidget* makeColumn();
+  QWidget* makeColumn(const std::string& space);
+  QWidget* makeDrive();
+  QWidget* makeTabs();
   QPushButton* makeButton(const QString& text, const QString& tip, const std::function<void()>& act);
   void showAnswer(const Answer& answer);
   void showTask(const Facts& facts);
+  void showMinute(const Facts& facts, double now);
 
   std::unique_ptr<RosLink> link_;
   ImageView* image_;
+  PlaybackBar* playback_;
   StateBand* tracker_;
   StateBand* controller_;
   StateBand* robot_;
   QLabel* answer_;
+  ViewsPanel* views_;
+  MinutePanel* minute_;
+  ParameterPanel* parameters_;
+  double minute_shown_at_ = kNever;
   QPushButton* follow_;
   QPushButton* drive_;
   DeadManButton* dead_man_;

@@ -10,12 +10,14 @@ ServiceCalls::~ServiceCalls() {
   shared_->told = nullptr;
 }
 
-void ServiceCalls::Shared::tell(const Answer& answer) {
+void ServiceCalls::Shared::tell(const Answer& answer, const std::function<void()>& act) {
   const std::lock_guard<std::mutex> lock(mutex);
-  if (told) told(answer);
+  if (!told) return;
+  if (act) act();
+  told(answer);
 }
 
-void ServiceCalls::start(const std::string& service, const std::string& what, const std::function<void(Answer&)>& ask) {
+void ServiceCalls::start(const std::string& service, const std::string& what, const Ask& ask) {
   {
     const std::lock_guard<std::mutex> lock(shared_->mutex);
     if (!shared_->waiting.insert(service).second) return;  // the answer that is waited for is on the screen
@@ -24,8 +26,9 @@ void ServiceCalls::start(const std::string& service, const std::string& what, co
   try {
     std::thread([shared = shared_, service, what, ask] {
       Answer answer{what, "", false, false};
+      std::function<void()> act;
       try {
-        ask(answer);
+        ask(answer, act);
       } catch (const std::exception& error) {
         answer = {what, error.what(), false, false};
       }
@@ -33,7 +36,7 @@ void ServiceCalls::start(const std::string& service, const std::string& what, co
         const std::lock_guard<std::mutex> lock(shared->mutex);
         shared->waiting.erase(service);
       }
-      shared->tell(answer);
+      shared->tell(answer, act);
     }).detach();
   } catch (const std::exception& error) {  // no thread is left
     const std::lock_guard<std::mutex> lock(shared_->mutex);

@@ -26,11 +26,14 @@ class ServiceCalls {
   ServiceCalls& operator=(const ServiceCalls&) = delete;
 
   // `service`: resolved. `what`: in words. A response has `success` and `message`.
+  // `then` is called before `told` when it succeeded.
   template <class Service>
-  void call(const std::string& service, const std::string& what, const Service& request) {
-    start(service, what, [service, request](Answer& answer) {
+  void call(const std::string& service, const std::string& what, const Service& request,
+            const std::function<void(const typename Service::Response&)>& then = nullptr) {
+    start(service, what, [service, request, then](Answer& answer, std::function<void()>& act) {
       Service call = request;
       answer.success = ros::service::call(service, call) && call.response.success;
+      if (answer.success && then) act = [then, response = call.response] { then(response); };
       answer.text = call.response.message;
       if (!answer.success && answer.text.empty()) answer.text = "no answer from " + service;
     });
@@ -41,9 +44,10 @@ class ServiceCalls {
     std::mutex mutex;
     std::set<std::string> waiting;
     Told told;
-    void tell(const Answer& answer);
+    void tell(const Answer& answer, const std::function<void()>& act = nullptr);
   };
-  void start(const std::string& service, const std::string& what, const std::function<void(Answer&)>& ask);
+  using Ask = std::function<void(Answer&, std::function<void()>&)>;
+  void start(const std::string& service, const std::string& what, const Ask& ask);
 
   std::shared_ptr<Shared> shared_;  // with the threads
 };

@@ -17,6 +17,10 @@ void Controller::disengage(const std::string& reason) {
   implementation_->disengage(reason);
 }
 
+void Controller::stop(const std::string& reason, double time) {
+  implementation_->stop(reason, time);
+}
+
 void Controller::select(Task task) {
   implementation_->select(task);
 }

@@ -136,9 +136,9 @@ std::string Controller::Implementation::engage(const ControllerInput& input) {
   return "";
 }
 
-void Controller::Implementation::disengage(const std::string& reason) {
+void Controller::Implementation::end(const std::string& reason, double time) {
   SafetyFacts request;
-  request.time = last_time_;
+  request.time = time;
   request.request = EngageRequest::kOff;
   request.off_reason = reason;
   machine_.step(request);

@@ -20,7 +20,10 @@ class Controller::Implementation {
   explicit Implementation(const ControllerConfig& config);
 
   std::string engage(const ControllerInput& input);
-  void disengage(const std::string& reason);
+  void disengage(const std::string& reason) { end(reason, last_time_); }
+  void stop(const std::string& reason, double time) {
+    if (engaged()) end(reason, time);
+  }
   void select(Task task);
   ControllerOutput update(const ControllerInput& input);
   void retune(const ControllerConfig& config) { servo_.retune(config); }
@@ -30,6 +33,7 @@ class Controller::Implementation {
   ControllerFigures figures() const;
 
  private:
+  void end(const std::string& reason, double time);
   SafetyFacts facts(const ControllerInput& input) const;
   double d2(const ControllerInput& input) const;
   void correctDepth(const ControllerInput& input);

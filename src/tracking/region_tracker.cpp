@@ -47,11 +47,13 @@ class RegionTracker::Implementation {
 
   void setLens(const std::optional<image::Lens>& lens);
   TrackResult select(const cv::Mat& image, double stamp, const geometry::Rectangle& roi);
+  double check(const cv::Mat& image, const geometry::Rectangle& wanted, RegionAligner& aligner) const;
   void recall(const cv::Mat& reference, double reference_stamp, const geometry::Rectangle& roi, double now);
   const TrackResult& track(const cv::Mat& image, double stamp, const std::optional<Eigen::Matrix3d>& motion);
   void reset();
   cv::Mat occlusionMask() const;
   bool hasRoi() const { return state_ != State::kIdle; }
+  const std::shared_ptr<const image::Lens>& lens() const { return lens_; }
   const TrackerConfig& config() const { return config_; }
   void retune(const TrackerConfig& config);
 
@@ -76,6 +78,7 @@ class RegionTracker::Implementation {
   cv::Size image_size_;
   double reference_stamp_ = 0.0;
   double last_stamp_ = 0.0;
+  double proven_stamp_ = 0.0;               // of the last image in which blocks were where the estimate has them
   double unseen_before_ = 0.0;              // s, from the reference until it was recalled; 0 once it was found
   EsmState last_;                           // last estimate that was believed
   std::optional<Eigen::Matrix3d> carried_;  // the same, moved as a robot says: where the last attempt started from
@@ -91,16 +94,19 @@ void RegionTracker::Implementation::setLens(const std::optional<image::Lens>& le
   if (had_roi) reset_reason_ = "the lens changed since the ROI was selected: select it again";
 }
 
-// The expected corner error [px] of the reference with itself.
+// Makes it the reference of an aligner. Returns the expected corner error [px] of the reference with itself.
+double RegionTracker::Implementation::check(const cv::Mat& image, const geometry::Rectangle& wanted,
+                                            RegionAligner& aligner) const {
+  checkImage(image);
+  aligner.setReference(image, checkedRoi(image, wanted, config_.min_roi_side, lens_.get()));
+  return checkedCornerError(aligner, config_.min_texture);
+}
+
 double RegionTracker::Implementation::setReference(const cv::Mat& image, double stamp,
                                                    const geometry::Rectangle& wanted) {
-  checkImage(image);
-  const geometry::Rectangle roi = checkedRoi(image, wanted, config_.min_roi_side, lens_.get());
-
   // Everything is built aside, so that a ROI that is refused leaves the tracker as it was.
   Implementation fresh(config_, lens_);
-  fresh.aligner_.setReference(image, roi);
-  const double error = checkedCornerError(fresh.aligner_, config_.min_texture);
+  const double error = check(image, wanted, fresh.aligner_);
   fresh.search_.setReference(image, fresh.aligner_);
   fresh.image_size_ = image.size();
   fresh.reference_stamp_ = stamp;
@@ -114,7 +120,7 @@ TrackResult RegionTracker::Implementation::select(const cv::Mat& image, double s
   const geometry::Rectangle& roi = aligner_.roi();
   filter_.start(roi, aligner_.esm().normalisation(), stamp);
   state_ = State::kTracking;
-  last_stamp_ = stamp;
+  last_stamp_ = proven_stamp_ = stamp;
 
   Attempt attempt;
   attempt.evidence.roi = roi;
@@ -134,7 +140,7 @@ void RegionTracker::Implementation::recall(const cv::Mat& reference, double refe
   filter_.start(aligner_.roi(), aligner_.esm().normalisation(), now);
   filter_.stop();
   state_ = State::kSearching;
-  last_stamp_ = now;
+  last_stamp_ = proven_stamp_ = now;
   unseen_before_ = std::max(0.0, now - reference_stamp);
   search_.restart();
 }
@@ -216,6 +222,8 @@ Attempt RegionTracker::Implementation::attempt(const cv::Mat& image, double stam
   e.in_image = found.share_in_image;
   e.zncc = found.zncc;
   e.blocks = found.blocks;
+  if (e.blocks.confident >= leastBlocks(e.blocks, e.visible_fraction)) proven_stamp_ = stamp;
+  e.unproven = stamp - proven_stamp_;
   result.doubt = found.in_image ? doubt(e, config_.quality) : "the ROI is outside the image";
   return result;
 }
@@ -289,6 +297,7 @@ const TrackResult& RegionTracker::Implementation::report(const Attempt& attempt)
   result.areas.distance = gates.distances();
   result.areas.occluded.resize(grid.count());
   for (int area = 0; area < grid.count(); ++area) result.areas.occluded[area] = gates.occluded(area);
+  gates.causes(result.areas.cause);
   return result;
 }
 
@@ -333,6 +342,10 @@ void RegionTracker::setLens(const std::optional<image::Lens>& lens) {
 
 TrackResult RegionTracker::select(const cv::Mat& image, double stamp, const geometry::Rectangle& roi) {
   return implementation_->select(image, stamp, roi);
+}
+void RegionTracker::check(const cv::Mat& image, const geometry::Rectangle& roi) const {
+  RegionAligner aligner(config(), implementation_->lens());
+  implementation_->check(image, roi, aligner);
 }
 void RegionTracker::recall(const cv::Mat& reference, double reference_stamp, const geometry::Rectangle& roi,
                            double now) {

@@ -95,6 +95,10 @@ class Controller {
   // Back to IDLE, from every state; `reason` is kept for the output.
   void disengage(const std::string& reason);
 
+  // Something outside of the control asks for a stop at `time` [s]: IDLE, but FAULT where the clock has jumped since the
+  // last update, as nobody knows what the arm did meanwhile. Without effect where nothing is engaged.
+  void stop(const std::string& reason, double time);
+
   // Another task: the next command is zero, and the task starts from rest. Engages nothing, clears nothing; what the
   // new task misses ends the motion as ever. The same task again has no effect.
   void select(Task task);

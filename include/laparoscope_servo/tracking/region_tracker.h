@@ -14,6 +14,7 @@
 
 #include "laparoscope_servo/geometry/homography.h"
 #include "laparoscope_servo/image/lens.h"
+#include "laparoscope_servo/tracking/area_cause.h"
 #include "laparoscope_servo/tracking/tracker_config.h"
 
 namespace laparoscope_servo::tracking {
@@ -29,6 +30,7 @@ struct AreaReport {
   int columns = 0;
   std::vector<float> distance;  // eq. (2), 0 to 1; NaN where an area could not be compared
   std::vector<bool> occluded;   // did not drive ESM
+  std::vector<AreaCause> cause;
 };
 
 struct TrackResult {
@@ -72,6 +74,9 @@ class RegionTracker {
   // Takes `image` for the reference. Throws std::invalid_argument, with the ROI and what was expected, when the ROI is
   // empty, too small, mostly outside the image or without texture; the tracker then goes on as before.
   TrackResult select(const cv::Mat& image, double stamp, const geometry::Rectangle& roi);
+
+  // Whether select() would take the ROI: throws as that would, and selects nothing.
+  void check(const cv::Mat& image, const geometry::Rectangle& roi) const;
 
   // Takes an older image for the reference, whose ROI is then to be found in the images that come: SEARCHING, as after
   // a loss, since `now`, the stamp [s] of the next image or of one before it. `reference_stamp` may lie any time

@@ -20,6 +20,7 @@ using Outcome = MasterClient::Outcome;
 // s. A listener whose queue is full for a moment refuses, too.
 constexpr double kSecondTry = 0.1;
 constexpr double kSlice = 0.05;  // s, after which the end of the watch is noticed
+constexpr double kLate = 0.1;    // s, two slices: by more than this a thread that runs is not late
 
 int integer(XmlRpc::XmlRpcValue& value) {
   return value.getType() == XmlRpc::XmlRpcValue::TypeInt ? static_cast<int>(value) : 0;
@@ -98,7 +99,10 @@ void MasterWatch::run() {
 }
 
 MasterStatus MasterWatch::ask() {
+  const double start = steadyNow();
   MasterStatus status = judge();
+  // This thread was late itself, as after a pause of the process: that is no silence of the master's.
+  if (status.state == State::kSilent && steadyNow() - start > config_.patience + kLate) status = judge();
   if (status.state == State::kGone) asks_for_us_ = false;  // who is there next is the first question
   if (status.state == State::kGone && wait(kSecondTry)) status = judge();
   return status;
@@ -108,7 +112,7 @@ MasterStatus MasterWatch::judge() {
   const double start = steadyNow();
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    status_.asked_at = start;
+    if (status_.asked_at == 0.0) status_.asked_at = start;
   }
   const std::string method = asks_for_us_ ? "lookupNode" : "getPid";
   std::vector<std::string> arguments{node_};

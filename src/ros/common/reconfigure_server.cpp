@@ -1,5 +1,7 @@
 #include "ros/common/reconfigure_server.h"
 
+#include <std_msgs/String.h>
+
 #include <algorithm>
 #include <stdexcept>
 
@@ -40,6 +42,7 @@ ReconfigureServer::ReconfigureServer(const ros::NodeHandle& private_node, const 
       node_(withQueue(private_node, queue_)),
       descriptions_(node_.advertise<dynamic_reconfigure::ConfigDescription>("parameter_descriptions", 1, true)),
       updates_(node_.advertise<dynamic_reconfigure::Config>("parameter_updates", 1, true)),
+      refusals_(node_.advertise<std_msgs::String>("parameters_refused", 5)),
       spinner_(1, &queue_) {
   descriptions_.publish(describeForReconfigure(table_));
   updates_.publish(valuesForReconfigure(table_));
@@ -63,6 +66,9 @@ bool ReconfigureServer::onSet(Event& event) {
     const std::string text = joined(errors);
     ROS_WARN_STREAM("parameters of " << event.getCallerName() << " refused: " << text);
     updates_.publish(valuesForReconfigure(table_));  // tools show what was asked for until they are told
+    std_msgs::String refusal;
+    refusal.data = text;
+    refusals_.publish(refusal);
     throw std::runtime_error(text);
   }
   commit_();

@@ -2,7 +2,8 @@
 //
 // Service `~set_parameters` (dynamic_reconfigure/Reconfigure); topics `~parameter_descriptions`
 // (dynamic_reconfigure/ConfigDescription) and `~parameter_updates` (dynamic_reconfigure/Config), both latched. A set is
-// taken or refused as a whole; who asked is told every error as the error of the service. What counts is logged,
+// taken or refused as a whole; who asked is told every error as the error of the service, which roscpp keeps from its
+// clients: it also comes on `~parameters_refused` (std_msgs/String). What counts is logged,
 // published, and put on the parameter server. All of that happens in a thread of its own: what the node does goes on
 // meanwhile, and takes the new configuration when it likes.
 #pragma once
@@ -43,6 +44,7 @@ class ReconfigureServer {
   ros::NodeHandle node_;  // private, with that queue
   ros::Publisher descriptions_;
   ros::Publisher updates_;
+  ros::Publisher refusals_;
   ros::ServiceServer service_;
   ros::AsyncSpinner spinner_;
 };

@@ -74,7 +74,7 @@ void ControllerNode::fail(const std::string& what) {
 // A fault stays, it is for somebody to look at.
 void ControllerNode::onStop(const std::string& sender) {
   if (!controller_.engaged()) return;
-  controller_.disengage("stopped by " + sender);
+  controller_.stop("stopped by " + sender, steadyNow());
   onTick();
 }
 
@@ -82,7 +82,8 @@ void ControllerNode::watchOutside() {
   const double now = steadyNow();
   std::string stop = stops_.takeStop(now);
   if (stop.empty()) stop = stops_.obstacle(now);
-  if (!stop.empty() && controller_.engaged()) controller_.disengage(stop);
+  // After a pause of this process the master seems to have been silent: that it was paused is the reason.
+  if (!stop.empty()) controller_.stop(stop, now);
 }
 
 void ControllerNode::onTick() {

@@ -1,7 +1,6 @@
 #include "ros/playback/video_player.h"
 
 #include <image_transport/camera_common.h>
-#include <ros/callback_queue.h>
 #include <rosgraph_msgs/Clock.h>
 
 #include <algorithm>
@@ -19,6 +18,9 @@ namespace {
 
 constexpr std::chrono::milliseconds kClockPeriod(10);
 constexpr std::chrono::milliseconds kCameraInfoTimeout(500);
+constexpr std::chrono::milliseconds kStatePeriod(200);
+constexpr std::chrono::milliseconds kHeldPeriod(200);
+const ros::Duration kHeldStep(0, 1000);            // of stamps: 40,000 fit between two images of a film
 constexpr std::chrono::seconds kResultTimeout(2);  // a tracker that gives none must not stop the video
 
 }  // namespace
@@ -38,6 +40,8 @@ void describe(parameters::Table& table, VideoPlayerConfig& c) {
   table.flag("stay", c.stay, "the node goes on at the end, so that the last image can be looked at");
   table.flag("restart_time", c.restart_time, "at a loop stamps jump back; false: they go on");
   table.flag("clock", c.clock, "publishes /clock");
+  table.flag("hold", c.hold, "stays at the first image until a region is selected");
+  table.flag("wait_for_screen", c.wait_for_screen, "the first image waits for a subscriber of ~state");
   table.flag("lockstep", c.lockstep, "the next image waits for homography, 2 s at most");
   table.number("subscribers", c.subscribers, {0, 100}, "nodes", "to wait for before the first image");
 }
@@ -46,7 +50,8 @@ std::vector<std::string> validate(const VideoPlayerConfig& config) {
   return parameters::errorsOf(config);
 }
 
-VideoPlayer::VideoPlayer(ros::NodeHandle node, const VideoPlayerConfig& config) : config_(config), transport_(node) {
+VideoPlayer::VideoPlayer(ros::NodeHandle node, const VideoPlayerConfig& config)
+    : config_(config), transport_(node), control_node_("~"), control_spinner_(1, &control_queue_) {
   options_.image_topic = config.image_topic;
   options_.camera_info_topic = config.camera_info_topic;
   options_.start = config.start;
@@ -55,8 +60,10 @@ VideoPlayer::VideoPlayer(ros::NodeHandle node, const VideoPlayerConfig& config) 
   if (!source_->hasRecordedStamps()) offset_ = ros::Duration(config.first_stamp);
   if (!config.camera_info.empty()) camera_info_ = readCameraInfo(config.camera_info);
   if (config.clock) clock_publisher_ = node.advertise<rosgraph_msgs::Clock>("/clock", 10);
-  if (config.lockstep) {
+  if (config.lockstep || config.hold) {
     homography_subscriber_ = node.subscribe<Homography>("homography", 10, [this](const HomographyConstPtr& result) {
+      tracked_ = result->state != Homography::IDLE;
+      if (tracked_) control_.releaseHold();
       answered_ = answered_ || result->header.stamp == awaited_;
     });
   }
@@ -64,26 +71,108 @@ VideoPlayer::VideoPlayer(ros::NodeHandle node, const VideoPlayerConfig& config) 
   image_publisher_ = transport_.advertise("image_raw", 50);
   const std::string info_topic = image_transport::getCameraInfoTopic(node.resolveName("image_raw"));
   camera_info_publisher_ = node.advertise<sensor_msgs::CameraInfo>(info_topic, 50);
+  control_node_.setCallbackQueue(&control_queue_);
+  state_publisher_ = control_node_.advertise<PlaybackState>("state", 5, true);
+  control_server_ = control_node_.advertiseService<ControlPlayback::Request, ControlPlayback::Response>(
+      "control", [this](ControlPlayback::Request& request, ControlPlayback::Response& response) {
+        response.message = control_.command(request.command, request.position);
+        response.success = static_cast<std::uint8_t>(response.message.empty());
+        return true;
+      });
+  control_spinner_.start();
+  tellState();
 }
 
 void VideoPlayer::run() {
   waitForSubscribers();
+  control_.begin(config_.hold);
   bool first_time = true;
   do {
     const std::size_t before = published_;
     playOnce();
-    if (ros::ok() && published_ == before) {
+    if (ros::ok() && published_ == before && !sought_) {
       throw SourceError("'" + config_.video + "' has no image after " + std::to_string(config_.start) + " s");
     }
     if (first_time) tellNotes();
     first_time = false;
-    if (!config_.loop) break;
+    if (!config_.loop) {
+      if (!waitForAgain()) break;
+      continue;
+    }
     if (!config_.restart_time) offset_ += last_ - begin_ + ros::Duration(1.0 / source_->rate());
     source_ = openImageSource(inputsOf(config_.video), options_);
   } while (ros::ok());
+}
+
+// At the end: false when that is all.
+bool VideoPlayer::waitForAgain() {
+  control_.end();
+  tellState();
   ROS_INFO("played %zu images of '%s'%s", published_, config_.video.c_str(),
            config_.stay && ros::ok() ? "; the last one stays until this node is ended" : "");
-  if (config_.stay) ros::spin();
+  while (config_.stay && ros::ok()) {
+    if (const std::optional<double> seek = control_.takeSeek()) {
+      reopen(*seek);
+      return true;
+    }
+    ros::spinOnce();
+    std::this_thread::sleep_for(kClockPeriod);
+  }
+  return false;
+}
+
+void VideoPlayer::reopen(double start) {
+  SourceOptions options = options_;
+  options.start = std::max(start, options_.start);
+  sought_ = true;
+  try {
+    source_ = openImageSource(inputsOf(config_.video), options);
+  } catch (const SourceError& error) {
+    ROS_ERROR("%s", error.what());
+  }
+}
+
+void VideoPlayer::tellState() {
+  PlaybackState state;
+  state.state = control_.stateName();
+  state.position = position_;
+  state.duration = source_->rate() > 0.0 ? static_cast<double>(source_->size()) / source_->rate() : 0.0;
+  state.images = static_cast<std::uint32_t>(published_);
+  const auto now = Clock::now();
+  if (state.state == told_.state && now - told_at_ < kStatePeriod) return;
+  told_at_ = now;
+  if (state.state == told_.state && state.images == told_.images) return;
+  told_ = state;
+  state_publisher_.publish(state);
+}
+
+// Waits while it is not to go on.
+bool VideoPlayer::mayPlay() {
+  while (ros::ok()) {
+    tellState();
+    if (const std::optional<double> seek = control_.takeSeek()) {
+      reopen(*seek);
+      return false;
+    }
+    if (control_.takeImage()) return true;
+    rebase_ = true;
+    repeatHeld();
+    ros::spinOnce();
+    std::this_thread::sleep_for(kClockPeriod);
+  }
+  return true;
+}
+
+void VideoPlayer::repeatHeld() {
+  if (!held_ || tracked_ || !homography_subscriber_ || Clock::now() < held_due_) return;
+  held_due_ = Clock::now() + kHeldPeriod;
+  held_ = boost::make_shared<sensor_msgs::Image>(*held_);
+  held_->header.stamp += kHeldStep;
+  held_time_ += kHeldStep;
+  publishClock(held_time_);
+  camera_info_.header = held_->header;
+  camera_info_publisher_.publish(camera_info_);
+  image_publisher_.publish(held_);
 }
 
 void VideoPlayer::tellNotes() const {
@@ -96,10 +185,11 @@ void VideoPlayer::waitForSubscribers() const {
   for (; ros::ok(); ++waited) {
     const auto subscribers = static_cast<int>(image_publisher_.getNumSubscribers());
     const bool tracker = !config_.lockstep || homography_subscriber_.getNumPublishers() > 0;
-    if (subscribers >= config_.subscribers && tracker) break;
+    const bool screen = !config_.wait_for_screen || state_publisher_.getNumSubscribers() > 0;
+    if (subscribers >= config_.subscribers && tracker && screen) break;
     if (waited % 500 == 100) {
-      ROS_INFO("waiting for subscribers of %s: %d of %d%s", image_publisher_.getTopic().c_str(), subscribers,
-               config_.subscribers, tracker ? "" : ", and for a tracker");
+      ROS_INFO("waiting for subscribers of %s: %d of %d%s%s", image_publisher_.getTopic().c_str(), subscribers,
+               config_.subscribers, tracker ? "" : ", and for a tracker", screen ? "" : ", and for a screen");
     }
     std::this_thread::sleep_for(kClockPeriod);
   }
@@ -116,15 +206,19 @@ ros::Time VideoPlayer::timeOf(const SourceImage& image) const {
 
 void VideoPlayer::playOnce() {
   for (bool first = true; ros::ok(); first = false) {
+    while (!mayPlay()) first = true;
     const std::optional<SourceImage> image = source_->next();
     if (!image) return;
     last_ = timeOf(*image);
-    if (first) {
+    if (first || rebase_) {
+      rebase_ = false;
       begin_ = last_;
       begin_due_ = Clock::now();
     }
     waitUntil(last_);
     publishClock(last_);
+    position_ = static_cast<double>(image->frame) / source_->rate();
+    held_time_ = last_;
     if (image->error.empty()) {
       awaited_ = image->header.stamp + offset_;
       answered_ = false;
@@ -198,6 +292,9 @@ void VideoPlayer::publish(const SourceImage& image) {
   camera_info_.header = header;
   camera_info_publisher_.publish(camera_info_);
   image_publisher_.publish(message);
+  held_ = message;
+  held_due_ = Clock::now() + kHeldPeriod;
+  sought_ = false;
   ++published_;
 }
 

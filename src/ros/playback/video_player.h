@@ -7,9 +7,16 @@
 // stamp. Stamps of a video are first_stamp + time of presentation, whatever the speed at which it is played. Everything
 // is paced by a steady clock. At a loop, time jumps back as with a looped bag. Of a bag, only images and their
 // camera_info are played: nothing that was recorded can move an arm.
+//
+// Service ~control (ControlPlayback): pause, step, seek, again. Topic ~state (PlaybackState), latched. While it holds
+// at an image and nothing is tracked, that image comes again and again, each a microsecond later than the one before,
+// so that a region can be selected in it.
 #pragma once
 
 #include <image_transport/image_transport.h>
+#include <laparoscope_servo/ControlPlayback.h>
+#include <laparoscope_servo/PlaybackState.h>
+#include <ros/callback_queue.h>
 #include <ros/ros.h>
 #include <sensor_msgs/CameraInfo.h>
 
@@ -20,6 +27,7 @@
 #include "laparoscope_servo/Homography.h"
 #include "laparoscope_servo/parameters/table.h"
 #include "ros/playback/image_source.h"
+#include "ros/playback/playback_control.h"
 
 namespace laparoscope_servo {
 
@@ -29,16 +37,18 @@ struct VideoPlayerConfig {
   std::string camera_info_topic;  // of a bag; empty: camera_info beside the images
   std::string camera_info;        // file of camera_calibration (YAML or INI); empty: intrinsics unknown
   std::string frame_id = "laparoscope_optical";
-  double fps = 25.0;         // Hz, 0.1 to 1000, of a folder and of a video that does not tell its own
-  double speed = 1.0;        // 0.01 to 100: 2 plays twice as fast
-  double start = 0.0;        // s, >= 0: what comes before is skipped
-  double first_stamp = 1.0;  // s, > 0, of the video's first image: 0 means `no time` to ROS
-  bool loop = false;         // begin again at the end
-  bool stay = false;         // at the end the node goes on, so that its last image can be looked at
-  bool restart_time = true;  // false: stamps go on at a loop instead of jumping back
-  bool clock = true;         // publish /clock
-  bool lockstep = false;     // the next image waits for the tracker's result, so that a slow one misses none
-  int subscribers = 1;       // 0 to 100: wait for so many of image_raw before the first image
+  double fps = 25.0;             // Hz, 0.1 to 1000, of a folder and of a video that does not tell its own
+  double speed = 1.0;            // 0.01 to 100: 2 plays twice as fast
+  double start = 0.0;            // s, >= 0: what comes before is skipped
+  double first_stamp = 1.0;      // s, > 0, of the video's first image: 0 means `no time` to ROS
+  bool loop = false;             // begin again at the end
+  bool stay = false;             // at the end the node goes on, so that its last image can be looked at
+  bool restart_time = true;      // false: stamps go on at a loop instead of jumping back
+  bool clock = true;             // publish /clock
+  bool lockstep = false;         // the next image waits for the tracker's result, so that a slow one misses none
+  bool hold = false;             // at the first image, until a region is selected or it is told to play
+  bool wait_for_screen = false;  // wait for a subscriber of ~state before the first image
+  int subscribers = 1;           // 0 to 100: wait for so many of image_raw before the first image
 };
 
 // The private parameters.
@@ -61,6 +71,12 @@ class VideoPlayer {
 
   void waitForSubscribers() const;
   void playOnce();
+  // False when the place in the recording is another one from now on.
+  bool mayPlay();
+  void reopen(double start);
+  void repeatHeld();
+  void tellState();
+  bool waitForAgain();
   void waitUntil(const ros::Time& time);
   Clock::time_point dueTime(const ros::Time& time) const;
   void publish(const SourceImage& image);
@@ -80,8 +96,23 @@ class VideoPlayer {
   ros::Publisher camera_info_publisher_;
   ros::Publisher clock_publisher_;
   ros::Subscriber homography_subscriber_;
-  ros::Time awaited_;      // stamp of the image that was published last ...
-  bool answered_ = false;  // ... and whether its result has come
+  PlaybackControl control_;
+  ros::CallbackQueue control_queue_;
+  ros::NodeHandle control_node_;
+  ros::Publisher state_publisher_;
+  ros::ServiceServer control_server_;
+  ros::AsyncSpinner control_spinner_;
+  PlaybackState told_;
+  Clock::time_point told_at_;
+  double position_ = 0.0;       // s
+  sensor_msgs::ImagePtr held_;  // the image that was published last
+  ros::Time held_time_;         // of /clock
+  Clock::time_point held_due_;  // when it comes again
+  bool sought_ = false;         // no image since then
+  bool rebase_ = false;         // the next image is due at once
+  bool tracked_ = false;        // there is a region
+  ros::Time awaited_;           // stamp of the image that was published last ...
+  bool answered_ = false;       // ... and whether its result has come
   std::size_t published_ = 0;
   std::size_t unanswered_ = 0;   // images that waited for a result in vain
   ros::Duration offset_;         // added to the stamps of the source

@@ -8,8 +8,8 @@ namespace laparoscope_servo {
 
 namespace {
 
-cv::Size previewSize(const cv::Size& image) {
-  const double scale = std::min(1.0, static_cast<double>(kPreviewSide) / std::max(image.width, image.height));
+cv::Size previewSize(const cv::Size& image, int most) {
+  const double scale = std::min(1.0, static_cast<double>(most) / std::max(image.width, image.height));
   const auto scaled = [scale](int side) { return std::max(1, static_cast<int>(std::lround(scale * side))); };
   return {scaled(image.width), scaled(image.height)};
 }
@@ -30,7 +30,7 @@ bool Preview::due(double now) {
 
 cv::Mat Preview::of(const cv::Mat& image, const std::shared_ptr<const image::Lens>& lens) {
   cv::Mat preview;
-  const cv::Size size = previewSize(image.size());
+  const cv::Size size = previewSize(image.size(), side_);
   if (size == image.size()) {
     preview = image;
   } else {

@@ -19,6 +19,9 @@ constexpr double kPreviewPeriod = 0.04;  // s, the least between two of them
 
 class Preview {
  public:
+  // `side`: px, the most of either side; at least 1.
+  explicit Preview(int side = kPreviewSide) : side_(side) {}
+
   // Whether the image that has come at `now` [s, steady] is to be shown; it then counts as shown.
   bool due(double now);
   // 8UC1 or 8UC3, of the image's type. May share the image's data when it is small already.
@@ -27,6 +30,7 @@ class Preview {
  private:
   void prepareMap(const cv::Size& image, const cv::Size& preview, const std::shared_ptr<const image::Lens>& lens);
 
+  int side_;
   double next_ = -1.0;
   std::shared_ptr<const image::Lens> lens_;  // that the map is of
   cv::Size image_size_;

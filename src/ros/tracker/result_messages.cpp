@@ -17,6 +17,10 @@ namespace {
 static_assert(Homography::IDLE == static_cast<int>(tracking::State::kIdle));
 static_assert(Homography::TRACKING == static_cast<int>(tracking::State::kTracking));
 static_assert(Homography::SEARCHING == static_cast<int>(tracking::State::kSearching));
+static_assert(AreaSelection::COLOUR == static_cast<int>(tracking::AreaCause::kColour));
+static_assert(AreaSelection::STRUCTURE == static_cast<int>(tracking::AreaCause::kStructure));
+static_assert(AreaSelection::HIGHLIGHT == static_cast<int>(tracking::AreaCause::kHighlight));
+static_assert(AreaSelection::BORDER == static_cast<int>(tracking::AreaCause::kBorder));
 static_assert(Homography::LOST == static_cast<int>(tracking::State::kLost));
 
 template <class Array>
@@ -103,6 +107,7 @@ AreaSelection areaSelectionMessage(const Processed& processed) {
   message.columns = static_cast<std::uint16_t>(areas.columns);
   message.distance = areas.distance;
   message.occluded.assign(areas.occluded.begin(), areas.occluded.end());
+  for (const tracking::AreaCause cause : areas.cause) message.cause.push_back(static_cast<std::uint8_t>(cause));
   return message;
 }
 

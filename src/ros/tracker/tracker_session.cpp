@@ -187,6 +187,7 @@ Snapshot TrackerSession::snapshot(const Processed& processed) const {
   result.stamp = processed.header.stamp;
   result.camera = processed.camera;
   result.lens = processed.lens;
+  result.lens_error = lens_error_;
   result.epoch = epoch_;
   const tracking::TrackResult& now = processed.result;
   std::ostringstream why;
@@ -213,6 +214,7 @@ std::string TrackerSession::recall(const RecallRoute& route) {
   if (route.steps.empty()) return "the way to the view is empty";
   if (route.epoch != epoch_) return "a region was selected or forgotten in the meantime";
   recall_.begin(route.steps);
+  ++epoch_;
   return "";
 }
 

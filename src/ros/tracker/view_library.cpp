@@ -2,6 +2,8 @@
 
 #include <stdexcept>
 
+#include "ros/tracker/result_messages.h"
+
 namespace laparoscope_servo {
 
 namespace {
@@ -60,6 +62,32 @@ RecallRoute ViewLibrary::route(const std::string& name, const Snapshot& snapshot
     throw std::invalid_argument(error.what() + forgotten_);
   }
   return result;
+}
+
+std::vector<StoredViewInfo> ViewLibrary::list(bool thumbnails) {
+  std::vector<StoredViewInfo> list;
+  for (const std::string& name : store_.names()) {
+    const tracking::View& view = store_.get(name);
+    StoredViewInfo info;
+    info.name = name;
+    info.stamp = stamps_.at(name);
+    info.roi.x_offset = static_cast<std::uint32_t>(view.roi.x);
+    info.roi.y_offset = static_cast<std::uint32_t>(view.roi.y);
+    info.roi.width = static_cast<std::uint32_t>(view.roi.width);
+    info.roi.height = static_cast<std::uint32_t>(view.roi.height);
+    info.width = static_cast<std::uint32_t>(view.image.cols);
+    info.height = static_cast<std::uint32_t>(view.image.rows);
+    for (const std::string& other : store_.names()) {
+      if (other != name && store_.leads(name, other)) info.leads_to.push_back(other);
+    }
+    if (thumbnails) {
+      std_msgs::Header header;
+      header.stamp = info.stamp;
+      info.thumbnail = *imageMessage(header, thumbnail_.of(view.image, lens_));
+    }
+    list.push_back(info);
+  }
+  return list;
 }
 
 std::string routeText(const RecallRoute& route) {

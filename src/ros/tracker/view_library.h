@@ -1,16 +1,22 @@
 // The views of one camera that are stored while the tracker runs. Not thread-safe.
 #pragma once
 
+#include <laparoscope_servo/StoredViewInfo.h>
+
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "laparoscope_servo/tracking/view_store.h"
+#include "ros/tracker/preview.h"
 #include "ros/tracker/tracker_parameters.h"
 #include "ros/tracker/view_recall.h"
 
 namespace laparoscope_servo {
+
+constexpr int kThumbnailSide = 160;  // px, the most of either side
 
 class ViewLibrary {
  public:
@@ -22,6 +28,9 @@ class ViewLibrary {
   // The way from the snapshot to a view. Throws std::invalid_argument when there is none, or no such view.
   RecallRoute route(const std::string& name, const Snapshot& snapshot);
 
+  // In alphabetical order.
+  std::vector<StoredViewInfo> list(bool thumbnails);
+
   const tracking::ViewStore& views() const { return store_; }
 
  private:
@@ -32,6 +41,7 @@ class ViewLibrary {
   std::map<std::string, ros::Time> stamps_;
   std::optional<geometry::PinholeCamera> camera_;
   std::shared_ptr<const image::Lens> lens_;
+  Preview thumbnail_{kThumbnailSide};
   std::string forgotten_;  // why views that were stored are no more
 };
 

@@ -5,6 +5,14 @@
 
 namespace laparoscope_servo {
 
+namespace {
+
+std::string called(const RecallStep& step) {
+  return step.name.empty() ? "the region of the frozen picture" : "view '" + step.name + "'";
+}
+
+}  // namespace
+
 bool hasArrived(const tracking::TrackResult& result, const tracking::ViewConfig& config) {
   if (result.state != tracking::State::kTracking) return false;
   const geometry::Quadrilateral corners = result.roi.corners();
@@ -24,7 +32,7 @@ void ViewRecall::begin(std::vector<RecallStep> steps) {
 
 void ViewRecall::end(const std::string& why) {
   if (!active()) return;
-  text_ = "view '" + steps_.back().name + "' given up: " + why;
+  text_ = called(steps_.back()) + " given up: " + why;
   steps_.clear();
   due_ = arrived_ = false;
 }
@@ -41,7 +49,7 @@ void ViewRecall::see(const tracking::TrackResult& result) {
 }
 
 void ViewRecall::describe() {
-  const std::string name = "view '" + steps_.back().name + "'";
+  const std::string name = called(steps_.back());
   if (arrived_) {
     text_ = "arrived at " + name;
     return;

@@ -26,11 +26,12 @@ struct Snapshot {
   std::string roi_error;                          // why
   std::optional<geometry::PinholeCamera> camera;  // as far as it is known
   std::shared_ptr<const image::Lens> lens;        // null: none
+  std::string lens_error;                         // why nothing can be selected, as far as the lens is the reason
   std::uint64_t epoch = 0;                        // see TrackerSession::recall
 };
 
 struct RecallStep {
-  std::string name;
+  std::string name;  // of the stored view; empty: it is the region that was drawn in a frozen picture
   tracking::View view;
   ros::Time stamp;
 };

@@ -18,7 +18,7 @@ constexpr double kSpan = 3.0;  // s of reports that are kept: more than kGap, kP
 constexpr double kReportLife = 0.25;  // s for which a report stands for the motion: one of a robot at 10 Hz may be lost
 constexpr double kReports = 0.3;  // s without a report after which the robot is one that says nothing: three at 10 Hz
 constexpr double kSameOptics = 0.05;  // rad, by which the camera may be turned about the shaft: a tenth of a roll step
-constexpr double kPatience = 0.2;     // s that an image waits for a report of its time: two at 10 Hz
+constexpr double kPatience = 0.3;     // s that an image waits for a report of its time: as long as one is expected
 // px, the corner error of a good image (simulate_servo's corner_noise): the noise of one that is worse grows with it.
 constexpr double kCornerError = 0.3;
 // Times that noise: the tracker believes in nothing beyond 1.5 px, and no corner error may blind the guard.
@@ -93,7 +93,7 @@ void EffectGuard::report(double time, const scope::Velocity& velocity) {
 
 // (pan, tilt, spin [rad], insertion [m]) since the last image.
 Eigen::Vector4d EffectGuard::executed(double end, double late, const CommandHistory& commands, double delay) const {
-  if (reports(end)) return reports_.displacement(last_.time, end, late);
+  if (reports(end)) return reports_.displacement(last_.time - late, end - late);
   return commands.displacement(last_.time, end, delay + late);
 }
 
@@ -154,7 +154,7 @@ Effect EffectGuard::observe(const EffectObservation& image, const CommandHistory
     if (!in_vain && reports(first.time) && last_report_ < first.time) break;
     waiting_.pop_front();
     if (in_vain) {
-      start(first, true);
+      start(first, isOther(first));
     } else {
       judge(first, commands, delay);
     }
@@ -167,11 +167,17 @@ bool EffectGuard::reports(double time) const {
   return time - last_report_ <= kReports;
 }
 
-void EffectGuard::judge(const EffectObservation& image, const CommandHistory& commands, double delay) {
+// It does not go on from the last one.
+bool EffectGuard::isOther(const EffectObservation& image) const {
   const double dt = image.time - last_.time;
   const bool other_region = image.error.m_star != last_.error.m_star;
   const bool other_optics = !image.scope.camera_R_shaft.isApprox(last_.scope.camera_R_shaft, kSameOptics);
-  if (!started_ || !(dt > 0.0 && dt <= kGap) || other_region || other_optics) {
+  return !started_ || !(dt > 0.0 && dt <= kGap) || other_region || other_optics;
+}
+
+void EffectGuard::judge(const EffectObservation& image, const CommandHistory& commands, double delay) {
+  const double dt = image.time - last_.time;
+  if (isOther(image)) {
     start(image, true);
     return;
   }

@@ -28,6 +28,7 @@
 #include "servo/prediction/command_history.h"
 #include "servo/safety/effect.h"
 #include "servo/safety/effect_budget.h"
+#include "servo/safety/reported_motion.h"
 
 namespace laparoscope_servo::servo {
 
@@ -81,6 +82,7 @@ class EffectGuard {
 
   // `other`: this may be another picture.
   void start(const EffectObservation& image, bool other);
+  bool isOther(const EffectObservation& image) const;
   bool reports(double time) const;
   void judge(const EffectObservation& image, const CommandHistory& commands, double delay);
   void advance(double dt);
@@ -98,7 +100,7 @@ class EffectGuard {
   Features noise_;   // variance
   Features tissue_;  // 1/s, standard deviation of its velocity
   std::vector<Track> tracks_;
-  CommandHistory reports_;
+  ReportedMotion reports_;
   double last_report_;  // s
   bool started_ = false;
   EffectObservation last_;

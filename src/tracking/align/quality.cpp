@@ -36,17 +36,19 @@ constexpr double kGainChangeRate = 0.5;  // 1/s
 // whatever its light and noise are like; in images of other scenes not three moved alike.
 constexpr int kEnoughBlocks = 6;
 constexpr double kRecognised = 0.3;
-constexpr double kNear = 3.0;     // px, the median of the blocks
-constexpr double kMostOff = 4.0;  // px: from 5 px on an estimate is wrong
-constexpr int kTelling = 8;       // blocks; where fewer can be told from their surroundings, they tell nothing
-constexpr int kFewBlocks = 3;
+constexpr double kNear = 3.0;       // px, the median of the blocks
+constexpr double kMostOff = 4.0;    // px: from 5 px on an estimate is wrong
+constexpr int kTelling = 8;         // blocks; where fewer can be told from their surroundings, they tell nothing
+constexpr int kVisibleTelling = 6;  // the same of those that nothing covers
+constexpr int kFewBlocks = 3;       // that moved alike: as many as it takes to be confident of any
 // Of the blocks that can be visible. On chol_blood.mp4 (of the four films where it was looked at) a sixth of 36
 // overlapping blocks agreed by chance for 20 images.
 constexpr double kFoundOfVisible = 0.25;
-// While tracking, blocks are asked only where most of the ROI is visible: next to an instrument a block is covered,
-// too.
+
+// While tracking, blocks are asked only where most of the ROI is visible, or for so long: next to an instrument a block
+// is covered, too; but where the gates take all that has texture for covered, the estimate may as well be wrong.
 constexpr double kMostlyVisible = 0.5;
-constexpr int kFewestOff = 5;  // blocks whose median says where the region is
+constexpr double kUnproven = 0.5;  // s
 
 // A record can be so good that what is real never reaches it again: these are always good enough.
 constexpr double kGoodZncc = 0.9;
@@ -80,6 +82,12 @@ double allowedJump(const TrackRecord& record, const QualityConfig& config, const
   return std::max(expected, trust * config.max_jump * std::hypot(roi.width, roi.height));
 }
 
+double leastBlocks(const BlockEvidence& blocks, double visible_fraction) {
+  if (blocks.seen < kTelling) return 0.0;
+  return std::max<double>(kFewBlocks,
+                          kFoundOfVisible * std::max<double>(blocks.visible, visible_fraction * blocks.seen));
+}
+
 std::string doubt(const Evidence& e, const QualityConfig& q) {
   if (e.esm.status == EsmStatus::kOutOfView) return "the ROI's image crosses infinity";
   if (e.esm.status == EsmStatus::kIllConditioned) return "the pixels kept do not determine the motion";
@@ -102,12 +110,13 @@ std::string doubt(const Evidence& e, const QualityConfig& q) {
   if (!(std::max(ratio, 1.0 / ratio) <= q.max_area_ratio)) {
     return text("area ratio", ratio, "within a factor of", q.max_area_ratio);
   }
-  if (blocks.confident >= kFewestOff && !(blocks.off <= kMostOff * unit))
+  if (blocks.confident >= kFewBlocks && !(blocks.off <= kMostOff * unit))
     return text("pieces of the region off by [px]", blocks.off, "at most", kMostOff * unit);
-  if (blocks.seen >= kTelling && (!e.from_track || e.visible_fraction >= kMostlyVisible)) {
-    const double least = std::max<double>(kFewBlocks, kFoundOfVisible * e.visible_fraction * blocks.seen);
-    if (!(blocks.confident >= least)) return text("pieces of the region found", blocks.confident, "at least", least);
-  }
+  const bool asked = !e.from_track || e.visible_fraction >= kMostlyVisible || blocks.visible >= kVisibleTelling ||
+                     e.unproven > kUnproven;
+  const double least = leastBlocks(blocks, e.visible_fraction);
+  if (asked && !(blocks.confident >= least))
+    return text("pieces of the region found", blocks.confident, "at least", least);
   Tolerance tolerance = e.from_track ? kTracking : kSearching;
   const double forgotten = e.from_track ? 0.0 : std::clamp(e.unseen / kForgetting, 0.0, 1.0);
   tolerance.unexplained += forgotten * kForgotten.unexplained;

@@ -37,7 +37,11 @@ struct BlockEvidence {
   int seen = 0;       // blocks in the image that can be told from their surroundings
   int confident = 0;  // of which the place is known
   double off = 0.0;   // px of the image, their median distance from where the estimate has them; NaN without any
+  int visible = 0;    // of those seen, that nothing covers
 };
+
+// How many blocks have to be found for an estimate; 0 where there are too few to tell.
+double leastBlocks(const BlockEvidence& blocks, double visible_fraction);
 
 struct Evidence {
   EsmResult esm;
@@ -51,6 +55,7 @@ struct Evidence {
   double in_image = 1.0;          // 0 to 1, share of the ROI that lies in the image
   double zncc = 0.0;              // over the pixels used, the means of the areas taken out
   BlockEvidence blocks;
+  double unproven = 0.0;  // s, since as many blocks as it takes were last found
   TrackRecord record;
 };
 

@@ -23,9 +23,11 @@ constexpr int kMostCorrections = 2;  // blocks that were too far to be found are
 constexpr double kSignificant = 1.0;
 // px of the level that blocks are searched on. Where their median is off by less, ESM is the more accurate.
 constexpr double kNearOff = 0.3;
-constexpr double kFarOff =
-    1.5;  // lengthUnit()s of the image, the blocks' median: ESM is off, however the blocks scatter
+constexpr double kFarOff = 1.5;  // lengthUnit()s of the image, the blocks' median: ESM is off, however they scatter
+// lengthUnit()s of the image, the same: the place is not the region's, and what few blocks say for it is chance.
+constexpr double kMostOff = 4.0;
 constexpr double kMostMissing = 0.5;  // share of the blocks that are found, from which on they are not searched further
+constexpr double kBlockVisible = 0.8;  // share of a visible block's pixels that have weight
 constexpr double kGateShift =
     2.0;  // lengthUnit()s of the image: masks drawn further from the estimate than this are drawn again
 constexpr double kBorder = 4.0;  // px of the coarsest level, of what smoothing takes in from beyond the ROI
@@ -103,16 +105,20 @@ Alignment RegionAligner::align(const cv::Mat& image, const EsmState& start, cons
   result.in_image = !(box & cv::Rect(cv::Point(0, 0), image.size())).empty();
   if (!result.in_image) return result;
   pyramid_.build(image, box, config_.levels, channels_);
-  look(image, start.g);
-  result.esm = esm_.align(pyramid_, start, prior);
+  bool looked = prior == nullptr;
+  if (looked) look(image, start.g);
+  result.esm = esm_.align(pyramid_, start, prior, esm_.levels() - 1, 1);
   int iterations = result.esm.iterations;
   const auto refine = [&] {
     result.esm = esm_.align(pyramid_, result.esm.state, prior, 0);
     iterations += result.esm.iterations;
   };
-  if (usable(result.esm) &&
-      geometry::cornerDistance(shown_, result.esm.state.g, roi()) > kGateShift * lengthUnit(roi())) {
-    look(image, result.esm.state.g);
+  for (int k = 0; k < 2 && usable(result.esm); ++k) {
+    const bool outdated =
+        !looked || geometry::cornerDistance(shown_, result.esm.state.g, roi()) > kGateShift * lengthUnit(roi());
+    if (k > 0 && !outdated) break;
+    if (outdated) look(image, result.esm.state.g);
+    looked = true;
     refine();
   }
   for (int round = 0; round < kMaxStructureRounds && usable(result.esm); ++round) {
@@ -144,7 +150,20 @@ const std::vector<BlockShift>& RegionAligner::measure(const EsmResult& estimate,
   evidence.seen = static_cast<int>(shifts.size());
   evidence.confident = confidentShifts(shifts);
   evidence.off = medianShift(shifts, estimate.state.g);
+  evidence.visible = visibleBlocks(shifts, blocks_.side());
   return shifts;
+}
+
+int RegionAligner::visibleBlocks(const std::vector<BlockShift>& shifts, double side) const {
+  const cv::Mat1f weight = esm_.level(0).weight.view();
+  const auto visible = [&](const BlockShift& block) {
+    const cv::Point centre(cvRound(block.centre.x() - roi().x), cvRound(block.centre.y() - roi().y));
+    const int half = static_cast<int>(side / 2.0);
+    const cv::Rect box =
+        cv::Rect(centre.x - half, centre.y - half, 2 * half, 2 * half) & cv::Rect({0, 0}, weight.size());
+    return cv::mean(weight(box))[0] >= kBlockVisible;
+  };
+  return static_cast<int>(std::count_if(shifts.begin(), shifts.end(), visible));
 }
 
 // Where blocks and ESM contradict each other the blocks are believed: moving light and shadows bias residuals, but not
@@ -169,7 +188,7 @@ void RegionAligner::lookFurther(EsmResult& estimate, BlockEvidence& evidence) {
   if (evidence.seen == 0 || evidence.confident > kMostMissing * evidence.seen) return;
   const std::vector<BlockShift>& shifts = far_blocks_.measure(pyramid_, estimate.state.g);
   const BlockEvidence further = {static_cast<int>(shifts.size()), confidentShifts(shifts),
-                                 medianShift(shifts, estimate.state.g)};
+                                 medianShift(shifts, estimate.state.g), visibleBlocks(shifts, far_blocks_.side())};
   const std::optional<ShiftFit> fit = fitShifts(shifts, roi(), far_blocks_.side());
   if (!fit || !(further.off > kFarOff * lengthUnit(roi())) || further.confident <= evidence.confident) return;
   EsmResult other = estimate;
@@ -179,7 +198,7 @@ void RegionAligner::lookFurther(EsmResult& estimate, BlockEvidence& evidence) {
   if (there.confident > evidence.confident) {
     estimate = other;
     evidence = there;
-  } else {
+  } else if (further.off > kMostOff * lengthUnit(roi())) {
     evidence = further;  // neither estimate is supported by its blocks
   }
 }

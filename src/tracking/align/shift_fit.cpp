@@ -18,7 +18,7 @@ constexpr int kRounds = 5;
 constexpr double kPlace = 0.15;  // px, how well a block's place is measured at best
 // Standard deviations of ESM's error at the ROI's border, in units of half its side, before blocks are measured. They
 // keep shear and perspective small unless the blocks determine them.
-constexpr double kShift = 0.08, kAffine = 0.02, kPerspective = 0.012;
+constexpr double kShift = 0.08, kAffine = 0.04, kPerspective = 0.024;
 
 template <typename Value>
 using OfBlocks = boost::container::static_vector<Value, BlockMatching::kMostBlocks>;  // does not allocate

@@ -284,8 +284,8 @@ EsmStatus Esm::alignLevel(const image::RegionPyramid& current, int l, bool first
   return status == EsmStatus::kConverged ? settle(current, l, config_.max_iterations, prior, result) : status;
 }
 
-EsmResult Esm::align(const image::RegionPyramid& current, const EsmState& start, const MotionPrior* prior,
-                     int coarsest) {
+EsmResult Esm::align(const image::RegionPyramid& current, const EsmState& start, const MotionPrior* prior, int coarsest,
+                     int finest) {
   EsmResult result;
   result.state = start;
   result.corner_error = result.centre_error = std::numeric_limits<double>::infinity();
@@ -295,14 +295,17 @@ EsmResult Esm::align(const image::RegionPyramid& current, const EsmState& start,
     if (!deviation_.allFinite()) prior = nullptr;
   }
   const int first = std::min({coarsest, levels() - 1, current.levels() - 1});
-  for (int l = first; l >= 0; --l) {
+  for (int l = first; l >= std::min(finest, first); --l) {
     for (EsmPlane& plane : levels_[l].planes) plane.before = plane.bias;
-    if (l < first && light_known_ && config_.light == Light::kLocal) inheritLight(levels_[l + 1], levels_[l]);
+    const bool newer_above = l + 1 < levels() && levels_[l + 1].aligned > levels_[l].aligned;
+    if (newer_above && light_known_ && config_.light == Light::kLocal) inheritLight(levels_[l + 1], levels_[l]);
+    levels_[l].aligned = ++alignments_;
     result.status = alignLevel(current, l, l == first, prior, result);
     if (result.status == EsmStatus::kOutOfView || result.status == EsmStatus::kIllConditioned) return result;
     // Still far from converged on a coarse level: the start was too far away, finer levels would not help.
     if (result.status == EsmStatus::kMaxIterations && result.last_step > kFar * levels_[l].scale) return result;
   }
+  if (finest > 0 && first > 0) return result;
   light_known_ = true;
   judge(prior, result);
   return result;

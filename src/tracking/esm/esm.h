@@ -9,6 +9,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <memory>
 #include <opencv2/core.hpp>
 #include <optional>
@@ -84,9 +85,10 @@ class Esm {
   // image.
   void forgetLight();
 
-  // From level `coarsest` (by default the coarsest there is) down to level 0.
+  // From level `coarsest` (by default the coarsest there is) down to level `finest`. What is said of
+  // uncertainty is known after level 0 only.
   EsmResult align(const image::RegionPyramid& current, const EsmState& start, const MotionPrior* prior = nullptr,
-                  int coarsest = 1000);
+                  int coarsest = 1000, int finest = 0);
 
   // px, standard deviation of the worst corner if the reference were seen with independent noise of `sigma` grey levels
   // in reference and image, by the reference's own gradients and the weights; infinite where they do not determine it.
@@ -131,6 +133,7 @@ class Esm {
   std::vector<float> scratch_;
   std::optional<Vector10d> last_step_;  // of this level, see accelerated(); empty after one that was lengthened
   bool light_known_ = false;
+  std::uint64_t alignments_ = 0;                               // of levels, so far
   Light light_ = Light::kConstant;                             // that the equations have at this iteration
   geometry::Vector8d deviation_ = geometry::Vector8d::Zero();  // from the prior's prediction
 };

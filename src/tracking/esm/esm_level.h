@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <opencv2/core.hpp>
 #include <vector>
 
@@ -61,6 +62,7 @@ struct EsmLevel {
   std::vector<int> light_row_begin;  // rows; the last is the height
   int light_columns = 0;
   std::vector<int> coarser_light_block;  // of the next coarser level, where a block's centre lies
+  std::uint64_t aligned = 0;             // number of the last alignment, among those of all levels
 };
 
 // Once both levels have their blocks: fills in the finer one's coarser_light_block.

@@ -35,6 +35,7 @@ LightChange::LightChange(const image::ColourPatch& reference, int bins, const im
   for (int area = 0; area < grid.count(); ++area) most = std::max(most, grid.pixelsIn(area));
   for (std::vector<Colour>* pixels : {&before_, &now_}) pixels->reserve(most);  // nothing is allocated while tracking
   channel_.reserve(most);
+  for (int area = 0; area < grid.count(); ++area) reference_clipped_.push_back(clippedShare(reference_, area));
 }
 
 std::optional<ColourLight> LightChange::propose(const std::vector<char>& use, const ColourLight* start,
@@ -45,10 +46,25 @@ std::optional<ColourLight> LightChange::propose(const std::vector<char>& use, co
   return found->light;
 }
 
-float LightChange::collect(const image::ColourPatch& patch, const ColourLight& light, int area,
-                           std::vector<Colour>& pixels) const {
+float LightChange::clippedShare(const image::ColourPatch& patch, int area) const {
+  int clipped = 0, valid = 0;
+  const int row = area / grid_.columns(), column = area % grid_.columns();
+  for (int j = grid_.rowBegin(row); j < grid_.rowBegin(row + 1); ++j) {
+    const unsigned char* const b = patch.blue.ptr<unsigned char>(j);
+    const unsigned char* const g = patch.green.ptr<unsigned char>(j);
+    const unsigned char* const r = patch.red.ptr<unsigned char>(j);
+    const unsigned char* const counts = patch.valid.ptr<unsigned char>(j);
+    for (int i = grid_.columnBegin(column); i < grid_.columnBegin(column + 1); ++i) {
+      valid += counts[i] & 1;
+      clipped += counts[i] & 1 & static_cast<int>(std::max({b[i], g[i], r[i]}) == 255);
+    }
+  }
+  return static_cast<float>(clipped) / std::max(1.0f, static_cast<float>(valid));
+}
+
+void LightChange::collect(const image::ColourPatch& patch, const ColourLight& light, int area,
+                          std::vector<Colour>& pixels) const {
   pixels.clear();
-  int clipped = 0;
   const int row = area / grid_.columns(), column = area % grid_.columns();
   for (int j = grid_.rowBegin(row); j < grid_.rowBegin(row + 1); ++j) {
     for (int i = grid_.columnBegin(column); i < grid_.columnBegin(column + 1); ++i) {
@@ -56,11 +72,9 @@ float LightChange::collect(const image::ColourPatch& patch, const ColourLight& l
       const std::array<unsigned char, 3> seen = {patch.blue(j, i), patch.green(j, i), patch.red(j, i)};
       Colour colour;
       for (int c = 0; c < 3; ++c) colour[c] = std::max(0.0f, light[c].gain * seen[c] + light[c].offset);
-      clipped += *std::max_element(seen.begin(), seen.end()) == 255;
       pixels.push_back(colour);
     }
   }
-  return static_cast<float>(clipped) / std::max(1.0f, static_cast<float>(pixels.size()));
 }
 
 float LightChange::median(const std::vector<Colour>& pixels, int channel) {
@@ -82,10 +96,11 @@ void LightChange::fill(const std::vector<Colour>& pixels, float gain, const Colo
 
 float LightChange::clippedDistance(const image::ColourPatch& current, const ColourLight& light, int area) {
   constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
-  const float clipped =
-      std::max(collect(reference_, ColourLight(), area, before_), collect(current, light, area, now_));
+  if (std::max(reference_clipped_[area], clippedShare(current, area)) < kLeastClipped) return kNone;
+  collect(reference_, ColourLight(), area, before_);
+  collect(current, light, area, now_);
   const int needed = (grid_.pixelsIn(area) + 1) / 2;
-  if (static_cast<int>(std::min(before_.size(), now_.size())) < needed || clipped < kLeastClipped) return kNone;
+  if (static_cast<int>(std::min(before_.size(), now_.size())) < needed) return kNone;
 
   float before = kWhite, now = kWhite;
   for (int c = 0; c < 3; ++c) {

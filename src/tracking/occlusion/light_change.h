@@ -44,8 +44,9 @@ class LightChange {
  private:
   // Of a channel's values, or what else there is for each channel.
   using Colour = std::array<float, 3>;  // blue, green, red
-  // Share of pixels that clip.
-  float collect(const image::ColourPatch& patch, const ColourLight& light, int area, std::vector<Colour>& pixels) const;
+  // Of an area's valid pixels.
+  float clippedShare(const image::ColourPatch& patch, int area) const;
+  void collect(const image::ColourPatch& patch, const ColourLight& light, int area, std::vector<Colour>& pixels) const;
   float median(const std::vector<Colour>& pixels, int channel);
   void fill(const std::vector<Colour>& pixels, float gain, const Colour& ceiling, std::vector<float>& histogram) const;
   std::optional<ColourLight> propose(const std::vector<char>& use, const ColourLight* start, double least_correlation);
@@ -62,6 +63,7 @@ class LightChange {
   std::vector<char> all_;
   std::vector<Colour> before_, now_;
   std::vector<float> channel_, histogram_, relit_;
+  std::vector<float> reference_clipped_;  // share of each area
 };
 
 }  // namespace laparoscope_servo::tracking

@@ -17,6 +17,7 @@ namespace {
 constexpr int kGrowSaturated = 2;
 constexpr int kGrowClipped = 1;
 constexpr double kMuch = 0.5;  // of the samples
+constexpr int kHidden = 2;     // one sample of so many
 
 // For another light to be believed. Of the areas that can be compared, so many agree in the known one, and so many of
 // these in the other one as well:
@@ -85,6 +86,8 @@ void OcclusionGates::setReference(const image::ColourPatch& patch, const cv::Siz
   markSaturated(patch, reference_saturated_);
   usable_.resize(size.width, size.height);
   areas_.resize(size.width);
+  reference_saturated_.copyTo(saturated_);
+  patch.valid.copyTo(valid_);
   spread(reference_saturated_, patch.valid);
   colour_used_ = reference_has_colour_;
   distances_.assign(grid_.count(), 0.0f);
@@ -120,6 +123,7 @@ void OcclusionGates::spread(const cv::Mat1b& saturated, const cv::Mat1b& valid) 
 
 void OcclusionGates::observeColour(const image::ColourPatch& patch) {
   markSaturated(patch, saturated_);
+  patch.valid.copyTo(valid_);
   spread(saturated_, patch.valid);
   colour_used_ = reference_has_colour_ && patch.has_colour;
   if (!colour_used_) {
@@ -217,6 +221,36 @@ void OcclusionGates::learnLight(double gain, double sigma) {
     alike += dissimilarity <= kMaxDissimilarity;
   }
   if (2 * alike > passed) light_change_.learn(light_);
+}
+
+void OcclusionGates::causes(std::vector<AreaCause>& causes) const {
+  causes.resize(grid_.count());
+  for (int row = 0; row < grid_.rows(); ++row) {
+    for (int column = 0; column < grid_.columns(); ++column) {
+      const int area = row * grid_.columns() + column;
+      causes[area] = hidden(row, column);
+      if (causes[area] != AreaCause::kNone) continue;
+      if (colour_rejects_[area] != 0) {
+        causes[area] = AreaCause::kColour;
+      } else if (held_[area] > 0) {
+        causes[area] = AreaCause::kStructure;
+      }
+    }
+  }
+}
+
+AreaCause OcclusionGates::hidden(int row, int column) const {
+  int pixels = 0, outside = 0, saturated = 0;
+  for (int j = samples_.rowBegin(row); j < samples_.rowBegin(row + 1); ++j) {
+    for (int i = samples_.columnBegin(column); i < samples_.columnBegin(column + 1); ++i) {
+      const bool inside = valid_(j, i) != 0;
+      ++pixels;
+      outside += !inside;
+      saturated += inside && (saturated_(j, i) | reference_saturated_(j, i)) != 0;
+    }
+  }
+  if (kHidden * (outside + saturated) < pixels || pixels == 0) return AreaCause::kNone;
+  return outside > saturated ? AreaCause::kBorder : AreaCause::kHighlight;
 }
 
 int OcclusionGates::observeStructure(const PatchPair* channels, int count, const image::Patch& valid, double gain,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "laparoscope_servo/image/area_grid.h"
+#include "laparoscope_servo/tracking/area_cause.h"
 #include "laparoscope_servo/tracking/tracker_config.h"
 #include "tracking/occlusion/colour_gate.h"
 #include "tracking/occlusion/light_change.h"
@@ -64,6 +65,8 @@ class OcclusionGates {
   // False when the image has no colour, or the gate is off: the colour gate then stands aside.
   bool colourUsed() const { return colour_used_; }
   bool occluded(int area) const { return colour_rejects_[area] || held_[area] > 0; }
+  // Of every area, for people: nothing is decided by it.
+  void causes(std::vector<AreaCause>& causes) const;
   const std::vector<float>& distances() const { return distances_; }
   const image::AreaGrid& grid() const { return grid_; }
 
@@ -75,6 +78,7 @@ class OcclusionGates {
   void forgiveClipping(const image::ColourPatch& patch);
   void learnLight(double gain, double sigma);
   void spread(const cv::Mat1b& saturated, const cv::Mat1b& valid);
+  AreaCause hidden(int row, int column) const;
 
   OcclusionConfig config_;
   int saturation_;
@@ -89,6 +93,7 @@ class OcclusionGates {
   int step_ = 1;
   image::AreaGrid samples_;                    // of the patches
   cv::Mat1b reference_saturated_, saturated_;  // 255 or 0 per sample
+  cv::Mat1b valid_;                            // 255 per sample in the image, or 0
   image::Patch usable_;           // 1 per pixel of the ROI, or 0: saturated in image or reference, or not valid
   std::vector<float> distances_;  // (2) per area
   std::vector<float> relit_distances_;

@@ -57,6 +57,19 @@ TEST_F(ControllerOutside, aSignalDisengages) {
   EXPECT_TRUE(controller_->isRunning());
 }
 
+// Whatever stops it when it goes on, that it was paused is said: nobody knows what the arm has done in between.
+TEST_F(ControllerOutside, aStopAfterAPauseOfTheProcessLeavesTheFault) {
+  start();
+  engageAndMove();
+  controller_->kill(SIGSTOP);
+  std::this_thread::sleep_for(std::chrono::milliseconds(1200));  // over 1 s (safety/max_clock_step)
+  controller_->kill(SIGUSR1);
+  controller_->kill(SIGCONT);
+  EXPECT_TRUE(cart_.waitForState(ControllerState::FAULT)) << cart_.state().state << ": " << cart_.state().reason;
+  EXPECT_NE(cart_.state().reason.find("steady clock jumped"), std::string::npos) << cart_.state().reason;
+  EXPECT_TRUE(cart_.stands());
+}
+
 TEST_F(ControllerOutside, theStopLineDisengagesAndKeepsFromEngaging) {
   const test_support::TemporaryFolder folder;
   const std::string line = folder.file("line");

@@ -150,7 +150,7 @@ TEST(ControllerProcess, APauseOfTheProcessIsAFault) {
   process.signal(SIGSTOP);
   std::this_thread::sleep_for(std::chrono::milliseconds(1200));
   process.signal(SIGCONT);
-  ASSERT_TRUE(cart.waitForState(ControllerState::FAULT)) << int(cart.state().state) << " " << cart.state().reason;
+  ASSERT_TRUE(cart.waitForState(ControllerState::FAULT)) << cart.state().state << ": " << cart.state().reason;
   EXPECT_NE(cart.state().reason.find("steady clock jumped"), std::string::npos) << cart.state().reason;
   EXPECT_TRUE(cart.stands());
   bool success = true;

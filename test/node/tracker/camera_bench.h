@@ -6,6 +6,8 @@
 #include <geometry_msgs/PolygonStamped.h>
 #include <gtest/gtest.h>
 #include <laparoscope_servo/AreaSelection.h>
+#include <laparoscope_servo/CheckRoi.h>
+#include <laparoscope_servo/FreezeImage.h>
 #include <laparoscope_servo/Homography.h>
 #include <laparoscope_servo/SelectRoi.h>
 #include <laparoscope_servo/StoredView.h>
@@ -141,6 +143,19 @@ class CameraBench {
     return std::async(std::launch::async, [call, name]() mutable {
       ros::service::waitForService(name, 10000);
       if (!ros::service::call(name, call)) call.response.message = "the service call failed";
+      return call.response;
+    });
+  }
+
+  // Any other service of the tracker that waits for an image.
+  template <class Service>
+  std::future<typename Service::Response> ask(const std::string& service, const typename Service::Request& request) {
+    Service call;
+    call.request = request;
+    const std::string name = node_.resolveName("tracker/" + service);
+    return std::async(std::launch::async, [call, name]() mutable {
+      ros::service::waitForService(name, 10000);
+      ros::service::call(name, call);
       return call.response;
     });
   }

@@ -1,5 +1,7 @@
 // The services of stored views: a camera that slides along tissue by the task error, through views that overlap.
 #include <gtest/gtest.h>
+#include <laparoscope_servo/ListViews.h>
+#include <laparoscope_servo/TrackerState.h>
 
 #include <algorithm>
 #include <cmath>
@@ -60,7 +62,7 @@ class TrackerViews : public testing::Test {
   CameraBench bench_{"/"};
   DiagnosticsListener diagnostics_{bench_.node(), "tracker"};
   const cv::Mat scene_ = test_support::texture(cv::Size(900, 240));
-  ros::Time stamp_{1000, 0};
+  static inline ros::Time stamp_{1000, 0};  // the tracker is the same for all tests
 };
 
 TEST_F(TrackerViews, AreStoredAndReachedThroughOthersThatOverlap) {
@@ -72,6 +74,20 @@ TEST_F(TrackerViews, AreStoredAndReachedThroughOthersThatOverlap) {
     ASSERT_TRUE(stored.success) << stored.message;
     EXPECT_NE(stored.message.find("'" + name + "' with ROI 110,75,100,90"), std::string::npos) << stored.message;
   }
+  ListViewsRequest wanted;
+  wanted.thumbnails = 1;
+  const ListViewsResponse listed = bench_.ask<ListViews>("list_views", wanted).get();  // without an image
+  ASSERT_EQ(listed.views.size(), 3u);
+  EXPECT_EQ(listed.views[0].name, "a");
+  EXPECT_EQ(listed.views[0].leads_to, std::vector<std::string>{"b"});
+  EXPECT_EQ(listed.views[1].roi.x_offset, 110u);
+  EXPECT_EQ(listed.views[1].width, 320u);
+  EXPECT_EQ(listed.views[1].thumbnail.width, 160u);
+  EXPECT_EQ(listed.views[1].thumbnail.height, 120u);
+  EXPECT_LT(listed.views[0].stamp, listed.views[1].stamp);
+  wanted.thumbnails = 0;
+  EXPECT_TRUE(bench_.ask<ListViews>("list_views", wanted).get().views.at(0).thumbnail.data.empty());
+
   const StoredViewResponse unnamed = ask("store_view", "", 200);
   EXPECT_FALSE(unnamed.success);
   EXPECT_NE(unnamed.message.find("name"), std::string::npos) << unnamed.message;
@@ -93,6 +109,55 @@ TEST_F(TrackerViews, AreStoredAndReachedThroughOthersThatOverlap) {
   EXPECT_TRUE(ask("recall_view", "c", 100).success);
   select(100);
   EXPECT_EQ(drive(100, 20), 100);
+}
+
+sensor_msgs::RegionOfInterest message(const geometry::Rectangle& roi) {
+  sensor_msgs::RegionOfInterest result;
+  result.x_offset = static_cast<std::uint32_t>(roi.x);
+  result.y_offset = static_cast<std::uint32_t>(roi.y);
+  result.width = static_cast<std::uint32_t>(roi.width);
+  result.height = static_cast<std::uint32_t>(roi.height);
+  return result;
+}
+
+TEST_F(TrackerViews, ARegionIsCheckedWithoutBeingSelected) {
+  ASSERT_TRUE(bench_.reset());
+  CheckRoiRequest request;
+  request.roi = message(kRoi);
+  EXPECT_TRUE(answer(bench_.ask<CheckRoi>("check_roi", request), 0).success);
+  request.roi.x_offset = 300;
+  const CheckRoiResponse refused = answer(bench_.ask<CheckRoi>("check_roi", request), 0);
+  EXPECT_FALSE(refused.success);
+  EXPECT_NE(refused.message.find("not inside the image"), std::string::npos) << refused.message;
+  EXPECT_EQ(see(0)->state, Homography::IDLE) << "nothing was selected";
+}
+
+TEST_F(TrackerViews, ARegionOfAFrozenPictureIsFoundInTheLiveOne) {
+  ASSERT_TRUE(bench_.reset());
+  const FreezeImageResponse frozen = answer(bench_.ask<FreezeImage>("freeze_image", {}), 100);
+  ASSERT_TRUE(frozen.success) << frozen.message;
+  EXPECT_EQ(frozen.width, 320u);
+  EXPECT_EQ(frozen.preview.width, 320u);
+  CheckRoiRequest request;
+  request.roi = message(kRoi);
+  request.stamp = frozen.preview.header.stamp;
+  EXPECT_TRUE(bench_.ask<CheckRoi>("check_roi", request).get().success) << "needs no image";
+  // The camera has gone on by 20 px meanwhile.
+  const CheckRoiResponse selected = answer(bench_.ask<CheckRoi>("select_frozen_roi", request), 120);
+  ASSERT_TRUE(selected.success) << selected.message;
+  HomographyConstPtr result;
+  EXPECT_TRUE(waitFor([&] {
+    result = see(120);
+    return result && result->state == Homography::TRACKING;
+  }));
+  EXPECT_EQ(result->reference_stamp, request.stamp);
+  EXPECT_NEAR(result->corners[0], kRoi.x - 20.0, 0.5);
+  EXPECT_EQ(drive(120, 20), 100) << "the scope returns to where the picture was frozen";
+
+  request.stamp += ros::Duration(1.0);
+  const CheckRoiResponse other = answer(bench_.ask<CheckRoi>("select_frozen_roi", request), 100);
+  EXPECT_FALSE(other.success);
+  EXPECT_NE(other.message.find("another one was frozen"), std::string::npos) << other.message;
 }
 
 }  // namespace

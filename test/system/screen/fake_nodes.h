@@ -2,11 +2,15 @@
 // callbacks run in the threads of an AsyncSpinner.
 #pragma once
 
+#include <laparoscope_servo/CheckRoi.h>
 #include <laparoscope_servo/ControllerState.h>
+#include <laparoscope_servo/FreezeImage.h>
 #include <laparoscope_servo/Homography.h>
+#include <laparoscope_servo/ListViews.h>
 #include <laparoscope_servo/OperatingState.h>
 #include <laparoscope_servo/ScopeVelocity.h>
 #include <laparoscope_servo/SelectRoi.h>
+#include <laparoscope_servo/StoredView.h>
 #include <laparoscope_servo/TrackerState.h>
 #include <ros/ros.h>
 #include <sensor_msgs/Image.h>
@@ -51,11 +55,18 @@ class FakeNodes {
   void hangEnable(bool hangs) { enable_hangs_ = hangs; }
 
   std::vector<sensor_msgs::RegionOfInterest> regions() const { return get(regions_); }
+  std::vector<sensor_msgs::RegionOfInterest> frozenRegions() const { return get(frozen_regions_); }
+  std::vector<std::string> stored() const { return get(stored_); }
+  std::vector<std::string> recalled() const { return get(recalled_); }
   std::vector<bool> deadMan() const { return get(dead_man_words_); }
   std::vector<ScopeVelocity> manual() const { return get(manual_commands_); }
   void forget() {
     const std::lock_guard<std::mutex> lock(mutex_);
     regions_.clear();
+    frozen_regions_.clear();
+    stored_.clear();
+    recalled_.clear();
+    checks = 0;
     dead_man_words_.clear();
     manual_commands_.clear();
     robot_stops = controller_stops = disables = disengages = enables = 0;
@@ -66,7 +77,7 @@ class FakeNodes {
            dead_man_.getNumPublishers() > 0 && manual_.getNumPublishers() > 0;
   }
 
-  std::atomic<int> robot_stops{0}, controller_stops{0}, disables{0}, disengages{0}, enables{0};
+  std::atomic<int> robot_stops{0}, controller_stops{0}, disables{0}, disengages{0}, enables{0}, checks{0};
 
  private:
   template <class Value>
@@ -107,6 +118,13 @@ class FakeNodes {
   }
 
   void preview(const ros::Time& stamp, int turn) {
+    Homography homography;
+    homography.header.stamp = stamp;
+    homography.state = Homography::IDLE;
+    homographies_.publish(homography);
+    preview_.publish(picture(stamp, turn));
+  }
+  static sensor_msgs::Image picture(const ros::Time& stamp, int turn) {
     sensor_msgs::Image image;
     image.header.stamp = stamp;
     image.width = 640;
@@ -119,11 +137,7 @@ class FakeNodes {
       image.data[k + 1] = static_cast<std::uint8_t>(70 + turn % 8);
       image.data[k + 2] = 180;
     }
-    Homography homography;
-    homography.header.stamp = stamp;
-    homography.state = Homography::IDLE;
-    homographies_.publish(homography);
-    preview_.publish(image);
+    return image;
   }
 
   ros::NodeHandle node_;
@@ -132,7 +146,8 @@ class FakeNodes {
   ControllerState controller_;
   OperatingState robot_;
   std::atomic<bool> changed_{true}, camera_runs_{true}, enable_hangs_{false}, ends_{false};
-  std::vector<sensor_msgs::RegionOfInterest> regions_;
+  std::vector<sensor_msgs::RegionOfInterest> regions_, frozen_regions_;
+  std::vector<std::string> stored_, recalled_;
   std::vector<bool> dead_man_words_;
   std::vector<ScopeVelocity> manual_commands_;
 
@@ -166,6 +181,52 @@ class FakeNodes {
         const std::lock_guard<std::mutex> lock(mutex_);
         regions_.push_back(request.roi);
         response.success = 1;
+        return true;
+      });
+  // Takes what is 100 px wide or more.
+  ros::ServiceServer check_ = node_.advertiseService<CheckRoi::Request, CheckRoi::Response>(
+      "tracker/check_roi", [this](CheckRoi::Request& request, CheckRoi::Response& response) {
+        ++checks;
+        response.success = static_cast<std::uint8_t>(request.roi.width >= 100);
+        if (!response.success) response.message = "ROI is too small, expected at least 100 px";
+        return true;
+      });
+  ros::ServiceServer freeze_ = node_.advertiseService<FreezeImage::Request, FreezeImage::Response>(
+      "tracker/freeze_image", [](FreezeImage::Request&, FreezeImage::Response& response) {
+        response.success = 1;
+        response.preview = picture(ros::Time(5.0), 3);
+        response.width = 1280;
+        response.height = 720;
+        return true;
+      });
+  ros::ServiceServer select_frozen_ = node_.advertiseService<CheckRoi::Request, CheckRoi::Response>(
+      "tracker/select_frozen_roi", [this](CheckRoi::Request& request, CheckRoi::Response& response) {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        frozen_regions_.push_back(request.roi);
+        response.success = static_cast<std::uint8_t>(request.stamp == ros::Time(5.0));
+        return true;
+      });
+  ros::ServiceServer view(const std::string& name, std::vector<std::string>& names) {
+    return node_.advertiseService<StoredView::Request, StoredView::Response>(
+        name, [this, &names](StoredView::Request& request, StoredView::Response& response) {
+          const std::lock_guard<std::mutex> lock(mutex_);
+          names.push_back(request.name);
+          response.success = 1;
+          return true;
+        });
+  }
+  ros::ServiceServer store_ = view("tracker/store_view", stored_);
+  ros::ServiceServer recall_ = view("tracker/recall_view", recalled_);
+  ros::ServiceServer list_ = node_.advertiseService<ListViews::Request, ListViews::Response>(
+      "tracker/list_views", [this](ListViews::Request& request, ListViews::Response& response) {
+        for (const std::string& name : stored()) {
+          StoredViewInfo info;
+          info.name = name;
+          info.width = 1280;
+          info.height = 720;
+          if (request.thumbnails) info.thumbnail = picture(ros::Time(1.0), 1);
+          response.views.push_back(info);
+        }
         return true;
       });
   std::thread thread_;

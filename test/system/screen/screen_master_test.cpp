@@ -1,4 +1,5 @@
 // STOP when the master has died: over connections that are open already. No rostest, for the master is the test's own.
+#include <laparoscope_servo/OperatingState.h>
 #include <std_msgs/Empty.h>
 
 #include <cstdio>
@@ -26,6 +27,10 @@ int listen(int argc, char** argv) {
       node.subscribe<std_msgs::Empty>("aesop/stop", 10, [&](const std_msgs::EmptyConstPtr&) { say('r'); });
   const ros::Subscriber controller =
       node.subscribe<std_msgs::Empty>("controller/stop", 10, [&](const std_msgs::EmptyConstPtr&) { say('k'); });
+  ros::Publisher state = node.advertise<OperatingState>("aesop/operating_state", 1, true);
+  OperatingState disabled;
+  disabled.state = "DISABLED";
+  state.publish(disabled);
   for (bool told = false; ros::ok(); ros::spinOnce()) {
     if (!told && robot.getNumPublishers() > 0 && controller.getNumPublishers() > 0) say('c');
     told = told || (robot.getNumPublishers() > 0 && controller.getNumPublishers() > 0);
@@ -55,10 +60,28 @@ TEST_F(ScreenMaster, StopsWithoutIt) {
   const auto hears = [&](char letter) { return textOf(said).find(letter) != std::string::npos; };
   show({1280, 800});
   ASSERT_TRUE(test_support::waitFor([&] { return hears('c'); }));
-  EXPECT_EQ(word("Robot"), "ABSENT");
+  EXPECT_TRUE(test_support::waitFor([this] { return word("Robot") == "DISABLED"; }));
   master->end();
   click("stop");
   EXPECT_TRUE(test_support::waitFor([&] { return hears('r') && hears('k'); })) << textOf(said);
+}
+
+TEST_F(ScreenMaster, KnowsTheScreenAgainWhenItWasStartedAnew) {
+  master->start();
+  show({1280, 800});
+  const auto knows = [this] { return find<QLabel>("answer").text().contains("knows this screen again"); };
+  // A new one, and nodes that come after it.
+  master->end();
+  master->start();
+  ASSERT_TRUE(test_support::waitFor(knows)) << find<QLabel>("answer").text().toStdString();
+  const test_support::TemporaryFolder folder;
+  const std::string said = folder.file("said");
+  test::ChildProcess listener(program, {"--listen"}, said);
+  const auto hears = [&](char letter) { return textOf(said).find(letter) != std::string::npos; };
+  ASSERT_TRUE(test_support::waitFor([&] { return hears('c'); })) << "they find its STOP";
+  click("stop");
+  EXPECT_TRUE(test_support::waitFor([&] { return hears('r') && hears('k'); })) << textOf(said);
+  EXPECT_TRUE(test_support::waitFor([this] { return word("Robot") == "DISABLED"; })) << "and it hears them";
 }
 
 }  // namespace

@@ -106,6 +106,70 @@ TEST_F(ScreenWindow, TheBandsSayWhatTheNodesSay) {
   }
 }
 
+TEST_F(ScreenWindow, ARegionIsJudgedWhileItIsDrawnAndNothingIsSelectedByIt) {
+  const auto draws = [this](int width) {
+    hands(moveTo(onDisplay(kOriginal, {300, 200})) + "mousedown 1 " + moveTo(onDisplay(kOriginal, {310, 210})) +
+          moveTo(onDisplay(kOriginal, {300.0 + width, 400})));
+  };
+  const auto painted = [this](const QColor& colour) {
+    const QImage shown = image().grab().toImage();
+    for (int y = 0; y < shown.height(); ++y) {
+      for (int x = 0; x < shown.width(); ++x) {
+        const QColor c = shown.pixelColor(x, y);
+        if (c == colour) return true;
+      }
+    }
+    return false;
+  };
+  draws(60);
+  EXPECT_TRUE(waitFor([&] { return painted(QColor(0xff, 0x70, 0x60)); })) << "refused while it is drawn";
+  hands(moveTo(onDisplay(kOriginal, {700, 400})));
+  EXPECT_TRUE(waitFor([&] { return painted(QColor(0x5c, 0xf0, 0x8c)); })) << "now it would be taken";
+  EXPECT_GE(nodes_.checks, 2);
+  EXPECT_TRUE(nodes_.regions().empty());
+  hands("click 3 mouseup 1");
+  waitFor([&] { return !painted(QColor(0x5c, 0xf0, 0x8c)); });
+  EXPECT_TRUE(nodes_.regions().empty()) << "the right button gives it up";
+}
+
+TEST_F(ScreenWindow, ARegionIsDrawnInAFrozenPicture) {
+  click("freeze");
+  const auto amber = [this] {
+    return image().grab().toImage().pixelColor(onDisplay(kOriginal, {3, 300}) - image().mapToGlobal(QPoint(0, 0))) ==
+           QColor(0xff, 0xb0, 0x20);
+  };
+  ASSERT_TRUE(waitFor(amber)) << "a frozen picture is marked";
+  nodes_.runCamera(false);
+  drag(onDisplay(kOriginal, {300, 200}), onDisplay(kOriginal, {600, 400}));
+  ASSERT_TRUE(waitFor([this] { return nodes_.frozenRegions().size() == 1; }));
+  EXPECT_NEAR(nodes_.frozenRegions()[0].x_offset, 300, pixelOfDisplay(kOriginal) + 1);
+  EXPECT_TRUE(nodes_.regions().empty());
+  nodes_.runCamera(true);
+  EXPECT_TRUE(waitFor([&] { return !amber() && isColoured(); })) << "taken: the live picture returns";
+  click("freeze");
+  ASSERT_TRUE(waitFor(amber));
+  click("stop");
+  EXPECT_TRUE(waitFor([&] { return !amber(); })) << "STOP shows what is now";
+}
+
+TEST_F(ScreenWindow, AViewIsStoredAndRecalledByItsPicture) {
+  find<QTabWidget>("tabs").setCurrentIndex(1);
+  auto& name = find<QLineEdit>("view_name");
+  auto& list = find<QListWidget>("views");
+  ASSERT_TRUE(waitFor([&] { return name.isVisible(); }));
+  hands(moveTo(centreOf(name)) + "click 1 type gallbladder");
+  ASSERT_TRUE(waitFor([&] { return name.text() == "gallbladder"; })) << name.text().toStdString();
+  click("store_view");
+  ASSERT_TRUE(waitFor([&] { return list.count() == 1; }));
+  EXPECT_EQ(list.item(0)->text(), "gallbladder");
+  hands(moveTo(list.viewport()->mapToGlobal(list.visualItemRect(list.item(0)).center())) + "click 1");
+  ASSERT_TRUE(waitFor([&] { return list.currentItem() != nullptr; }));
+  EXPECT_TRUE(nodes_.recalled().empty());
+  click("recall_view");
+  EXPECT_TRUE(waitFor([this] { return nodes_.recalled() == std::vector<std::string>{"gallbladder"}; }));
+  find<QTabWidget>("tabs").setCurrentIndex(0);
+}
+
 TEST_F(ScreenWindow, ACameraThatDiesIsSeen) {
   nodes_.runCamera(false);
   EXPECT_TRUE(waitFor([this] { return !isColoured(); })) << "the last picture does not stay as if live";

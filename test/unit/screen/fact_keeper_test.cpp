@@ -38,7 +38,7 @@ AreaSelection areas(double stamp) {
 
 TEST(FactKeeper, FindsTheResultOfThePicturesOwnImage) {
   FactKeeper keeper;
-  for (const double stamp : {10.0, 10.1, 10.2, 10.3}) keeper.take(homography(stamp));
+  for (const double stamp : {10.0, 10.1, 10.2, 10.3}) keeper.take(homography(stamp), 0.01, 1.0);
   keeper.take(areas(10.1));
   keeper.take(preview(10.1, 7), 0.0, 1.0);
   ASSERT_TRUE(keeper.facts().result);
@@ -49,10 +49,10 @@ TEST(FactKeeper, FindsTheResultOfThePicturesOwnImage) {
 
 TEST(FactKeeper, AResultMayComeLaterThanItsPicture) {
   FactKeeper keeper;
-  keeper.take(homography(10.0));
+  keeper.take(homography(10.0), 0.01, 1.0);
   keeper.take(preview(10.1, 7), 0.0, 1.0);
   EXPECT_FALSE(keeper.facts().result) << "that of another image is not drawn over it";
-  keeper.take(homography(10.1));
+  keeper.take(homography(10.1), 0.01, 1.0);
   ASSERT_TRUE(keeper.facts().result);
   EXPECT_EQ(keeper.facts().result->corners[0], 10.1);
 }

@@ -1,6 +1,7 @@
 #include "screen/image_view.h"
 
 #include <gtest/gtest.h>
+#include <laparoscope_servo/AreaSelection.h>
 #include <laparoscope_servo/Homography.h>
 
 #include <QtTest>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "screen/overlay_painter.h"
+#include "screen/region_painter.h"
 
 namespace laparoscope_servo::screen {
 namespace {
@@ -69,7 +71,9 @@ class ImageViewTest : public testing::Test {
   }
 
   std::vector<QRect> regions_;
-  ImageView view_{[this](const QRect& region) { regions_.push_back(region); }, nullptr};
+  std::vector<QRect> asked_;
+  ImageView view_{[this](const QRect& region) { regions_.push_back(region); },
+                  [this](const QRect& region) { asked_.push_back(region); }, nullptr};
 };
 
 const QColor kPresent(0xff, 0xe0, 0x30);
@@ -94,6 +98,30 @@ TEST_F(ImageViewTest, HatchesCoveredAreasWhereTheyAreNow) {
   EXPECT_EQ(near(image, 550, 412, tissue), 0) << "bottom left of the region";
   EXPECT_EQ(near(image, 650, 412, tissue), 49) << "bottom right";
   EXPECT_EQ(near(image, 350, 312, tissue), 49) << "and not in the reference";
+}
+
+// With neither colour nor form the same.
+TEST_F(ImageViewTest, EachCauseHasAFormOfItsOwn) {
+  view_.resize(1280, 720);
+  std::vector<QImage> cells;
+  for (const int cause :
+       {AreaSelection::COLOUR, AreaSelection::STRUCTURE, AreaSelection::HIGHLIGHT, AreaSelection::BORDER}) {
+    Facts facts = tracked();
+    facts.areas = Areas{0, 1, 1, {false}, {static_cast<std::uint8_t>(cause)}};
+    const QRect inside(520, 320, 32, 32);
+    const QImage cell = drawn(facts).copy(inside).convertToFormat(QImage::Format_Grayscale8);
+    int dark = 0;
+    for (int y = 0; y < 32; ++y) {
+      for (int x = 0; x < 32; ++x) dark += qGray(cell.pixel(x, y)) < 150 ? 1 : 0;
+    }
+    EXPECT_GT(dark, 100) << "the tissue is still seen, cause " << cause;
+    EXPECT_LT(dark, 32 * 32 - 20) << "its form is seen without colour, cause " << cause;
+    for (const QImage& other : cells) EXPECT_NE(cell, other);
+    cells.push_back(cell);
+  }
+  Facts none = tracked();
+  none.areas = Areas{0, 1, 1, {false}, {AreaSelection::NONE}};
+  EXPECT_EQ(near(drawn(none), 600, 370, QColor(180, 70, 60)), 49);
 }
 
 TEST_F(ImageViewTest, DrawsNoResultOfAnotherImageOrRegion) {
@@ -173,6 +201,77 @@ TEST_F(ImageViewTest, TheRegionThatThereIsIsMovedFromItsInside) {
   drag({700, 450}, {760, 470});
   ASSERT_EQ(regions_.size(), 2u);
   EXPECT_EQ(regions_[1], QRect(500, 300, 260, 170)) << "resized by its corner";
+}
+
+TEST_F(ImageViewTest, AsksForARegionWhileItIsDrawnAndShowsTheAnswer) {
+  view_.resize(1280, 720);
+  Facts facts = tracked();
+  facts.result.reset();
+  view_.show(facts, kNow);
+  QTest::mousePress(&view_, Qt::LeftButton, {}, {100, 100});
+  QMouseEvent move(QEvent::MouseMove, QPointF(300, 260), Qt::NoButton, Qt::LeftButton, Qt::NoModifier);
+  QApplication::sendEvent(&view_, &move);
+  ASSERT_EQ(asked_.size(), 1u);
+  EXPECT_EQ(asked_[0], QRect(100, 100, 200, 160));
+  EXPECT_TRUE(regions_.empty()) << "nothing is selected by asking";
+  const QImage unanswered = drawn(facts);
+  facts.verdict = Verdict{asked_[0], 0, true, ""};
+  const QImage taken = drawn(facts);
+  facts.verdict = Verdict{asked_[0], 0, false, "ROI x=1 has too little texture: 2 grey levels"};
+  facts.picture.arrived_at += 0.01;
+  const QImage refused = drawn(facts);
+  EXPECT_NE(unanswered, taken);
+  EXPECT_NE(taken, refused);
+  EXPECT_EQ(wordsOf(*facts.verdict).toStdString(),
+            "The region is too smooth to be followed. Choose one with vessels or edges.");
+  facts.verdict = Verdict{QRect(1, 2, 3, 4), 0, true, ""};
+  facts.picture.arrived_at += 0.01;
+  EXPECT_EQ(drawn(facts), unanswered) << "the answer is of another region";
+  QTest::mouseRelease(&view_, Qt::LeftButton, {}, {300, 260});
+  EXPECT_EQ(regions_.size(), 1u);
+}
+
+TEST_F(ImageViewTest, ArrowsNudgeTheRegionAndReturnSelectsIt) {
+  view_.resize(500, 400);
+  view_.show(tracked(), kNow);
+  QTest::keyClick(&view_, Qt::Key_Right);
+  QTest::keyClick(&view_, Qt::Key_Down, Qt::ShiftModifier);
+  EXPECT_TRUE(regions_.empty());
+  ASSERT_EQ(asked_.size(), 2u);
+  EXPECT_EQ(asked_[1].topLeft() - asked_[0].topLeft(), QPoint(0, 10)) << "px of the original image at any size";
+  QTest::keyClick(&view_, Qt::Key_Return);
+  ASSERT_EQ(regions_.size(), 1u);
+  EXPECT_NEAR(regions_[0].x(), 501, 3);
+  EXPECT_NEAR(regions_[0].y(), 310, 3);
+  QTest::keyClick(&view_, Qt::Key_Return);
+  EXPECT_EQ(regions_.size(), 1u) << "given once";
+  QTest::keyClick(&view_, Qt::Key_Left);
+  view_.cancelDrag();
+  QTest::keyClick(&view_, Qt::Key_Return);
+  EXPECT_EQ(regions_.size(), 1u) << "STOP gives it up";
+  for (int k = 0; k < 100; ++k) QTest::keyClick(&view_, Qt::Key_Left, Qt::ShiftModifier);
+  EXPECT_EQ(asked_.back().x(), 0) << "not out of the picture";
+}
+
+TEST_F(ImageViewTest, ARegionIsDrawnInAFrozenPictureWhileTheLiveOneMovesOn) {
+  view_.resize(1280, 720);
+  Facts facts = tracked();
+  Frozen frozen;
+  frozen.image = QImage(640, 360, QImage::Format_RGB32);
+  frozen.image.fill(QColor(20, 160, 40));
+  frozen.stamp = 77;
+  frozen.size = QSize(1280, 720);
+  frozen.at = kNow;
+  facts.frozen = frozen;
+  facts.picture.arrived_at += 0.01;
+  const QImage image = drawn(facts);
+  EXPECT_EQ(near(image, 600, 500, QColor(20, 160, 40)), 49);
+  EXPECT_EQ(near(image, 1100, 150, QColor(180, 70, 60)), 49) << "the live one, small";
+  EXPECT_EQ(near(image, 600, 300, kPresent), 0) << "what is found in the live one is not drawn over it";
+  view_.show(facts, kNow + 5.0);  // the live picture is none any more
+  drag({200, 300}, {400, 460});
+  ASSERT_EQ(regions_.size(), 1u);
+  EXPECT_EQ(regions_[0], QRect(200, 300, 200, 160));
 }
 
 }  // namespace

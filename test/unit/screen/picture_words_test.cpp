@@ -50,5 +50,17 @@ TEST(PictureWords, AClockThatIsNoneMakesNothingLive) {
   EXPECT_FALSE(pictureWords(picture(100.0, 100.0), std::numeric_limits<double>::quiet_NaN()).live);
 }
 
+TEST(PictureWords, ARecordingSaysThatItHasEnded) {
+  Picture picture;
+  picture.image = QImage(4, 4, QImage::Format_RGB32);
+  picture.arrived_at = picture.changed_at = 10.0;
+  EXPECT_EQ(pictureWords(picture, 10.0, "ENDED").words, "ENDED");
+  EXPECT_FALSE(pictureWords(picture, 10.0, "ENDED").live);
+  EXPECT_TRUE(pictureWords(picture, 99.0, "PAUSED").live) << "it stands because somebody wants it to";
+  EXPECT_TRUE(pictureWords(picture, 99.0, "HOLDING").live);
+  EXPECT_EQ(pictureWords(picture, 99.0, "PLAYING").words, "NOT LIVE");
+  EXPECT_FALSE(pictureWords(Picture(), 99.0, "PAUSED").live);
+}
+
 }  // namespace
 }  // namespace laparoscope_servo::screen

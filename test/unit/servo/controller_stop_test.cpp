@@ -227,6 +227,22 @@ TEST(Controller, TimeThatJumpsOrIsNotFiniteIsAFault) {
   }
 }
 
+TEST(Controller, AStopFromOutsideIsIdleButAfterAJumpOfTheClockAFault) {
+  Running running;
+  running.controller.stop("asked to", running.time() + 0.02);
+  EXPECT_EQ(running.step(good(0.0)).state, ControllerState::kIdle);
+  for (const double time : {1.2, -1.2, kNan}) {
+    Running paused;
+    paused.controller.stop("the master was silent", paused.time() + time);
+    const ControllerOutput output = paused.step(good(0.0));
+    EXPECT_EQ(output.state, ControllerState::kFault) << time;
+    EXPECT_NE(output.reason.find("clock jumped"), std::string::npos) << output.reason;
+    EXPECT_TRUE(isZero(output)) << time;
+    paused.controller.stop("again", paused.time());
+    EXPECT_EQ(paused.step(good(0.0)).state, ControllerState::kFault) << "it is for somebody to look at";
+  }
+}
+
 TEST(Controller, DisengagesAtOnce) {
   Running running;
   running.controller.disengage("asked to");

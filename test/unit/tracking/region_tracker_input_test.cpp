@@ -61,6 +61,36 @@ TEST_F(RegionTrackerInputTest, BadRegionsAreRefusedByNameAndTheOldOneStays) {
   EXPECT_EQ(tracker_.track(now, 0.04).state, State::kTracking);
 }
 
+TEST_F(RegionTrackerInputTest, ARegionIsCheckedAsItWouldBeSelectedAndNothingChanges) {
+  const cv::Mat image = this->image(1);
+  EXPECT_NO_THROW(tracker_.check(image, kRoi));
+  EXPECT_FALSE(tracker_.hasRoi());
+  select();
+  const auto whyNot = [&](const geometry::Rectangle& roi, bool check) -> std::string {
+    RegionTracker fresh{TrackerConfig()};
+    try {
+      if (check) {
+        tracker_.check(image, roi);
+      } else {
+        fresh.select(image, 0.0, roi);
+      }
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "";
+  };
+  for (const geometry::Rectangle& roi :
+       {kRoi, geometry::Rectangle{300, 80, 112, 112}, geometry::Rectangle{10, 10, 3, 50}, geometry::Rectangle{}}) {
+    EXPECT_EQ(whyNot(roi, true), whyNot(roi, false));
+  }
+  EXPECT_NE(whyNot({300, 80, 112, 112}, true), "");
+  EXPECT_NE(whyNot({10, 10, 3, 50}, true), "");
+  EXPECT_THROW(tracker_.check(cv::Mat(), kRoi), std::invalid_argument);
+  const TrackResult& result = tracker_.track(image, 0.05);
+  EXPECT_EQ(result.state, State::kTracking) << result.reason;
+  EXPECT_EQ(result.roi.x, kRoi.x);
+}
+
 TEST_F(RegionTrackerInputTest, ARegionSmallerThanTheGridOfAreasIsRefusedWithTheReason) {
   TrackerConfig config;
   config.occlusion.columns = 40;

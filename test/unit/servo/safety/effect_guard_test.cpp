@@ -4,10 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <deque>
 #include <functional>
 #include <limits>
 #include <random>
+#include <utility>
 
 #include "unit/servo/plane_loop.h"
 
@@ -28,7 +31,11 @@ class Scene {
       told_.add(time, velocity);
       const Eigen::Vector4d signed_velocity = signs.cwiseProduct(told_.velocity(time, kDelay));
       loop.move(scope::Velocity::fromVector(signed_velocity), kStep);
-      if (report) guard.report(time + kStep, scope::Velocity::fromVector(told_.velocity(time, kDelay)));
+      if (report) reports_.push_back({time + kStep, scope::Velocity::fromVector(told_.velocity(time, kDelay))});
+      // All that has come since the last step; who asks for the newest alone hears no other.
+      for (; !reports_.empty() && reports_.front().first <= time + kStep - report_late; reports_.pop_front()) {
+        if (++reported_ % report_every == 0) guard.report(reports_.front().first, reports_.front().second);
+      }
       guard.observe(image(time + kStep), commands, kDelay);
       strongest = std::max(strongest, guard.evidence());
     }
@@ -59,12 +66,16 @@ class Scene {
   bool frozen = false;
   double corner_error = 0.1;  // px
   bool report = false;
+  double report_late = 0.0;  // s
+  int report_every = 1;      // of its reports so many are one that comes
   bool breath_known = false;
   double strongest = -100.0;
   double time = 0.0;
 
  private:
   CommandHistory told_{5.0, 0.2};
+  std::deque<std::pair<double, scope::Velocity>> reports_;
+  int reported_ = 0;
   TaskError error_;
   std::mt19937 random_{1};
   std::normal_distribution<double> noise_{0.0, 0.0003};
@@ -88,6 +99,34 @@ TEST(EffectGuard, BelievesAPictureThatMovesAsTheScopeDoes) {
     EXPECT_TRUE(scene.guard.words().empty());
     EXPECT_TRUE(scene.guard.confirmed());
     EXPECT_LT(scene.strongest, 3.0);
+  }
+}
+
+// A busy machine: reports come late, and of two only the newer is heard.
+TEST(EffectGuard, BelievesItThroughReportsThatAreLateOrFew) {
+  for (const double late : {0.0, 0.12, 0.24}) {
+    for (const int every : {1, 2, 3}) {
+      if (late + every * kStep > 0.3) continue;  // nothing is concluded from what is older
+      Scene scene;
+      scene.report = true;
+      scene.report_late = late;
+      scene.report_every = every;
+      scene.run(kRest, 1.0);
+      double speed = 0.0, most_spent = 0.0;
+      for (const double sign : {1.0, -1.0, 1.0}) {
+        for (int k = 0; k < 25; ++k) {
+          speed = std::clamp(speed + 0.5 * sign, -1.0, 1.0);  // by 1 rad/s^2
+          const Eigen::Vector4d velocity = speed * kMotion.vector();
+          scene.guard.command(kStep * velocity, true);
+          scene.run(scope::Velocity::fromVector(velocity), kStep);
+          most_spent = std::max(most_spent, scene.guard.budget().spent());
+        }
+      }
+      EXPECT_EQ(scene.guard.effect(), Effect::kAsCommanded) << late << " " << every;
+      EXPECT_TRUE(scene.guard.confirmed()) << late << " " << every;
+      EXPECT_LT(scene.strongest, 3.0) << late << " " << every;
+      EXPECT_LT(most_spent, 1.0) << late << " " << every;
+    }
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 
 namespace laparoscope_servo::tracking {
 namespace {
@@ -71,6 +72,10 @@ TEST(Doubt, NamesEachFlawByItself) {
       {"pieces elsewhere nan", "pieces of the region off",
        [=](Evidence& e) {
          e.blocks = {30, 20, nan};
+       }},
+      {"few pieces elsewhere", "pieces of the region off",
+       [](Evidence& e) {
+         e.blocks = {10, 3, 4.5};
        }},
       {"no piece", "pieces of the region found",
        [=](Evidence& e) {
@@ -245,6 +250,24 @@ TEST(Doubt, AsksForMoreBlocksTheMoreIsVisible) {
   EXPECT_FALSE(refused(0.3, 0, true)) << "beside an instrument a block is covered, too";
   EXPECT_TRUE(refused(0.3, 2, false));
   EXPECT_FALSE(refused(0.3, 3, false));
+}
+
+// The gates may take all that has texture for covered, and what is left agrees with any place.
+TEST(Doubt, AsksForBlocksThatNothingCoversAndForOthersAfterAWhile) {
+  Evidence e = good();
+  e.visible_fraction = 0.3;
+  e.blocks = {36, 0, std::numeric_limits<double>::quiet_NaN(), 5};
+  EXPECT_EQ(doubt(e, QualityConfig()), "");
+  e.blocks.visible = 6;
+  EXPECT_NE(doubt(e, QualityConfig()).find("pieces of the region found"), std::string::npos);
+  e.blocks.visible = 5;
+  e.unproven = 0.6;
+  EXPECT_NE(doubt(e, QualityConfig()).find("pieces of the region found"), std::string::npos);
+  e.blocks.confident = 3;
+  e.blocks.off = 1.0;
+  EXPECT_EQ(doubt(e, QualityConfig()), "");
+  e.blocks = {7, 0, std::numeric_limits<double>::quiet_NaN(), 7};
+  EXPECT_EQ(doubt(e, QualityConfig()), "") << "fewer than can tell";
 }
 
 }  // namespace

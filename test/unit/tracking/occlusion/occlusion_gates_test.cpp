@@ -230,6 +230,38 @@ TEST_F(OcclusionGatesTest, TheStructureGateHoldsForTheConfiguredImages) {
   EXPECT_EQ(occludedIn(gates), 0);
 }
 
+TEST_F(OcclusionGatesTest, SayWhyAnAreaIsHidden) {
+  OcclusionGates gates(config_, 250);
+  gates.setReference(seen(patch_), kSize);
+  std::vector<AreaCause> causes;
+  gates.causes(causes);
+  EXPECT_EQ(causes, std::vector<AreaCause>(gates.grid().count(), AreaCause::kNone)) << "before the first image";
+
+  const auto area = [&](int i, int j) { return static_cast<std::size_t>(gates.grid().areaOf(i, j)); };
+  cv::Mat current = patch_.clone();
+  current(cv::Rect(0, 0, 30, 30)) = cv::Scalar(200, 120, 20);
+  current(cv::Rect(40, 40, 20, 20)) = cv::Scalar(255, 255, 255);
+  current(cv::Rect(15, 60, 3, 1)) = cv::Scalar(255, 255, 255);  // grows to 7 x 5 px: less than half of an area
+  valid_(cv::Rect(100, 0, 40, 140)) = 0;
+  gates.observeColour(seen(current));
+  image::Patch other = grey_;
+  cv::Mat part = other.view()(cv::Rect(60, 100, 20, 20));
+  cv::randu(part, 0, 255);
+  observe(gates, other);
+  gates.causes(causes);
+  EXPECT_EQ(causes[area(12, 12)], AreaCause::kColour);
+  EXPECT_EQ(causes[area(45, 45)], AreaCause::kHighlight);
+  EXPECT_EQ(causes[area(16, 60)], AreaCause::kNone);
+  EXPECT_EQ(causes[area(105, 70)], AreaCause::kBorder);
+  EXPECT_EQ(causes[area(65, 105)], AreaCause::kStructure);
+  EXPECT_EQ(causes[area(80, 80)], AreaCause::kNone);
+  for (std::size_t k = 0; k < causes.size(); ++k) {
+    const bool decided = causes[k] == AreaCause::kColour || causes[k] == AreaCause::kStructure;
+    EXPECT_LE(decided, gates.occluded(static_cast<int>(k)));
+    EXPECT_LE(gates.occluded(static_cast<int>(k)), causes[k] != AreaCause::kNone);
+  }
+}
+
 TEST_F(OcclusionGatesTest, StandAsideWithoutColour) {
   OcclusionGates gates(config_, 256);
   cv::Mat mono;

@@ -63,7 +63,7 @@ TEST_F(ConfirmationTest, WhatIsElsewhereStartsAgain) {
 
 TEST_F(ConfirmationTest, AFurtherWayIsAllowedWhileTheMotionIsNotKnown) {
   TrackRecord calm;
-  for (int k = 0; k < 200; ++k) calm.add(0.9, 3.0, 0.0, 1.0);
+  for (int k = 0; k < 200; ++k) calm.add(0.9, 3.0, 0.0, 1.0, 0.04);
   const double way = 0.1 * 85.0;
   Confirmation first(QualityConfig{});
   first.add(at(0.0), kRoi, calm);

@@ -1,0 +1,10 @@
+// What hides an area of the region of interest.
+#pragma once
+
+namespace laparoscope_servo::tracking {
+
+// Why an area did not drive ESM, or hardly: it has another colour, another structure, or half of its pixels or more are
+// saturated or outside of the image. The values are those of AreaSelection.msg.
+enum class AreaCause : unsigned char { kNone = 0, kColour = 1, kStructure = 2, kHighlight = 3, kBorder = 4 };
+
+}  // namespace laparoscope_servo::tracking

@@ -1,0 +1,47 @@
+#include "ros/tracker/region_desk.h"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "laparoscope_servo/tracking/region_tracker.h"
+
+namespace laparoscope_servo {
+
+namespace {
+
+bool sameLens(const Snapshot& a, const Snapshot& b) {
+  return a.lens && b.lens ? *a.lens == *b.lens : !a.lens && !b.lens;
+}
+
+}  // namespace
+
+cv::Mat RegionDesk::preview() {
+  return kept_ ? preview_.of(kept_->image, kept_->lens) : cv::Mat();
+}
+
+const Snapshot& RegionDesk::kept(const ros::Time& stamp) const {
+  if (!kept_) throw std::invalid_argument("no picture is kept: call freeze_image first");
+  if (kept_->stamp != stamp) {
+    throw std::invalid_argument("the picture that was frozen is kept no more: another one was frozen since");
+  }
+  return *kept_;
+}
+
+void RegionDesk::check(const Snapshot& snapshot, const geometry::Rectangle& roi) const {
+  if (!snapshot.lens_error.empty()) throw std::invalid_argument(snapshot.lens_error);
+  tracking::RegionTracker tracker(parameters_.tracking);
+  if (snapshot.lens) tracker.setLens(*snapshot.lens);
+  tracker.check(snapshot.image, roi);
+}
+
+RecallRoute RegionDesk::route(const ros::Time& stamp, const geometry::Rectangle& roi, const Snapshot& now) const {
+  const Snapshot& before = kept(stamp);
+  if (before.image.size() != now.image.size() || before.image.type() != now.image.type() || !sameLens(before, now)) {
+    throw std::invalid_argument("the images have another size, colour or lens than the picture that was frozen");
+  }
+  check(before, roi);
+  const geometry::Rectangle whole{std::floor(roi.x), std::floor(roi.y), std::floor(roi.width), std::floor(roi.height)};
+  return {{{"", {before.image, whole}, before.stamp}}, now.epoch};
+}
+
+}  // namespace laparoscope_servo

@@ -1,0 +1,11 @@
+// The limits that decide, as the nodes have them now.
+#pragma once
+
+#include "screen/facts.h"
+#include "screen/minute_panel.h"
+
+namespace laparoscope_servo::screen {
+
+MinutePanel::Limits minuteLimits(const Facts& facts);
+
+}  // namespace laparoscope_servo::screen

@@ -1,0 +1,159 @@
+#include "screen/parameter_link.h"
+
+#include <dynamic_reconfigure/Reconfigure.h>
+#include <ros/service.h>
+
+#include <QLocale>
+#include <QString>
+#include <chrono>
+#include <memory>
+#include <thread>
+
+namespace laparoscope_servo::screen {
+
+namespace {
+
+const char* const kNodes[] = {"tracker", "controller"};
+constexpr int kLooks = 20;  // for the words of a refusal, which come by another connection
+constexpr std::chrono::milliseconds kLookPause{10};
+
+template <class List, class Take>
+bool find(const List& list, const std::string& name, const Take& take) {
+  for (const auto& entry : list) {
+    if (entry.name != name) continue;
+    take(entry.value);
+    return true;
+  }
+  return false;
+}
+
+std::string textOf(double value) {
+  return QString::number(value, 'g', 6).toStdString();
+}
+
+bool readRange(const dynamic_reconfigure::Config& config, const std::string& name, double& bound) {
+  const auto take = [&](double value) { bound = value; };
+  return find(config.doubles, name, take) || find(config.ints, name, take);
+}
+
+template <class List, class T>
+void add(List& list, const std::string& name, const T& value) {
+  typename List::value_type entry;
+  entry.name = name;
+  entry.value = value;
+  list.push_back(entry);
+}
+
+}  // namespace
+
+std::vector<LiveParameter> rowsOf(const std::string& node, const dynamic_reconfigure::ConfigDescription& description,
+                                  const dynamic_reconfigure::Config& values) {
+  std::vector<LiveParameter> rows;
+  for (const auto& group : description.groups) {
+    for (const auto& parameter : group.parameters) {
+      LiveParameter row{node, parameter.name, parameter.type, parameter.description, "", 0.0, 0.0};
+      const bool known = find(values.doubles, row.name, [&](double value) { row.value = textOf(value); }) ||
+                         find(values.ints, row.name, [&](int value) { row.value = std::to_string(value); }) ||
+                         find(values.bools, row.name, [&](bool value) { row.value = value ? "true" : "false"; }) ||
+                         find(values.strs, row.name, [&](const std::string& value) { row.value = value; });
+      if (!known) continue;
+      readRange(description.min, row.name, row.low);
+      readRange(description.max, row.name, row.high);
+      rows.push_back(row);
+    }
+  }
+  return rows;
+}
+
+std::optional<dynamic_reconfigure::Config> requestOf(const LiveParameter& parameter, const std::string& text) {
+  dynamic_reconfigure::Config config;
+  const QString trimmed = QString::fromStdString(text).trimmed();
+  bool valid = true;
+  if (parameter.type == "double") {
+    add(config.doubles, parameter.name, QLocale::c().toDouble(trimmed, &valid));
+  } else if (parameter.type == "int") {
+    add(config.ints, parameter.name, QLocale::c().toInt(trimmed, &valid));
+  } else if (parameter.type == "bool") {
+    valid = trimmed == "true" || trimmed == "false";
+    add(config.bools, parameter.name, trimmed == "true");
+  } else {
+    add(config.strs, parameter.name, text);
+  }
+  return valid ? std::make_optional(config) : std::nullopt;
+}
+
+void ParameterLink::connect(ros::NodeHandle& node) {
+  for (const std::string name : kNodes) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    nodes_[name].service = node.resolveName(name + "/set_parameters");
+    const auto listen = [&](auto example, const std::string& topic, const auto& take) {
+      using Message = decltype(example);
+      const boost::function<void(const boost::shared_ptr<const Message>&)> callback =
+          [this, name, take](const boost::shared_ptr<const Message>& message) {
+            {
+              const std::lock_guard<std::mutex> taken(mutex_);
+              take(nodes_[name], *message);
+            }
+            publish();
+          };
+      subscribers_.push_back(node.subscribe<Message>(name + "/" + topic, 5, callback));
+    };
+    listen(dynamic_reconfigure::ConfigDescription(), "parameter_descriptions",
+           [](Node& of, const dynamic_reconfigure::ConfigDescription& message) { of.description = message; });
+    listen(dynamic_reconfigure::Config(), "parameter_updates",
+           [](Node& of, const dynamic_reconfigure::Config& message) { of.values = message; });
+    listen(std_msgs::String(), "parameters_refused",
+           [](Node& of, const std_msgs::String& message) { of.refusal = message.data; });
+  }
+}
+
+void ParameterLink::disconnect() {
+  std::vector<ros::Subscriber> gone;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  gone.swap(subscribers_);
+  nodes_.clear();
+}
+
+void ParameterLink::publish() {
+  auto rows = std::make_shared<std::vector<LiveParameter>>();
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    for (const auto& [name, node] : nodes_) {
+      const std::vector<LiveParameter> more = rowsOf(name, node.description, node.values);
+      rows->insert(rows->end(), more.begin(), more.end());
+    }
+  }
+  keeper_.change([&](Facts& facts) { facts.parameters = rows; });
+}
+
+void ParameterLink::set(const LiveParameter& parameter, const std::string& text) {
+  const std::string what = parameter.name + " = " + text;
+  const std::optional<dynamic_reconfigure::Config> config = requestOf(parameter, text);
+  if (!config) return told_({what, "'" + text + "' is no value; expected " + parameter.meaning, false, false});
+  std::string service;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    service = nodes_[parameter.node].service;
+    nodes_[parameter.node].refusal.clear();
+  }
+  told_({what, "", false, true});
+  calls_.ask([this, what, config, service, node = parameter.node]() -> std::function<void()> {
+    dynamic_reconfigure::Reconfigure call;
+    call.request.config = *config;
+    Answer answer{what, "", ros::service::call(service, call), false};
+    if (answer.success) return [this, answer] { told_(answer); };
+    return [this, answer, node]() mutable {
+      for (int look = 0; look < kLooks && answer.text.empty(); ++look) {
+        {
+          const std::lock_guard<std::mutex> lock(mutex_);
+          answer.text = nodes_[node].refusal;
+        }
+        if (answer.text.empty()) std::this_thread::sleep_for(kLookPause);
+      }
+      if (answer.text.empty()) answer.text = "the " + node + " does not say why";
+      told_(answer);
+    };
+  });
+}
+
+}  // namespace laparoscope_servo::screen

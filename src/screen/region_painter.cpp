@@ -1,0 +1,66 @@
+#include "screen/region_painter.h"
+
+#include <algorithm>
+
+#include "ros/reasons/reason_table.h"
+
+namespace laparoscope_servo::screen {
+
+namespace {
+
+const QColor kTaken(0x5c, 0xf0, 0x8c);
+const QColor kRefused(0xff, 0x70, 0x60);
+
+void drawTick(QPainter& painter, const QPointF& at) {
+  painter.drawPolyline(QPolygonF({at + QPointF(-7, 0), at + QPointF(-2, 6), at + QPointF(8, -7)}));
+}
+
+void drawCross(QPainter& painter, const QPointF& at) {
+  painter.drawLine(at + QPointF(-6, -6), at + QPointF(6, 6));
+  painter.drawLine(at + QPointF(-6, 6), at + QPointF(6, -6));
+}
+
+}  // namespace
+
+QString wordsOf(const Verdict& verdict) {
+  if (verdict.taken) return "The tracker would take it.";
+  const ReasonRow* row = explain(Speaker::kTracker, verdict.why);
+  return QString::fromStdString(row != nullptr ? row->sentence + " " + row->cure : verdict.why);
+}
+
+void drawRegion(QPainter& painter, const QRectF& outline, const QRect& pixels, const Verdict* verdict, bool by_keys,
+                const QRectF& canvas) {
+  painter.save();
+  painter.setRenderHint(QPainter::Antialiasing);
+  painter.setBrush(QColor(255, 255, 255, 30));
+  painter.setPen(QPen(Qt::black, 4));
+  painter.drawRect(outline);
+  const bool refused = verdict != nullptr && !verdict->taken;
+  const QColor colour = verdict == nullptr ? QColor(Qt::white) : refused ? kRefused : kTaken;
+  painter.setPen(QPen(colour, 2, refused ? Qt::DashLine : Qt::SolidLine));
+  painter.drawRect(outline);
+  QFont font = painter.font();
+  font.setPixelSize(15);
+  font.setBold(true);
+  painter.setFont(font);
+  QString text =
+      QString("%1 x %2 px at %3, %4. ").arg(pixels.width()).arg(pixels.height()).arg(pixels.x()).arg(pixels.y());
+  text += verdict == nullptr ? "The tracker is asked ..." : wordsOf(*verdict);
+  if (by_keys) text += " Return selects it.";
+  constexpr double kHeight = 24.0, kMark = 26.0;
+  const double width = std::min(QFontMetricsF(font).horizontalAdvance(text) + kMark + 14.0, canvas.width());
+  const double left = std::clamp(outline.left(), canvas.left(), std::max(canvas.left(), canvas.right() - width));
+  const double above = outline.top() - kHeight - 4.0;
+  const double top = above >= canvas.top() ? above : std::min(outline.bottom() + 4.0, canvas.bottom() - kHeight);
+  const QRectF label(left, top, width, kHeight);
+  painter.fillRect(label, QColor(0, 0, 0, 200));
+  painter.setPen(QPen(colour, 3, Qt::SolidLine, Qt::RoundCap));
+  painter.setBrush(Qt::NoBrush);
+  const QPointF mark(label.left() + 14, label.center().y());
+  if (verdict != nullptr) refused ? drawCross(painter, mark) : drawTick(painter, mark);
+  painter.setPen(Qt::white);
+  painter.drawText(label.adjusted(kMark, 0, -4, 0), Qt::AlignLeft | Qt::AlignVCenter, text);
+  painter.restore();
+}
+
+}  // namespace laparoscope_servo::screen

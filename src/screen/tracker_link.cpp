@@ -1,0 +1,146 @@
+#include "screen/tracker_link.h"
+
+#include <laparoscope_servo/CheckRoi.h>
+#include <laparoscope_servo/FreezeImage.h>
+#include <laparoscope_servo/ListViews.h>
+#include <laparoscope_servo/SelectRoi.h>
+#include <laparoscope_servo/StoredView.h>
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "ros/common/clocks.h"
+#include "screen/preview_image.h"
+
+namespace laparoscope_servo::screen {
+
+namespace {
+
+using StoredView_ = laparoscope_servo::StoredView;
+using Views = std::shared_ptr<const std::vector<StoredView>>;
+
+sensor_msgs::RegionOfInterest messageOf(const QRect& pixels) {
+  sensor_msgs::RegionOfInterest roi;
+  roi.x_offset = static_cast<std::uint32_t>(pixels.x());
+  roi.y_offset = static_cast<std::uint32_t>(pixels.y());
+  roi.width = static_cast<std::uint32_t>(pixels.width());
+  roi.height = static_cast<std::uint32_t>(pixels.height());
+  return roi;
+}
+
+CheckRoi questionOf(const QRect& pixels, const std::optional<Frozen>& frozen) {
+  CheckRoi question;
+  question.request.roi = messageOf(pixels);
+  if (frozen) question.request.stamp.fromNSec(static_cast<std::uint64_t>(frozen->stamp));
+  return question;
+}
+
+// Of what anybody may have sent.
+int side(std::uint32_t pixels) {
+  constexpr std::uint32_t kLargest = 1u << 20;
+  return static_cast<int>(std::min(pixels, kLargest));
+}
+
+Views viewsOf(const ListViews::Response& response) {
+  auto views = std::make_shared<std::vector<StoredView>>();
+  for (const StoredViewInfo& info : response.views) {
+    StoredView view;
+    view.name = info.name;
+    view.stamp = static_cast<std::int64_t>(info.stamp.toNSec());
+    view.thumbnail = previewImage(info.thumbnail);
+    view.size = {side(info.width), side(info.height)};
+    view.roi = {side(info.roi.x_offset), side(info.roi.y_offset), side(info.roi.width), side(info.roi.height)};
+    view.leads_to = info.leads_to;
+    views->push_back(view);
+  }
+  return views;
+}
+
+bool sameViews(const Views& known, const ListViews::Response& listed) {
+  if (!known || known->size() != listed.views.size()) return false;
+  for (std::size_t k = 0; k < known->size(); ++k) {
+    const StoredView& view = (*known)[k];
+    const StoredViewInfo& info = listed.views[k];
+    if (view.name != info.name || view.stamp != static_cast<std::int64_t>(info.stamp.toNSec()) ||
+        view.leads_to != info.leads_to)
+      return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+void TrackerLink::selectRegion(const QRect& pixels) {
+  const std::optional<Frozen> frozen = keeper_.facts().frozen;
+  const std::string name = resolved_(frozen ? "tracker/select_frozen_roi" : "tracker/select_roi");
+  if (name.empty()) return;
+  if (!frozen) {
+    SelectRoi request;
+    request.request.roi = messageOf(pixels);
+    return calls_.call(name, "Region", request);
+  }
+  calls_.call<CheckRoi>(name, "Region of the frozen picture", questionOf(pixels, frozen),
+                        [this](const CheckRoi::Response&) { thaw(); });
+}
+
+void TrackerLink::checkRegion(const QRect& pixels) {
+  const std::string name = resolved_("tracker/check_roi");
+  if (name.empty()) return;
+  const CheckRoi question = questionOf(pixels, keeper_.facts().frozen);
+  checks_.ask([this, name, pixels, question]() -> std::function<void()> {
+    CheckRoi call = question;
+    Verdict verdict;
+    verdict.region = pixels;
+    verdict.stamp = static_cast<std::int64_t>(question.request.stamp.toNSec());
+    const bool answered = ros::service::call(name, call);
+    verdict.taken = answered && call.response.success != 0;
+    verdict.why = answered ? call.response.message : "no answer from " + name;
+    return [this, verdict] {
+      keeper_.change([&](Facts& facts) { facts.verdict = verdict; });
+      news_();
+    };
+  });
+}
+
+void TrackerLink::freeze() {
+  const std::string name = resolved_("tracker/freeze_image");
+  if (name.empty()) return;
+  calls_.call<FreezeImage>(name, "Freeze", FreezeImage(), [this](const FreezeImage::Response& response) {
+    Frozen frozen;
+    frozen.image = previewImage(response.preview);
+    frozen.stamp = static_cast<std::int64_t>(response.preview.header.stamp.toNSec());
+    frozen.size = {side(response.width), side(response.height)};
+    frozen.at = steadyNow();
+    if (frozen.image.isNull() || frozen.size.isEmpty()) return;
+    keeper_.change([&](Facts& facts) { facts.frozen = frozen; });
+  });
+}
+
+void TrackerLink::thaw() {
+  keeper_.change([](Facts& facts) { facts.frozen.reset(); });
+}
+
+// The pictures are fetched when something has changed.
+void TrackerLink::listViews() {
+  const std::string name = resolved_("tracker/list_views");
+  if (name.empty()) return;
+  lists_.ask([this, name, known = keeper_.facts().views]() -> std::function<void()> {
+    ListViews call;
+    if (!ros::service::call(name, call) || sameViews(known, call.response)) return nullptr;
+    call.request.thumbnails = 1;
+    if (!ros::service::call(name, call)) return nullptr;
+    return [this, views = viewsOf(call.response)] { keeper_.change([&](Facts& facts) { facts.views = views; }); };
+  });
+}
+
+void TrackerLink::call(const std::string& service, const std::string& what, const std::string& view) {
+  const std::string name = resolved_(service);
+  if (name.empty()) return;
+  StoredView_ request;
+  request.request.name = view;
+  calls_.call<StoredView_>(name, what + " '" + view + "'", request,
+                           [this](const StoredView_::Response&) { listViews(); });
+}
+
+}  // namespace laparoscope_servo::screen

@@ -1,0 +1,225 @@
+// How long it takes from a hand to what another process hears: STOP, the dead-man switch, a slider. Run by
+// scripts/measure_screen in front of the simulated cart; no test.
+//
+//   screen_hands TIMES SECONDS_HELD
+//
+// Events are the X server's (XTest); who listens is another process. Writes lines `name,seconds` to stdout.
+#include <dlfcn.h>
+#include <laparoscope_servo/ControllerState.h>
+#include <laparoscope_servo/ScopeVelocity.h>
+#include <laparoscope_servo/SelectTask.h>
+#include <std_msgs/Bool.h>
+#include <std_srvs/SetBool.h>
+#include <std_srvs/Trigger.h>
+
+#include <cstdio>
+#include <functional>
+#include <iostream>
+#include <map>
+#include <mutex>
+#include <thread>
+
+#include "system/screen/screen_fixture.h"
+
+namespace laparoscope_servo {
+namespace {
+
+bool isZero(const ScopeVelocity& v) {
+  return v.pan == 0.0 && v.tilt == 0.0 && v.spin == 0.0 && v.insertion == 0.0;
+}
+
+// The other process: a line for each message, with its time of a clock that all processes share.
+int listen(int argc, char** argv) {
+  ros::init(argc, argv, "screen_listener");
+  ros::NodeHandle node;
+  const auto say = [](const char* topic, bool moves) {
+    std::printf("%s %d %.6f\n", topic, moves ? 1 : 0, steadyNow());
+    std::fflush(stdout);
+  };
+  const auto no_delay = ros::TransportHints().tcpNoDelay();
+  const ros::Subscriber command = node.subscribe<ScopeVelocity>(
+      "servo_command", 100, [&](const ScopeVelocityConstPtr& v) { say("command", !isZero(*v)); }, {}, no_delay);
+  const ros::Subscriber manual = node.subscribe<ScopeVelocity>(
+      "controller/manual", 100, [&](const ScopeVelocityConstPtr& v) { say("slider", !isZero(*v)); }, {}, no_delay);
+  const ros::Subscriber held = node.subscribe<std_msgs::Bool>(
+      "dead_man", 100, [&](const std_msgs::BoolConstPtr& b) { say("dead_man", b->data != 0); }, {}, no_delay);
+  ros::spin();
+  return 0;
+}
+
+// Without the libraries' headers, which nothing else here needs.
+class Hand {
+ public:
+  Hand() {
+    void* x = ::dlopen("libX11.so.6", RTLD_NOW);
+    void* test = ::dlopen("libXtst.so.6", RTLD_NOW);
+    if (x == nullptr || test == nullptr) throw std::runtime_error("libX11.so.6 and libXtst.so.6 are needed");
+    display_ = reinterpret_cast<void* (*)(const char*)>(::dlsym(x, "XOpenDisplay"))(nullptr);
+    flush_ = reinterpret_cast<int (*)(void*)>(::dlsym(x, "XFlush"));
+    button_ = reinterpret_cast<int (*)(void*, unsigned, int, unsigned long)>(::dlsym(test, "XTestFakeButtonEvent"));
+    motion_ = reinterpret_cast<int (*)(void*, int, int, int, unsigned long)>(::dlsym(test, "XTestFakeMotionEvent"));
+    if (display_ == nullptr) throw std::runtime_error("no display");
+  }
+  void move(const QPoint& at) { motion_(display_, -1, at.x(), at.y(), 0), flush_(display_); }
+  double button(bool down) {
+    const double now = steadyNow();
+    button_(display_, 1, down ? 1 : 0, 0), flush_(display_);
+    return now;
+  }
+
+ private:
+  void* display_;
+  int (*flush_)(void*);
+  int (*button_)(void*, unsigned, int, unsigned long);
+  int (*motion_)(void*, int, int, int, unsigned long);
+};
+
+struct Heard {
+  bool moves = false;
+  double since = -1.0;  // s, when this began
+};
+
+class Measurement {
+ public:
+  Measurement(const std::string& program, int times, double held) : times_(times), held_(held) {
+    ears_ = ::popen((program + " --listen").c_str(), "r");
+    reader_ = std::thread([this] { read(); });
+  }
+  ~Measurement() { reader_.detach(); }
+
+  void run(const std::map<std::string, QPoint>& places) {
+    stop(places.at("stop"));
+    release("dead_man", places.at("dead_man"), places.at("dead_man"));
+    call<SelectTask>("controller/select_task", [](SelectTask& task) { task.request.task = "MANUAL"; });
+    release("slider", places.at("slider"), places.at("slider") + QPoint(60, 0));
+    hold("dead_man", places.at("dead_man"));
+  }
+
+ private:
+  template <class Service, class Fill>
+  bool call(const std::string& name, const Fill& fill) {
+    Service call;
+    fill(call);
+    return ros::service::call(name, call) && call.response.success;
+  }
+  void read() {
+    char topic[32];
+    int moves = 0;
+    double at = 0.0;
+    while (std::fscanf(ears_, "%31s %d %lf", topic, &moves, &at) == 3) {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      Heard& heard = heard_[topic];
+      if (heard.since < 0.0 || heard.moves != (moves != 0)) heard = {moves != 0, at};
+      if (moves == 0) ++zeros_[topic];
+    }
+  }
+  Heard heard(const std::string& topic) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return heard_[topic];
+  }
+  bool wait(const std::function<bool()>& condition, double seconds = 20.0) {
+    const double until = steadyNow() + seconds;
+    while (!condition() && steadyNow() < until && ros::ok()) ros::WallDuration(0.001).sleep();
+    return condition();
+  }
+  void tell(const std::string& name, double seconds) { std::cout << name << ',' << seconds << std::endl; }
+
+  // SERVO, with a command that is not zero.
+  void stop(const QPoint& place) {
+    for (int k = 0; k < times_ && ros::ok(); ++k) {
+      const bool servo = wait([&] {
+        call<std_srvs::Trigger>("aesop/enable", [](std_srvs::Trigger&) {});
+        call<std_srvs::SetBool>("controller/engage", [](std_srvs::SetBool& engage) { engage.request.data = 1; });
+        return wait([&] { return heard("command").moves; }, 2.0);
+      });
+      if (!servo) {
+        std::cerr << "the controller does not move the scope" << std::endl;
+        return;
+      }
+      hand_.move(place);
+      ros::WallDuration(0.2).sleep();
+      if (!heard("command").moves) continue;  // it has arrived by itself
+      const double pressed = hand_.button(true);
+      if (wait([&] { return !heard("command").moves; })) tell("stop", heard("command").since - pressed);
+      hand_.button(false);
+    }
+  }
+  void release(const std::string& topic, const QPoint& from, const QPoint& to) {
+    for (int k = 0; k < times_ && ros::ok(); ++k) {
+      hand_.move(from);
+      ros::WallDuration(0.1).sleep();
+      hand_.button(true);
+      hand_.move(to);
+      if (!wait([&] { return heard(topic).moves; })) {
+        std::cerr << topic << " cannot be held" << std::endl;
+        hand_.button(false);
+        return;
+      }
+      ros::WallDuration(0.3).sleep();
+      const double released = hand_.button(false);
+      if (wait([&] { return !heard(topic).moves; })) tell(topic, heard(topic).since - released);
+    }
+  }
+  void hold(const std::string& topic, const QPoint& place) {
+    hand_.move(place);
+    hand_.button(true);
+    if (!wait([&] { return heard(topic).moves; })) return;
+    const int before = zeros(topic);
+    ros::WallDuration(held_).sleep();
+    tell("false_releases", zeros(topic) - before);
+    hand_.button(false);
+  }
+  int zeros(const std::string& topic) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return zeros_[topic];
+  }
+
+  int times_;
+  double held_;
+  Hand hand_;
+  FILE* ears_;
+  std::mutex mutex_;
+  std::map<std::string, Heard> heard_;
+  std::map<std::string, int> zeros_;
+  std::thread reader_;
+};
+
+}  // namespace
+}  // namespace laparoscope_servo
+
+int main(int argc, char** argv) {
+  using namespace laparoscope_servo;
+  if (argc > 1 && std::string(argv[1]) == "--listen") return listen(argc, argv);
+  if (argc < 3) {
+    std::cerr << "screen_hands TIMES SECONDS_HELD" << std::endl;
+    return 2;
+  }
+  ros::init(argc, argv, "screen_hands");
+  const test_support::VirtualDisplay display;
+  QApplication application(argc, argv);
+  screen::ScreenWidget screen;
+  screen.move(0, 0);
+  screen.resize(1280, 800);
+  screen.show();
+  test_support::waitFor([&] { return screen.windowHandle()->isExposed(); });
+  test_support::hands("windowfocus " + std::to_string(screen.winId()));
+  const auto centre = [&](const QString& name) {
+    auto* widget = screen.findChild<QWidget*>(name);
+    return widget->mapToGlobal(widget->rect().center());
+  };
+  const std::map<std::string, QPoint> places{
+      {"stop", centre("stop")}, {"dead_man", centre("dead_man")}, {"slider", centre("Pan")}};
+  std::thread work([&, program = std::string(argv[0]), times = std::stoi(argv[1]), held = std::stod(argv[2])] {
+    try {
+      Measurement(program, times, held).run(places);
+    } catch (const std::exception& error) {
+      std::cerr << error.what() << std::endl;
+    }
+    QMetaObject::invokeMethod(
+        &application, [] { QApplication::quit(); }, Qt::QueuedConnection);
+  });
+  QApplication::exec();
+  work.join();
+  ros::shutdown();
+  std::_Exit(0);  // who listens ends with the pipe
+}

@@ -1,0 +1,128 @@
+// A camera of 1080p60 and the tracker's nodelet in one manager: what a screen beside them costs the tracker. Run by
+// scripts/measure_screen; no test.
+//
+//   screen_load SECONDS FRAMES.csv
+//
+// Every image is stamped when it is published. Two bands at its top tell its number by their grey, for who looks at the
+// screen. FRAMES.csv: number, stamp [s], delay to the homography [s; empty: none], state.
+#include <cv_bridge/cv_bridge.h>
+#include <laparoscope_servo/Homography.h>
+#include <laparoscope_servo/SelectRoi.h>
+#include <nodelet/loader.h>
+#include <ros/ros.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <mutex>
+#include <opencv2/imgproc.hpp>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "support/synthetic_sequence.h"
+
+namespace {
+
+const cv::Size kSize(1920, 1080);
+constexpr int kImages = 120;  // made before, played forwards and backwards: a picture that repeats is no picture
+constexpr double kRate = 60.0;
+constexpr int kBand = 60;    // px
+constexpr int kLevels = 12;  // 144 numbers, 2.4 s
+
+struct Frame {
+  ros::Time stamp;
+  double delay = -1.0;
+  int state = -1;
+};
+
+// A slow walk over a texture: 3 px an image at most.
+std::vector<cv::Mat> pictures() {
+  const cv::Mat scene = laparoscope_servo::test_support::texture(kSize + cv::Size(200, 200));
+  std::vector<cv::Mat> result;
+  for (int k = 0; k < kImages; ++k) {
+    const double t = M_PI * k / (kImages - 1);
+    result.push_back(
+        scene(cv::Rect(cv::Point(static_cast<int>(100 - 90 * std::cos(t)), 100 + static_cast<int>(50 * std::sin(t))),
+                       kSize))
+            .clone());
+  }
+  return result;
+}
+
+void writeNumber(cv::Mat& image, int number) {
+  const int digits[] = {number % kLevels, (number / kLevels) % kLevels};
+  for (int k = 0; k < 2; ++k) image.rowRange(k * kBand, (k + 1) * kBand).setTo(cv::Scalar::all(10 + 20 * digits[k]));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "screen_load");
+  if (argc < 3) {
+    std::fprintf(stderr, "screen_load SECONDS FRAMES.csv\n");
+    return 2;
+  }
+  const int count = static_cast<int>(std::stod(argv[1]) * kRate);
+  ros::NodeHandle node;
+  nodelet::Loader loader;
+  const ros::M_string no_remappings{{"image", "camera/image_raw"}};
+  if (!loader.load("/tracker", "laparoscope_servo/Tracker", no_remappings, {})) return 1;
+  ros::Publisher images = node.advertise<sensor_msgs::Image>("camera/image_raw", 1);
+  std::vector<Frame> frames(static_cast<std::size_t>(count));
+  std::mutex mutex;
+  std::size_t published = 0;
+  const ros::Subscriber results = node.subscribe<laparoscope_servo::Homography>(
+      "tracker/homography", 100, [&](const laparoscope_servo::HomographyConstPtr& result) {
+        const ros::Time now = ros::Time::now();
+        const std::lock_guard<std::mutex> lock(mutex);
+        for (std::size_t k = published; k-- > 0 && frames[k].stamp >= result->header.stamp;) {
+          if (frames[k].stamp != result->header.stamp) continue;
+          frames[k].delay = (now - frames[k].stamp).toSec();
+          frames[k].state = result->state;
+        }
+      });
+  ros::AsyncSpinner spinner(1);
+  spinner.start();
+  std::vector<cv::Mat> walk = pictures();
+  while (ros::ok() && images.getNumSubscribers() == 0) ros::WallDuration(0.01).sleep();
+  std::thread selector([] {
+    laparoscope_servo::SelectRoi call;
+    call.request.roi.x_offset = 800;
+    call.request.roi.y_offset = 450;
+    call.request.roi.width = call.request.roi.height = 240;
+    ros::service::waitForService("tracker/select_roi");
+    if (!ros::service::call("tracker/select_roi", call) || !call.response.success)
+      std::fprintf(stderr, "not selected: %s\n", call.response.message.c_str());
+  });
+  const auto begin = std::chrono::steady_clock::now();
+  for (int k = 0; k < count && ros::ok(); ++k) {
+    const int turn = k % (2 * kImages);
+    cv::Mat& picture = walk[static_cast<std::size_t>(turn < kImages ? turn : 2 * kImages - 1 - turn)];
+    writeNumber(picture, k);
+    std_msgs::Header header;
+    header.frame_id = "camera";
+    const sensor_msgs::ImagePtr message = cv_bridge::CvImage(header, "bgr8", picture).toImageMsg();
+    std::this_thread::sleep_until(begin + std::chrono::duration<double>(k / kRate));
+    message->header.stamp = ros::Time::now();
+    {
+      const std::lock_guard<std::mutex> lock(mutex);
+      frames[static_cast<std::size_t>(k)].stamp = message->header.stamp;
+      published = static_cast<std::size_t>(k) + 1;
+    }
+    images.publish(message);
+  }
+  ros::WallDuration(1.0).sleep();
+  selector.join();
+  const std::lock_guard<std::mutex> lock(mutex);
+  std::ofstream file(argv[2]);
+  file.precision(6);
+  file << "number,stamp,delay,state\n" << std::fixed;
+  for (std::size_t k = 0; k < published; ++k) {
+    file << k << ',' << frames[k].stamp.toSec() << ',';
+    if (frames[k].state >= 0) file << frames[k].delay;
+    file << ',' << frames[k].state << '\n';
+  }
+  return 0;
+}

@@ -1,0 +1,77 @@
+#include "ros/tracker/region_desk.h"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "support/synthetic_tissue.h"
+
+namespace laparoscope_servo {
+namespace {
+
+const geometry::Rectangle kRoi{110.0, 75.0, 100.0, 90.0};
+
+class RegionDeskTest : public testing::Test {
+ protected:
+  static std::shared_ptr<Snapshot> snapshot(double stamp, const cv::Size& size = cv::Size(320, 240)) {
+    auto result = std::make_shared<Snapshot>();
+    result->image = test::tissue(size, 5);
+    result->stamp = ros::Time(stamp);
+    result->epoch = 3;
+    return result;
+  }
+  template <class Ask>
+  static std::string whyNot(const Ask& ask) {
+    try {
+      ask();
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  TrackerParameters parameters_;
+  RegionDesk desk_{parameters_};
+};
+
+TEST_F(RegionDeskTest, SaysWhetherARegionWouldBeTaken) {
+  auto now = snapshot(1.0);
+  EXPECT_EQ(whyNot([&] { desk_.check(*now, kRoi); }), "");
+  EXPECT_NE(whyNot([&] {
+              desk_.check(*now, {250.0, 75.0, 100.0, 90.0});
+            }).find("not inside the image"),
+            std::string::npos);
+  now->lens_error = "images cannot be rectified: no camera_info";
+  EXPECT_EQ(whyNot([&] { desk_.check(*now, kRoi); }), now->lens_error);
+}
+
+TEST_F(RegionDeskTest, KeepsOnePictureAndKnowsItByItsStamp) {
+  EXPECT_TRUE(desk_.preview().empty());
+  EXPECT_NE(whyNot([&] { desk_.kept(ros::Time(1.0)); }).find("freeze_image"), std::string::npos);
+  desk_.keep(snapshot(1.0, cv::Size(1280, 720)));
+  EXPECT_EQ(desk_.preview().size(), cv::Size(640, 360));
+  EXPECT_EQ(desk_.kept(ros::Time(1.0)).stamp, ros::Time(1.0));
+  desk_.keep(snapshot(2.0));
+  EXPECT_NE(whyNot([&] { desk_.kept(ros::Time(1.0)); }).find("another one was frozen"), std::string::npos);
+}
+
+TEST_F(RegionDeskTest, TheRegionIsCutFromThatVeryImage) {
+  const auto before = snapshot(1.0);
+  desk_.keep(before);
+  const RecallRoute route = desk_.route(ros::Time(1.0), kRoi, *snapshot(5.0));
+  ASSERT_EQ(route.steps.size(), 1u);
+  EXPECT_EQ(route.steps[0].name, "");
+  EXPECT_EQ(route.steps[0].view.image.data, before->image.data);
+  EXPECT_EQ(route.steps[0].view.roi.x, kRoi.x);
+  EXPECT_EQ(route.steps[0].stamp, before->stamp);
+  EXPECT_EQ(route.epoch, 3u);
+  EXPECT_NE(whyNot([&] { desk_.route(ros::Time(1.0), kRoi, *snapshot(5.0, cv::Size(640, 480))); }).find("another size"),
+            std::string::npos);
+  EXPECT_NE(whyNot([&] {
+              desk_.route(ros::Time(1.0), {0.0, 0.0, 2.0, 2.0}, *snapshot(5.0));
+            }).find("too small"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace laparoscope_servo
