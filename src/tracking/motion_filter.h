@@ -1,10 +1,10 @@
-// What the past tells of the homography in the next image: a Kalman filter on SL(3) whose measurement is ESM.
+// Predicts the homography in the next image: a Kalman filter on SL(3) whose measurements are ESM's estimates.
 //
 // State: G and its velocity. G is predicted by the last motion, damped, and believed with the covariance of the last
 // estimate plus that of the innovations, which is learned: how far well-seen estimates were from their predictions, and
-// which way. Corners of an ROI mostly move together; so when one half is covered, what is seen of the other half moves
-// it along, and what nobody sees stays uncertain. Deviations x of G from an expected G are those of MotionPrior, in
-// normalised template units.
+// in which directions. Corners of an ROI mostly move together; so when one half is covered, its motion is predicted
+// from that of the other half, and directions that no pixel determines stay uncertain. Deviations x of G from an
+// expected G are those of MotionPrior, in normalised template units.
 #pragma once
 
 #include <Eigen/Core>

@@ -17,10 +17,10 @@ class Table;
 namespace laparoscope_servo::aesop {
 
 struct PatternConfig {
-  double angle = 0.12;             // rad, 0.02 to 0.4: half the cone's opening
-  double speed = 0.05;             // rad/s, 0.02 to 0.15
-  double max_depth_change = 0.01;  // m, 0.001 to 0.05: of the depth by the insertion point believed in
-  double patience = 2.0;           // s, 0.5 to 20, without coming nearer to the next direction
+  double angle = 0.12;             // rad: half the cone's opening
+  double speed = 0.05;             // rad/s
+  double max_depth_change = 0.01;  // m: of the depth by the insertion point believed in
+  double patience = 2.0;           // s, without coming nearer to the next direction
 };
 
 // Rows for all of it: ranges and meanings.

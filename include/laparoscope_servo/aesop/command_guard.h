@@ -22,13 +22,13 @@ namespace laparoscope_servo::aesop {
 
 // Defaults are those of config/aesop.yaml, group `command`.
 struct CommandConfig {
-  double timeout = 0.2;         // s, 0.02 to 2: a command that no other follows counts no longer
-  double max_stamp_age = 0.5;   // s, 0.02 to 10: between a command's stamp and now
-  double max_stamp_lead = 0.1;  // s, 0 to 2: a stamp may be ahead of now, as clocks of two machines differ
-  double max_pan = 0.15;        // rad/s, > 0 to 1; beyond a limit all four are scaled, so that the direction is kept
+  double timeout = 0.2;         // s: a command that no other follows counts no longer
+  double max_stamp_age = 0.5;   // s: between a command's stamp and now
+  double max_stamp_lead = 0.1;  // s: a stamp may be ahead of now, as clocks of two machines differ
+  double max_pan = 0.15;        // rad/s; beyond a limit all four are scaled, so that the direction is kept
   double max_tilt = 0.15;       // rad/s
   double max_spin = 0.3;        // rad/s
-  double max_insertion = 0.03;  // m/s, > 0 to 0.2
+  double max_insertion = 0.03;  // m/s
 };
 
 // Rows for all of it: ranges and meanings.

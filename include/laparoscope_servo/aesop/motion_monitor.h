@@ -21,7 +21,7 @@ namespace laparoscope_servo::aesop {
 
 // Defaults are those of config/aesop.yaml, group `monitor`.
 struct MonitorConfig {
-  double response_time = 1.0;  // s, 0.2 to 10: what joints do is judged over so long; well above the arm's delay
+  double response_time = 1.0;  // s: what joints do is judged over so long; well above the arm's delay
   // Slower commands than these may move nothing: friction. rad/s and m/s, 1e-4 to 1
   double slowest_angle = 0.01;
   double slowest_distance = 0.002;
@@ -51,7 +51,7 @@ class MotionMonitor {
  private:
   struct Joint {
     int number;  // 1 to 7
-    int index;   // in a JointVector
+    int index;  // in a JointVector
     bool prismatic;
   };
   struct Sample {

@@ -16,9 +16,9 @@ namespace laparoscope_servo::aesop {
 
 // Defaults are those of config/aesop.yaml, group `reconnect`.
 struct ReconnectConfig {
-  double first_pause = 0.5;    // s, 0.05 to 10
+  double first_pause = 0.5;    // s
   double longest_pause = 8.0;  // s, first_pause to 60
-  double stable_time = 5.0;    // s, 0 to 3600: a link that was up for so long has lasted
+  double stable_time = 5.0;    // s: a link that was up for so long has lasted
 };
 
 // Rows for all of it: ranges and meanings.

@@ -13,10 +13,10 @@ class Table;
 namespace laparoscope_servo::aesop {
 
 struct SessionConfig {
-  double rate = 40.0;                 // Hz, 5 to 200: requests sent, and so statuses asked for
-  double time_to_live = 0.2;          // s, 0.01 to 2: of a velocity; when none follows, the controller stops by itself
-  double status_timeout = 0.3;        // s, 0.05 to 5: no status for longer is a lost link
-  double request_timeout = 1.0;       // s, 0.1 to 10: for the controller to confirm enable, disable or clear_fault
+  double rate = 40.0;                 // Hz: requests sent, and so statuses asked for
+  double time_to_live = 0.2;          // s: of a velocity; when none follows, the controller stops by itself
+  double status_timeout = 0.3;        // s: no status for longer is a lost link
+  double request_timeout = 1.0;       // s: for the controller to confirm enable, disable or clear_fault
   CodecFactory codec = makeOwnCodec;  // the wire format; by name: codecNamed()
 };
 

@@ -20,8 +20,8 @@ namespace laparoscope_servo::aesop {
 // Defaults are those of config/aesop.yaml, group `wire_log`.
 struct WireLogConfig {
   std::string file;  // none when empty: no recording
-  double size = 20;  // MB, 0.1 to 1000: of one file; an hour takes about 20
-  int files = 5;     // 1 to 100: that are kept, the one being written among them
+  double size = 20;  // MB: of one file; an hour takes about 20
+  int files = 5;     // that are kept, the one being written among them
 };
 
 // Rows for all of it: ranges and meanings.

@@ -17,10 +17,10 @@ class Table;
 namespace laparoscope_servo::servo {
 
 struct InsertionPointFitConfig {
-  double spacing = 0.005;           // rad, 0.001 to 0.2: a pose is kept when its direction is as far from all others
+  double spacing = 0.005;           // rad: a pose is kept when its direction is as far from all others
   int min_poses = 30;               // kept, 5 to half of max_poses
-  int max_poses = 300;              // kept, 10 to 1000; when there are more, a wider spacing thins them out
-  double min_cone = 0.07;           // rad, 0.01 to 0.5: root mean square of the directions from their mean
+  int max_poses = 300;              // kept; when there are more, a wider spacing thins them out
+  double min_cone = 0.07;           // rad: root mean square of the directions from their mean
   double max_residual = 0.003;      // m, root mean square distance of the shafts from the point
   double max_stddev = 0.003;        // m, of the point along its worst axis
   double position_noise = 0.0005;   // m, of a pose, standard deviation per axis

@@ -22,12 +22,12 @@ struct ArmConfig {
   // Joint positions at power-on; those of the passive joints are a first guess, the trocar decides. m, rad
   aesop::JointVector start = (aesop::JointVector() << 0.25, -0.9, 1.5, 0.0, 0.0, 0.0, 0.0).finished();
   Eigen::Vector3d insertion_point{0.574, -0.079, -0.05};  // m, in aesop_base: where the trocar really is
-  double delay = 0.16;  // s, 0 to 2: from a command to its effect, as the paper measured
+  double delay = 0.16;                                    // s: from a command to its effect, as the paper measured
   // A commanded speed up to here moves nothing; m/s, rad/s, of the driven joints. At the nominal start pose these are
   // about 4 mrad/s and 0.4 mm/s of the scope.
   aesop::JointVector dead_zone = (aesop::JointVector() << 4e-4, 3e-3, 3e-3, 0.0, 0.0, 0.0, 4e-3).finished();
-  double breakaway = 1.25;      // 1 to 10: friction; a joint at rest needs this many times its dead zone to start
-  double time_constant = 0.03;  // s, 0 to 1: of a joint following its speed
+  double breakaway = 1.25;      // friction; a joint at rest needs this many times its dead zone to start
+  double time_constant = 0.03;  // s: of a joint following its speed
 };
 
 // Rows for all of it: ranges and meanings.

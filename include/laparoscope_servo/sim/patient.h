@@ -15,8 +15,8 @@ class Table;
 namespace laparoscope_servo::sim {
 
 struct BreathingConfig {
-  double frequency = 0.25;                    // Hz, 0.02 to 2
-  double second_harmonic = 0.0;               // of the amplitude, 0 to 1
+  double frequency = 0.25;                    // Hz
+  double second_harmonic = 0.0;               // of the amplitude
   double third_harmonic = 0.0;                // the same
   double start = 0.0;                         // s: there is none before
   double end = 1e9;                           // s: held from then on
@@ -27,8 +27,8 @@ struct BreathingConfig {
 // Somebody pulls at the tissue, again and again: each time smoothly to another place on a circle about where it lies at
 // rest, and nearer or further by a third of the radius at most.
 struct PullConfig {
-  double distance = 0.0;  // m, radius of the circle; 0 to 0.1
-  double time = 0.5;      // s, that a pull takes; 0.05 to 60
+  double distance = 0.0;  // m, radius of the circle
+  double time = 0.5;      // s, that a pull takes
   double period = 10.0;   // s, from one to the next; at least `time`
 };
 

@@ -19,22 +19,22 @@ namespace laparoscope_servo::sim {
 struct TissueConfig {
   std::string image;        // file with the texture; empty: made from the seed
   int seed = 1;             // >= 0
-  int texture_side = 2400;  // px, 64 to 8192, of the texture made from the seed
+  int texture_side = 2400;  // px, of the texture made from the seed
   double width = 0.30;      // m, > 0, of the texture; it is mirrored beyond its edges
   double distance = 0.08;   // m, > 0, along the optical axis from the camera at the start pose
-  double tilt_x = 0.0;      // rad, -1.2 to 1.2, about the x axis of the camera at the start pose
-  double tilt_y = 0.0;      // rad, -1.2 to 1.2, then about the tissue's y axis
+  double tilt_x = 0.0;      // rad, about the x axis of the camera at the start pose
+  double tilt_y = 0.0;      // rad, then about the tissue's y axis
 };
 
 struct LightConfig {
   double reference_distance = 0.08;  // m, > 0: from here, squarely, tissue has the brightness of its texture
-  double beam_exponent = 0.0;        // 0 to 8: lamp and lens lose cos^this of the angle to the optical axis
+  double beam_exponent = 0.0;        // lamp and lens lose cos^this of the angle to the optical axis
 };
 
 struct ExposureConfig {
   bool automatic = true;
-  double gain = 1.0;           // 0.01 to 100; fixed when not automatic
-  double target = 75.0;        // grey levels, 1 to 254: mean of the image that the gain is moved to
+  double gain = 1.0;           // fixed when not automatic
+  double target = 75.0;        // grey levels: mean of the image that the gain is moved to
   double time_constant = 0.4;  // s, > 0
 };
 
@@ -48,12 +48,12 @@ struct InstrumentConfig {
 };
 
 struct ScopeCameraConfig {
-  int width = 640;                                                 // px, 16 to 4096
-  int height = 480;                                                // px, 16 to 4096
+  int width = 640;                                                 // px
+  int height = 480;                                                // px
   geometry::PinholeCamera intrinsics{400.0, 400.0, 319.5, 239.5};  // px
-  double rate = 25.0;                                              // Hz, 0.1 to 1000
-  int supersampling = 2;                                           // 1 to 4 samples per pixel along each axis
-  double noise = 2.0;                                              // grey levels, 0 to 100, standard deviation
+  double rate = 25.0;                                              // Hz
+  int supersampling = 2;                                           // samples per pixel along each axis
+  double noise = 2.0;                                              // grey levels, standard deviation
   int noise_seed = 1;                                              // >= 0
   double border_radius = 0.0;                                      // px, >= 0: black outside this circle; 0: none
 };

@@ -15,7 +15,7 @@ class Table;
 namespace laparoscope_servo::sim {
 
 struct ScopeActuatorConfig {
-  double delay = 0.16;  // s, from a command to its execution; 0 to 2
+  double delay = 0.16;  // s, from a command to its execution
   // Half the width of the dead zone of pan, tilt, spin [rad/s] and insertion [m/s]; 0: none.
   std::vector<double> dead_zone{0.004, 0.004, 0.004, 0.0004};
   // "subtract": what is above the dead zone is executed less its width, as with friction. "threshold": it is executed

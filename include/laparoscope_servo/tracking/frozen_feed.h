@@ -1,8 +1,8 @@
 // Decides from repeated pictures whether the images still show what is there.
 //
-// A whole picture that repeats is none. The region alone may repeat in a compressed feed, whose codec skips what hardly
-// changes: that is believed while nothing says that the region should have moved, and not for long. A part of the
-// region may repeat for as long as the region has not moved by more than a codec would pass over.
+// A picture that repeats as a whole is not believed. In a compressed feed the region alone may repeat, because the
+// codec skips blocks that hardly change: that is believed for a short time, while nothing says that the region should
+// have moved. A part of the region may repeat for as long as the region has moved by less than a codec skips.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ class FrozenFeed {
  public:
   explicit FrozenFeed(const InputConfig& config) : config_(config) {}
 
-  // How far a region moved [px], its corner that moved most; 0 where it was not tracked or nothing is known.
+  // How far the region's corner that moved most has moved [px]; 0 where the region was not tracked.
   struct Motion {
     double step = 0.0;      // by the image, since the picture before
     double of_part = 0.0;   // by the image, at most during the pictures in which the part repeated that repeats now

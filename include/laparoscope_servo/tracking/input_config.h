@@ -13,17 +13,16 @@ namespace laparoscope_servo::tracking {
 struct InputConfig {
   // Of pictures that repeat. The line between a feed that stands still and one that is compressed was measured, see
   // doc/pictures.md.
-  int max_repeats = 1;         // 0 to 25 pictures in a row that may repeat in whole, or in a region that moves
+  int max_repeats = 1;         // pictures in a row that may repeat in whole, or in a region that moves
   int max_still_repeats = 15;  // max_repeats to 1000, in the region alone, while nothing says that it should move
-  double moving = 0.5;         // px, 0.05 to 100, an image: a region that moved by more before was moving
-  double moved =
-      2.0;  // px, 0.1 to 100: what has moved by more cannot look the same: the region by the robot, a part by either
+  double moving = 0.5;         // px, an image: a region that moved by more before was moving
+  double moved = 2.0;  // px: what has moved by more cannot look the same: the region by the robot, a part by either
 
   // Of stamps and sizes that do not go on as those before.
-  int restart_images = 3;  // 2 to 100 images in a row, after which another time, or another size, is believed
-  double loop_step = 1.0;  // s, 0.1 to 1e6: a larger step back is a recording that begins again
-  double max_gap = 2.0;    // s, 0.1 to 1e6: an image that is further ahead waits for another one to confirm it
-  double max_ahead = 0.1;  // s, 0 to 10: of an image's stamp, ahead of this machine's clock
+  int restart_images = 3;  // images in a row, after which another time, or another size, is believed
+  double loop_step = 1.0;  // s: a larger step back is a recording that begins again
+  double max_gap = 2.0;    // s: an image that is further ahead waits for another one to confirm it
+  double max_ahead = 0.1;  // s: of an image's stamp, ahead of this machine's clock
 };
 
 // Rows for all of it: ranges and meanings.

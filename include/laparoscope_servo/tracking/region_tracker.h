@@ -87,10 +87,10 @@ class RegionTracker {
   // IDLE, with the reason. Throws std::invalid_argument for an image that is empty or of another type than those above;
   // the tracker then goes on as if the image had not come. `motion`: where something else than the images, a robot,
   // says that the tissue has gone: takes pixels of the last image in which the state was TRACKING to pixels of this
-  // one, any scale. It gives a place to start from, beside which only what remains is expected to go on; one that is no
-  // homography, or that leads nowhere, does no harm. Does not allocate while tracking, but for a view that it stores
-  // now and then. The result is the tracker's own: it lasts until the next call of select(), track() or reset(), or
-  // until the tracker is moved from.
+  // one, any scale. It gives the place to start from; only the motion that remains beside it is predicted to go on. A
+  // motion that is no homography, or from which no estimate is accepted, is ignored. Does not allocate while tracking,
+  // but for a view that it stores now and then. The result is the tracker's own: it lasts until the next call of
+  // select(), track() or reset(), or until the tracker is moved from.
   const TrackResult& track(const cv::Mat& image, double stamp,
                            const std::optional<Eigen::Matrix3d>& motion = std::nullopt);
 

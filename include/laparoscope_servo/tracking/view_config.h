@@ -11,12 +11,11 @@ class Table;
 namespace laparoscope_servo::tracking {
 
 struct ViewConfig {
-  int capacity = 32;  // 1 to 256 views
-  double min_visible_fraction =
-      0.5;  // 0 to 1, of the region while a view is stored: an instrument is no part of a view
+  int capacity = 32;                  // views
+  double min_visible_fraction = 0.5;  // of the region while a view is stored: an instrument is no part of a view
   // When a recall goes on from a view on the way to the next one.
-  double arrival_centre = 20.0;  // px, 0.1 to 10000: distance of the region's centre from its place in the view
-  double arrival_scale = 0.1;    // 0.001 to 1: relative difference between the region's scale and that in the view
+  double arrival_centre = 20.0;  // px: distance of the region's centre from its place in the view
+  double arrival_scale = 0.1;    // relative difference between the region's scale and that in the view
 };
 
 // Rows for all of it: ranges and meanings.

@@ -18,8 +18,8 @@ namespace laparoscope_servo {
 
 // Defaults are those of config/aesop.yaml and config/controller.yaml, group `master`.
 struct MasterWatchConfig {
-  double period = 0.1;    // s, 0.05 to 5: between two questions
-  double hold = 0.25;     // s, 0.05 to 5: while an answer takes longer, the arm is held
+  double period = 0.1;    // s: between two questions
+  double hold = 0.25;     // s: while an answer takes longer, the arm is held
   double patience = 0.7;  // s, hold to 60: after so long without an answer the master is taken for dead
 };
 

@@ -20,8 +20,8 @@ struct StopLineConfig {
   std::string path;       // of the file or the serial port; empty: there is no line
   std::string signal;     // CTS, DSR or CD of a serial port; empty: the first character of a file, 0 or 1
   int release = 1;        // the level, 0 or 1, at which the arm may move
-  double rate = 100.0;    // Hz, 10 to 1000
-  double patience = 0.3;  // s, 0.05 to 5: without a reading for so long the arm stops
+  double rate = 100.0;    // Hz
+  double patience = 0.3;  // s: without a reading for so long the arm stops
 };
 
 void describe(parameters::Table& table, StopLineConfig& config);

@@ -1,9 +1,9 @@
-// Where pieces of the region of interest (ROI) really are, beside where a homography puts them: block matching on local
-// contrast.
+// Block matching: how far blocks of the region of interest (ROI) are from where a homography puts them, by the
+// correlation of local contrast.
 //
-// It asks ESM for nothing and shares none of its assumptions: light that changes smoothly, gain, haze and shading leave
-// local contrast as it is, a weak texture counts as much as a strong one, and no block knows of the others. So it tells
-// whether an estimate is true, and where a homography cannot follow the tissue.
+// It is independent of ESM and of its assumptions: gain, haze and shading that vary smoothly do not change local
+// contrast, weak texture counts as much as strong texture, and each block is searched for by itself. It is used to
+// check an estimate, and to correct it where ESM was pulled away.
 #pragma once
 
 #include <Eigen/Core>
@@ -30,22 +30,22 @@ class BlockMatching {
   static constexpr int kMostBlocks = kAlong * kAlong;
   static constexpr int kSide = 24;  // px of the level that blocks are searched on, of a block
 
-  // With a lens pyramids are of raw images, all else is in rectified pixels. `coarser`: levels above the one that shows
-  // the ROI's detail, to find blocks twice as far away for each.
+  // With a lens pyramids are of raw images; everything else is in rectified pixels. `coarser`: how many levels coarser
+  // than usual blocks are searched on; each doubles the distance at which they are found.
   explicit BlockMatching(std::shared_ptr<const image::Lens> lens = nullptr, int coarser = 0)
       : lens_(std::move(lens)), coarser_(coarser) {}
 
   // The pyramid must hold the ROI with the margin (px) below where the image has it.
   void setReference(const image::RegionPyramid& reference, const geometry::Rectangle& roi);
 
-  // How many blocks can be told from their surroundings at all.
+  // How many blocks have texture that is unique within the search range.
   int blocks() const { return static_cast<int>(blocks_.size()); }
   // px of the reference per px of the level that blocks are searched on.
   double scale() const { return scale_; }
   // px of the reference, of the blocks' side.
   double side() const { return kSide * scale_; }
 
-  // Of the blocks that the image shows. Valid until the next call.
+  // The shifts of all blocks that lie in the image. The result is valid until the next call.
   const std::vector<BlockShift>& measure(const image::RegionPyramid& current, const Eigen::Matrix3d& g);
 
  private:

@@ -1,4 +1,5 @@
-// Which mixture of an image's colours is tracked, or which of them: one that shows the region and does not clip.
+// Chooses the channel that is tracked, a weighted sum of the colours, or several of them: the one with the strongest
+// gradients in the region that does not clip.
 #pragma once
 
 #include <array>
@@ -11,12 +12,11 @@ namespace laparoscope_servo::tracking {
 
 // `patch`: the region in the reference, CV_8UC1 or CV_8UC3. saturation: grey levels, 1 to 256, from which a channel
 // shows nothing.
-//   kLuma       as it is
-//   kStrongest  the mixture whose gradient is strongest for its noise, of those of the channels that hold the most of
-//   it
-//               together: what clips in any of them does not count. Among what is nearly as good, that which keeps most
-//               of it when the lamp becomes brighter
-//   kColour     those of the channels that hold the most gradient together, with what clips in any of them left out
+//   kLuma       luma
+//   kStrongest  the weighted sum with the strongest gradient for its noise. Channels that clip in a pixel do not count
+//               there. Among sums that are nearly as strong, the one that keeps most of its gradient under a brighter
+//               lamp
+//   kColour     the channels that have the strongest gradients together, without those that clip
 image::Channels chosenChannels(TrackedChannels wanted, const cv::Mat& patch, int saturation);
 
 // Whether what is tracked depends on blue, green, red.

@@ -12,8 +12,8 @@ namespace {
 // px: an alignment that still moves by less than this after all its iterations is as good as converged.
 constexpr double kNearlyConverged = 1.0;
 
-// Of the part of the ROI that is in the image. Where more than the rest is taken for occluded, it is as likely that the
-// estimate is wrong: the areas that are left are those that agree with it.
+// Least visible share of the part of the ROI that is in the image. Below it, the areas that are left may be just those
+// that happen to agree with a wrong estimate.
 constexpr double kMinOfImage = 0.15;
 
 constexpr double kRecordTime = 0.8;  // s, in which the record follows what it is told

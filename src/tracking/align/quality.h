@@ -1,4 +1,4 @@
-// Whether an estimate may be believed. One test does not do: false fits reach high correlations.
+// Acceptance tests of an estimate. There are several, because false fits can reach high correlations.
 #pragma once
 
 #include <string>
@@ -12,8 +12,8 @@ namespace laparoscope_servo::tracking {
 // Share of the ROI that has to be visible in an image for it to be learned from.
 constexpr double kRecordVisible = 0.4;
 
-// What estimates of this ROI that were believed have looked like. Tissue that deforms never correlates as well as a
-// plane does, and a noisy camera leaves larger residuals than a good one: what is too bad is relative.
+// Mean correlation, residual and innovation of the estimates of this ROI that were accepted. Limits are relative to
+// them: tissue that deforms never correlates as well as a plane does, and a noisy camera leaves larger residuals.
 class TrackRecord {
  public:
   // An estimate that was believed while tracking, `dt` [s] after the one before. `innovation` [px]: how far its worst

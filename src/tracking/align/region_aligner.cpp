@@ -10,7 +10,7 @@
 #include "tracking/align/channel_choice.h"
 #include "tracking/align/detail.h"
 #include "tracking/align/shift_fit.h"
-#include "tracking/esm/certainty.h"
+#include "tracking/esm/covariance.h"
 
 namespace laparoscope_servo::tracking {
 
@@ -21,7 +21,7 @@ constexpr int kMostCorrections = 2;  // blocks that were too far to be found are
 // ShiftFit::significance from which on the blocks are believed. Measured on four films of laparoscopy: 0.5
 // and 1 give the same, 3 leaves half of what ESM is off by.
 constexpr double kSignificant = 1.0;
-// px of the level that blocks are searched on, their median: as near as this ESM knows better.
+// px of the level that blocks are searched on. Where their median is off by less, ESM is the more accurate.
 constexpr double kNearOff = 0.3;
 constexpr double kFarOff = 1.5;  // lengthUnit()s of the image, the blocks' median: ESM is off, however they scatter
 // lengthUnit()s of the image, the same: the place is not the region's, and what few blocks say for it is chance.
@@ -67,7 +67,7 @@ void RegionAligner::setReference(const cv::Mat& image, const geometry::Rectangle
   esm_.setWeights(weights());
 }
 
-// The gates' view of the image where the ROI is taken to be.
+// Samples the image for the gates where `g` puts the ROI.
 void RegionAligner::sample(const cv::Mat& image, const Eigen::Matrix3d& g) {
   const cv::Size size(static_cast<int>(roi().width), static_cast<int>(roi().height));
   const int step = samplingStep(size, occlusion_);
@@ -166,7 +166,8 @@ int RegionAligner::visibleBlocks(const std::vector<BlockShift>& shifts, double s
   return static_cast<int>(std::count_if(shifts.begin(), shifts.end(), visible));
 }
 
-// Where the blocks contradict ESM, they are right: light and shade that move pull at residuals, but not at places.
+// Where blocks and ESM contradict each other the blocks are believed: moving light and shadows bias residuals, but not
+// the places at which blocks are found.
 void RegionAligner::correct(EsmResult& estimate, BlockEvidence& evidence) {
   const std::vector<BlockShift>* shifts = &measure(estimate, evidence);
   for (int round = 0; round < kMostCorrections; ++round) {
@@ -198,7 +199,7 @@ void RegionAligner::lookFurther(EsmResult& estimate, BlockEvidence& evidence) {
     estimate = other;
     evidence = there;
   } else if (further.off > kMostOff * lengthUnit(roi())) {
-    evidence = further;  // neither place is the region's
+    evidence = further;  // neither estimate is supported by its blocks
   }
 }
 

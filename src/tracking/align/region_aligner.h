@@ -1,5 +1,6 @@
-// Aligns a region of interest (ROI) of the reference with one image: which pixels to use, ESM on them, and what the
-// result shows of the pixels that should not have been used, until both agree.
+// Aligns a region of interest (ROI) of the reference with one image: occlusion gates choose the pixels, ESM aligns
+// them, the gates are evaluated again on the result, until no further area is rejected; then block matching checks and
+// corrects the estimate.
 #pragma once
 
 #include <Eigen/Core>
@@ -44,7 +45,7 @@ class RegionAligner {
   // See RegionTracker::retune.
   void retune(const TrackerConfig& config) { gates_.setThreshold(config.occlusion.threshold); }
 
-  // The next start has nothing to do with the last one: what is occluded and how the light is are not known.
+  // Forgets occlusions and light of the last alignment, before one that starts elsewhere.
   void startAfresh();
   // An image is done: see OcclusionGates::advance.
   void advance() { gates_.advance(); }
@@ -85,7 +86,7 @@ class RegionAligner {
   image::RegionPyramid pyramid_;
   image::Channels channels_ = image::kLuma;
   image::ColourPatch patch_;
-  Eigen::Matrix3d shown_ = Eigen::Matrix3d::Identity();  // where the gates last looked
+  Eigen::Matrix3d shown_ = Eigen::Matrix3d::Identity();  // the homography at which the colour gate was last evaluated
 };
 
 // Pixels of a patch of the ROI's size to those of the image that the ROI is taken from.

@@ -16,8 +16,8 @@ namespace {
 constexpr std::size_t kFew = 5;
 constexpr int kRounds = 5;
 constexpr double kPlace = 0.15;  // px, how well a block's place is measured at best
-// What ESM may be off by before a block is seen, of half the ROI's side, at its border: shear and perspective are
-// believed only as far as blocks show more.
+// Standard deviations of ESM's error at the ROI's border, in units of half its side, before blocks are measured. They
+// keep shear and perspective small unless the blocks determine them.
 constexpr double kShift = 0.08, kAffine = 0.04, kPerspective = 0.024;
 
 template <typename Value>
@@ -55,7 +55,7 @@ std::optional<ShiftFit> fitShifts(const std::vector<BlockShift>& shifts, const g
   geometry::Vector8d spread;
   spread << kShift, kShift, kAffine, kAffine, kAffine, kAffine, kPerspective, kPerspective;
   const Matrix8d known = spread.cwiseAbs2().cwiseInverse().asDiagonal();
-  // Blocks overlap, and so tell the same more than once.
+  // Blocks overlap, so their shifts are not independent: each counts for the share of its area that is its own.
   const double overlap = std::max(1.0, static_cast<double>(rows.size()) * side * side / (roi.width * roi.height));
   ShiftFit result;
   Matrix8d a = Matrix8d::Zero();

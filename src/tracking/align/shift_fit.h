@@ -1,4 +1,4 @@
-// The homography that the blocks' places show beside the one that they were measured at.
+// Fits a correction of the homography to the shifts that block matching has measured.
 #pragma once
 
 #include <Eigen/Core>

@@ -10,8 +10,8 @@
 #include "laparoscope_servo/geometry/sl3.h"
 #include "laparoscope_servo/image/warp.h"
 #include "laparoscope_servo/robust/scale.h"
-#include "tracking/esm/certainty.h"
-#include "tracking/esm/factors.h"
+#include "tracking/esm/covariance.h"
+#include "tracking/esm/normal_equations.h"
 
 namespace laparoscope_servo::tracking {
 
@@ -58,7 +58,7 @@ void Esm::setReference(const image::RegionPyramid& reference, const geometry::Re
     EsmLevel level(reference, roi, l, lens_.get());
     if (level.planes.empty()) break;
     if (config_.light == Light::kLocal) level.centreLight();
-    if (l > 0) matchBlocks(level, levels_.back());
+    if (l > 0) matchLightBlocks(level, levels_.back());
     levels_.push_back(std::move(level));
   }
 }
@@ -87,8 +87,8 @@ void Esm::forgetLight() {
   light_known_ = false;
 }
 
-// That of the last image, where it is known. Else one bias for all, so that what the blocks differ by still pulls at
-// the motion.
+// Starts with the biases of the last image where they are known. Otherwise all blocks have one bias, so that
+// differences between blocks still drive the motion.
 void Esm::startLight(EsmLevel& level, const EsmState& state) {
   for (EsmPlane& plane : level.planes) {
     if (light_known_ && config_.light == Light::kLocal) {
@@ -107,7 +107,7 @@ double Esm::rejection(double sigma) const {
 
 // Steps that shrink by a factor c, all in one direction, add up to step / (1 - c): Lyusternik's acceleration. Where the
 // tissue bends, Gauss-Newton sees more curvature than there is, and c is above 0.9. Lengths and angles by the metric of
-// J'WJ. The step after a long one says nothing of c.
+// J'WJ. c is not taken from the step after a lengthened one.
 Vector10d Esm::accelerated(const Matrix10d& a, const Vector10d& x) {
   const std::optional<Vector10d> before = std::exchange(last_step_, x);
   if (!before) return x;
@@ -175,7 +175,7 @@ void Esm::takeStep(EsmLevel& level, const Vector10d& x, EsmState& state) {
 void Esm::judge(const MotionPrior* prior, EsmResult& result) const {
   Matrix8d known = Matrix8d::Zero();
   if (prior != nullptr) known = credibility(*prior, deviation_) * prior->information;
-  const Certainty found = certainty(equations_.matrix(), equations_.blocks(), result.sigma, known);
+  const EstimateCovariance found = estimateCovariance(equations_.matrix(), equations_.blocks(), result.sigma, known);
   result.noise = found.noise;
   if (!found.covariance) return;
   result.covariance = *found.covariance;
@@ -239,7 +239,7 @@ EsmStatus Esm::approach(const image::RegionPyramid& current, int l, const Motion
   return status;
 }
 
-// From the second step on the ratio of two steps tells how fast they shrink, and how far there is still to go.
+// From the second step on, the ratio of two steps gives the rate of convergence, and with it the distance still to go.
 EsmStatus Esm::settle(const image::RegionPyramid& current, int l, int patience, const MotionPrior* prior,
                       EsmResult& result) {
   const double scale = levels_[l].scale;
@@ -252,7 +252,7 @@ EsmStatus Esm::settle(const image::RegionPyramid& current, int l, int patience, 
     if (status != EsmStatus::kMaxIterations) return status;
     if (k > 0) contraction = std::min(result.last_step / std::max(before, 1e-9), kSlowest);
     if (result.last_step * contraction / (1.0 - contraction) < accuracy) return EsmStatus::kConverged;
-    // What the image does not determine is not iterated on.
+    // The rest of the way is small against the estimate's own uncertainty.
     if (result.last_step_deviations * contraction / (1.0 - contraction) < kSettled) return EsmStatus::kConverged;
     if (k > 0 && l == 0 && result.last_step < kFar && prior != nullptr &&
         prior->noise > kCorrelated * std::pow(result.sigma, 2))
@@ -262,7 +262,7 @@ EsmStatus Esm::settle(const image::RegionPyramid& current, int l, int patience, 
   return EsmStatus::kMaxIterations;
 }
 
-// Whether the way is far, where the light is not known, a first iteration with one gain and one bias tells.
+// Where the light is not known, a first iteration with one gain and one bias shows whether the region is far away.
 EsmStatus Esm::alignLevel(const image::RegionPyramid& current, int l, bool first, const MotionPrior* prior,
                           EsmResult& result) {
   if (!(light_known_ && config_.light == Light::kLocal)) startLight(levels_[l], result.state);
@@ -302,7 +302,7 @@ EsmResult Esm::align(const image::RegionPyramid& current, const EsmState& start,
     levels_[l].aligned = ++alignments_;
     result.status = alignLevel(current, l, l == first, prior, result);
     if (result.status == EsmStatus::kOutOfView || result.status == EsmStatus::kIllConditioned) return result;
-    // What does not settle on a coarse level is not there.
+    // Still far from converged on a coarse level: the start was too far away, finer levels would not help.
     if (result.status == EsmStatus::kMaxIterations && result.last_step > kFar * levels_[l].scale) return result;
   }
   if (finest > 0 && first > 0) return result;

@@ -20,7 +20,6 @@
 #include "laparoscope_servo/image/lens.h"
 #include "laparoscope_servo/image/pyramid.h"
 #include "laparoscope_servo/tracking/tracker_config.h"
-#include "tracking/esm/block_equations.h"
 #include "tracking/esm/esm_level.h"
 #include "tracking/esm/normal_equations.h"
 #include "tracking/esm/residual.h"
@@ -129,7 +128,7 @@ class Esm {
   geometry::Rectangle roi_;
   geometry::Sl3Steps steps_;  // N: reference pixels to normalised template coordinates
   std::vector<EsmLevel> levels_;
-  BlockEquations equations_;
+  LevelEquations equations_;
   ResidualScale residual_scale_;
   std::vector<float> scratch_;
   std::optional<Vector10d> last_step_;  // of this level, see accelerated(); empty after one that was lengthened

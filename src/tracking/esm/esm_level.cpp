@@ -73,12 +73,12 @@ EsmLevel::EsmLevel(const image::RegionPyramid& reference, const geometry::Rectan
   cells_per_strip = width >= 128 ? 1 : width >= 64 ? 2 : 4;
   cell_rows = height >= 256 ? 16 : height >= 128 ? 8 : height >= 64 ? 4 : 2;
   const std::vector<int> columns = split(width, image::Patch::kStrip, image::Patch::kStrip);
-  block_row_begin = split(height, kMaxCellRows, image::Patch::kStrip);
-  block_columns = static_cast<int>(columns.size()) - 1;
-  block_of_strip.resize(weight.strips());
+  light_row_begin = split(height, kMaxCellRows, image::Patch::kStrip);
+  light_columns = static_cast<int>(columns.size()) - 1;
+  light_column_of_strip.resize(weight.strips());
   for (int strip = 0; strip < weight.strips(); ++strip) {
     const auto next = std::upper_bound(columns.begin(), columns.end() - 1, strip * image::Patch::kStrip);
-    block_of_strip[strip] = static_cast<int>(next - columns.begin()) - 1;
+    light_column_of_strip[strip] = static_cast<int>(next - columns.begin()) - 1;
   }
   planes.resize(reference.channels());
   for (int c = 0; c < reference.channels(); ++c) {
@@ -91,7 +91,7 @@ EsmLevel::EsmLevel(const image::RegionPyramid& reference, const geometry::Rectan
     for (int j = 0; j < height; ++j) std::copy_n(pixels.ptr<float>(j), width, plane.value.row(j));
     plane.value.extrapolate();
     plane.warped.resize(width, height);
-    plane.bias.assign(block_columns * (block_row_begin.size() - 1), 0.0);
+    plane.bias.assign(light_columns * (light_row_begin.size() - 1), 0.0);
     plane.mean = plane.before = plane.bias;
   }
 }
@@ -99,10 +99,10 @@ EsmLevel::EsmLevel(const image::RegionPyramid& reference, const geometry::Rectan
 void EsmLevel::centreLight() {
   for (EsmPlane& plane : planes) {
     std::vector<double> pixels(plane.mean.size(), 0.0);
-    for (int row = 0; row + 1 < static_cast<int>(block_row_begin.size()); ++row) {
-      for (int j = block_row_begin[row]; j < block_row_begin[row + 1]; ++j) {
+    for (int row = 0; row + 1 < static_cast<int>(light_row_begin.size()); ++row) {
+      for (int j = light_row_begin[row]; j < light_row_begin[row + 1]; ++j) {
         for (int i = 0; i < width; ++i) {
-          const int block = row * block_columns + block_of_strip[i / image::Patch::kStrip];
+          const int block = row * light_columns + light_column_of_strip[i / image::Patch::kStrip];
           plane.mean[block] += plane.value(j, i);
           pixels[block] += 1.0;
         }
@@ -113,7 +113,7 @@ void EsmLevel::centreLight() {
 }
 
 void EsmLevel::useValid() {
-  // Beyond the patch nothing is missing.
+  // Pixels beyond the patch count as valid.
   for (int j = 0; j < height; ++j) valid.row(j)[-1] = valid.row(j)[width] = 1.0f;
   std::fill_n(valid.row(-1), width, 1.0f);
   std::fill_n(valid.row(height), width, 1.0f);
@@ -122,23 +122,25 @@ void EsmLevel::useValid() {
   }
 }
 
-void matchBlocks(const EsmLevel& coarse, EsmLevel& fine) {
-  fine.coarser_block.clear();
+void matchLightBlocks(const EsmLevel& coarse, EsmLevel& fine) {
+  fine.coarser_light_block.clear();
   // A pixel of the fine level, along one direction, to that of the coarse one.
   const auto coarser = [&](double pixel, int fine_first, int coarse_first, int size) {
     return std::clamp(static_cast<int>((pixel * fine.scale + fine_first - coarse_first) / coarse.scale), 0, size - 1);
   };
-  for (int row = 0; row + 1 < static_cast<int>(fine.block_row_begin.size()); ++row) {
-    const double centre_row = 0.5 * (fine.block_row_begin[row] + fine.block_row_begin[row + 1] - 1);
+  for (int row = 0; row + 1 < static_cast<int>(fine.light_row_begin.size()); ++row) {
+    const double centre_row = 0.5 * (fine.light_row_begin[row] + fine.light_row_begin[row + 1] - 1);
     const int j = coarser(centre_row, fine.first.y, coarse.first.y, coarse.height);
-    const auto next = std::upper_bound(coarse.block_row_begin.begin(), coarse.block_row_begin.end() - 1, j);
-    const int coarse_row = static_cast<int>(next - coarse.block_row_begin.begin()) - 1;
-    for (int column = 0; column < fine.block_columns; ++column) {
-      const auto strips = std::equal_range(fine.block_of_strip.begin(), fine.block_of_strip.end(), column);
-      const int begin = static_cast<int>(strips.first - fine.block_of_strip.begin()) * image::Patch::kStrip;
-      const int end = static_cast<int>(strips.second - fine.block_of_strip.begin()) * image::Patch::kStrip;
+    const auto next = std::upper_bound(coarse.light_row_begin.begin(), coarse.light_row_begin.end() - 1, j);
+    const int coarse_row = static_cast<int>(next - coarse.light_row_begin.begin()) - 1;
+    for (int column = 0; column < fine.light_columns; ++column) {
+      const auto strips =
+          std::equal_range(fine.light_column_of_strip.begin(), fine.light_column_of_strip.end(), column);
+      const int begin = static_cast<int>(strips.first - fine.light_column_of_strip.begin()) * image::Patch::kStrip;
+      const int end = static_cast<int>(strips.second - fine.light_column_of_strip.begin()) * image::Patch::kStrip;
       const int i = coarser(0.5 * (begin + std::min(end, fine.width) - 1), fine.first.x, coarse.first.x, coarse.width);
-      fine.coarser_block.push_back(coarse_row * coarse.block_columns + coarse.block_of_strip[i / image::Patch::kStrip]);
+      fine.coarser_light_block.push_back(coarse_row * coarse.light_columns +
+                                         coarse.light_column_of_strip[i / image::Patch::kStrip]);
     }
   }
 }
@@ -147,7 +149,7 @@ void inheritLight(const EsmLevel& coarse, EsmLevel& fine) {
   for (std::size_t c = 0; c < fine.planes.size(); ++c) {
     const EsmPlane& from = coarse.planes[c];
     for (std::size_t block = 0; block < fine.planes[c].bias.size(); ++block) {
-      const int k = fine.coarser_block[block];
+      const int k = fine.coarser_light_block[block];
       fine.planes[c].bias[block] += from.bias[k] - from.before[k];
     }
   }

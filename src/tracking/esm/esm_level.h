@@ -58,15 +58,15 @@ struct EsmLevel {
   int cells_per_strip = 1;  // see sumCells
   int cell_rows = 8;
   // Blocks of light: whole strips of columns, whole cells of rows.
-  std::vector<int> block_of_strip;
-  std::vector<int> block_row_begin;  // rows; the last is the height
-  int block_columns = 0;
-  std::vector<int> coarser_block;  // of the next coarser level, where a block's centre lies
-  std::uint64_t aligned = 0;       // number of the last alignment, among those of all levels
+  std::vector<int> light_column_of_strip;
+  std::vector<int> light_row_begin;  // rows; the last is the height
+  int light_columns = 0;
+  std::vector<int> coarser_light_block;  // of the next coarser level, where a block's centre lies
+  std::uint64_t aligned = 0;             // number of the last alignment, among those of all levels
 };
 
-// Once both levels have their blocks: fills in the finer one's coarser_block.
-void matchBlocks(const EsmLevel& coarse, EsmLevel& fine);
+// Once both levels have their blocks: fills in the finer one's coarser_light_block.
+void matchLightBlocks(const EsmLevel& coarse, EsmLevel& fine);
 
 // The light of the finer level's blocks changes by as much as that of the coarser ones did in the last alignment there.
 void inheritLight(const EsmLevel& coarse, EsmLevel& fine);

@@ -9,12 +9,17 @@
 // iteration converges to has no bias; with cells of one pixel they are exact.
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <vector>
 
 #include "laparoscope_servo/geometry/homography.h"
 #include "laparoscope_servo/tracking/tracker_config.h"
+#include "tracking/esm/esm_level.h"
 
 namespace laparoscope_servo::tracking {
+
+struct CellInput;
 
 // Order of the unknowns: x_1 .. x_8 of sl(3), then the changes of gain and bias.
 using Matrix10d = Eigen::Matrix<double, 10, 10>;
@@ -28,7 +33,7 @@ Eigen::Matrix3d templateFromPixels(const geometry::Rectangle& roi);
 
 // px of the image, the unit of lengths that grow with a region: how far it moves, what a plane cannot follow. They were
 // measured on films, in regions whose larger side is 60 to 340 px, where the unit is 1. In a larger region, or the same
-// one in an image with more pixels, it is as many px as the region is larger than those.
+// one in an image with more pixels, it grows in proportion.
 double lengthUnit(const geometry::Rectangle& roi);
 
 // The eight entries of J for one pixel, as above. Reference for tests, and readable beside the papers.
@@ -84,6 +89,56 @@ class NormalEquations {
   double block_weight_ = 0.0;
   double block_residual_ = 0.0;
   bool block_open_ = false;
+};
+
+// What a block of a plane adds, see NormalEquations: its weight, weighted residual and Jacobian, and its part of J'Wr.
+struct LightBlockSums {
+  double weight;
+  double residual;
+  Vector10d jacobian;
+  Vector10d score;
+};
+
+class LevelEquations {
+ public:
+  // Those of the level's image as it is warped now, with the biases that its planes have. `light`: what of the light is
+  // unknown. `rejection` [grey levels]: residuals from which on Tukey's weights are 0; 0 gives every residual its full
+  // weight.
+  void sum(const EsmLevel& level, const geometry::Rectangle& roi, Light light, double gain, double rejection);
+
+  Matrix10d matrix() const { return equations_.matrix(); }
+  const Vector10d& vector() const { return equations_.vector(); }
+  const std::vector<LightBlockSums>& blocks() const { return blocks_; }  // plane by plane, row by row
+
+ private:
+  void sumLightBlockRow(const EsmLevel& level, const Eigen::Matrix3d& unit_T_patch, const CellInput& input,
+                        const EsmPlane& plane, int block_row);
+
+  NormalEquations equations_;
+  std::vector<LightBlockSums> blocks_;
+  std::vector<float> strip_bias_;
+  std::vector<CellSums> cells_;  // of a block row: cell rows times strips
+};
+
+// Solves symmetric equations whose unknowns have different units: the matrix has its diagonal divided out, as grey
+// levels and normalised coordinates have nothing to do with each other.
+template <int N>
+class Factors {
+ public:
+  using Matrix = Eigen::Matrix<double, N, N>;
+  // `a`: symmetric, positive semidefinite.
+  explicit Factors(const Matrix& a)
+      : d_(a.diagonal().cwiseMax(1e-12).cwiseSqrt().cwiseInverse()), ldlt_(d_.asDiagonal() * a * d_.asDiagonal()) {}
+  // 0 for a singular matrix, 1 for a diagonal one.
+  double conditioning() const { return ldlt_.info() == Eigen::Success ? ldlt_.vectorD().minCoeff() : 0.0; }
+  template <typename Right>
+  auto solve(const Right& b) const {
+    return (d_.asDiagonal() * ldlt_.solve(d_.asDiagonal() * b)).eval();
+  }
+
+ private:
+  Eigen::Matrix<double, N, 1> d_;
+  Eigen::LDLT<Matrix> ldlt_;
 };
 
 }  // namespace laparoscope_servo::tracking

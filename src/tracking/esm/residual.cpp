@@ -22,11 +22,11 @@ double matchMean(EsmLevel& level, double gain) {
   double common = 0.0;
   for (EsmPlane& plane : level.planes) {
     double sum = 0.0, weights = 0.0;
-    for (int row = 0; row + 1 < static_cast<int>(level.block_row_begin.size()); ++row) {
-      for (int j = level.block_row_begin[row]; j < level.block_row_begin[row + 1]; ++j) {
+    for (int row = 0; row + 1 < static_cast<int>(level.light_row_begin.size()); ++row) {
+      for (int j = level.light_row_begin[row]; j < level.light_row_begin[row + 1]; ++j) {
         for (int i = 0; i < level.width; ++i) {
           const double bias =
-              plane.biasOf(row * level.block_columns + level.block_of_strip[i / image::Patch::kStrip], gain);
+              plane.biasOf(row * level.light_columns + level.light_column_of_strip[i / image::Patch::kStrip], gain);
           sum += weight(j, i) * (plane.value(j, i) - gain * plane.warped(j, i) - bias);
           weights += weight(j, i);
         }
@@ -49,13 +49,14 @@ double ResidualScale::of(const EsmLevel& level, double gain) {
   for (const EsmPlane& plane : level.planes) {
     std::size_t block_row = 0;
     for (int j = 0; j < level.height; ++j) {
-      if (j >= level.block_row_begin[block_row + 1]) ++block_row;
+      if (j >= level.light_row_begin[block_row + 1]) ++block_row;
       const float* weights = weight.row(j);
       const float* image = plane.warped.row(j);
       const float* reference = plane.value.row(j);
       // Runs that start elsewhere in each row, so that no pattern of the image is preferred.
       for (int first = (j * 7 * kRun) % stride / kRun * kRun; first < level.width; first += stride) {
-        const std::size_t block = block_row * level.block_columns + level.block_of_strip[first / image::Patch::kStrip];
+        const std::size_t block =
+            block_row * level.light_columns + level.light_column_of_strip[first / image::Patch::kStrip];
         const float b = static_cast<float>(plane.biasOf(block, gain));
         for (int i = first; i < std::min(first + kRun, level.width); ++i) {
           if (!(weights[i] > 0.0f)) continue;

@@ -12,8 +12,8 @@ namespace laparoscope_servo::tracking {
 
 namespace {
 
-// px, for the bleached rims of highlights. Highlights are small: where much clips, that is the light, and what lies
-// beside it only has to keep its gradient.
+// px, by which saturated pixels are grown: a highlight has a bleached rim. Where more than kMuch of the region is
+// saturated it is the light and no highlight; then they are grown by as much as the gradient reaches, to leave pixels.
 constexpr int kGrowSaturated = 2;
 constexpr int kGrowClipped = 1;
 constexpr double kMuch = 0.5;  // of the samples
@@ -150,7 +150,7 @@ bool OcclusionGates::rejectByColour() {
 }
 
 // Where areas have another colour, the light may: as long as it does not cost what agrees in the light that is known.
-// Not looked into again while about as many agree as after the last look, half of all or more.
+// Skipped while at least half of all areas agree, and about as many as when the light was fitted last.
 void OcclusionGates::accountForLight(const image::ColourPatch& patch) {
   for (int area = 0; area < grid_.count(); ++area) {
     agree_[area] = distances_[area] <= static_cast<float>(config_.threshold);  // false for NaN

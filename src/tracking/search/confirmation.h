@@ -1,5 +1,5 @@
-// What a search has found is believed when it stays: false fits do not come back to the same place, nor go on as they
-// went.
+// Confirms what a search has found: it has to be found again in the next images, at the same place or moving steadily.
+// False fits are not.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,12 +18,12 @@ class Confirmation {
 
   // The ROI was found in the next image. True when that is often enough: QualityConfig::confirmations images in a row.
   bool add(const EsmResult& found, const geometry::Rectangle& roi, const TrackRecord& record);
-  // It was not found, or is believed.
+  // Starts again: the ROI was not found, or has been confirmed.
   void forget() { count_ = 0; }
 
-  // Something was found in the image before, and waits.
+  // The ROI was found in the image before and is not confirmed yet.
   bool waiting() const { return count_ > 0; }
-  // That; the last one there was, when none waits.
+  // The estimate of the last image in which the ROI was found.
   const EsmState& candidate() const { return candidate_; }
   // Where it is in the next image, if it goes on as it went; determinant 1.
   Eigen::Matrix3d expected() const;

@@ -8,8 +8,8 @@
 #include <optional>
 
 #include "laparoscope_servo/geometry/sl3.h"
-#include "tracking/search/nominal_cost.h"
-#include "tracking/search/point_features.h"
+#include "tracking/search/search_budget.h"
+#include "tracking/views/point_features.h"
 
 namespace laparoscope_servo::tracking {
 
@@ -41,7 +41,7 @@ Eigen::Matrix3d toEigen(const cv::Mat& m) {
 
 // Those of `more` that `keep` takes to a place are added there.
 template <typename Keep>
-void append(const Features& more, const Keep& keep, Features& features) {
+void append(const DescribedPoints& more, const Keep& keep, DescribedPoints& features) {
   for (std::size_t k = 0; k < more.points.size(); ++k) {
     const std::optional<cv::Point2f> place = keep(more.points[k]);
     if (!place) continue;
@@ -79,7 +79,7 @@ void FeatureSearch::restart() {
 
 void FeatureSearch::begin(const CoarseImage& image, const image::ChannelWeights& weights, const Keyframes& keyframes) {
   found_.clear();
-  seen_ = Features();
+  seen_ = DescribedPoints();
   weights_ = weights;
   asked_.clear();
   strip_ = strips_ = 0;
@@ -130,7 +130,7 @@ void FeatureSearch::drawStrip() {
                         cv::Rect(cv::Point(0, 0), coarse_.grey.size());
   cv::Mat1b wanted = cv::Mat1b::zeros(seen.size());
   coarse_.usable(own).copyTo(wanted(own - seen.tl()));
-  const Features drawn = drawPoints(coarse_.grey(seen), wanted, config_.max_features / strips_);
+  const DescribedPoints drawn = drawPoints(coarse_.grey(seen), wanted, config_.max_features / strips_);
   append(
       drawn, [&](const cv::Point2f& p) { return rectified(lens_.get(), coarse_.inImage(p + cv::Point2f(seen.tl()))); },
       seen_);

@@ -68,7 +68,7 @@ class FeatureSearch {
   image::ChannelWeights weights_ = image::kLuma;
   int strip_ = 0, strips_ = 0;
   std::vector<int> asked_;  // keyframes, the next one last
-  Features seen_;
+  DescribedPoints seen_;
   std::vector<FeatureCandidate> found_;
 };
 

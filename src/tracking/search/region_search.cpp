@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "laparoscope_servo/image/warp.h"
-#include "tracking/search/nominal_cost.h"
+#include "tracking/search/search_budget.h"
 #include "tracking/search/template_search.h"
 
 namespace laparoscope_servo::tracking {
@@ -62,7 +62,7 @@ void RegionSearch::restart() {
   feature_search_.restart();
   suggested_.clear();
   passing_ = to_slide_ = false;
-  worked_ = true;  // the first image is for what is known
+  worked_ = true;  // the first image tries the last place before it begins a pass
 }
 
 // What was found in the image before comes first, then what images suggested for which there was no time, then where
@@ -123,7 +123,7 @@ std::optional<SearchPlace> RegionSearch::nextSuggested(const cv::Mat& image) {
   while (!suggested_.empty()) {
     SearchPlace place = suggested_.front();
     if (place.by != Suggestion::kConfirmation) {
-      if (!budget_.payTrifle(nominal_cost::kStartChecked)) return std::nullopt;
+      if (!budget_.payCheap(nominal_cost::kStartChecked)) return std::nullopt;
       const CheckedStart checked = start_check_.look(image, place.start.g);
       likeliest_ = std::max(likeliest_, checked.correlation);
       if (!(checked.correlation >= kWorthAligning)) {
@@ -160,8 +160,7 @@ bool RegionSearch::judge(const Attempt& attempt, const RegionAligner& aligner) {
   return found;
 }
 
-// A search asks at many places, so that one of them may pass by chance what a tracked region passes by right: more is
-// asked.
+// A search aligns at many places, one of which may pass the usual tests by chance, so its result has to pass two more.
 std::string RegionSearch::doubtOf(const Attempt& found, const RegionAligner& aligner) const {
   const double detail = aligner.detail();
   std::ostringstream why;

@@ -66,10 +66,11 @@ class RegionSearch {
   // Where to align `aligner`'s reference with that image, likely places first; empty when there is no place left, or no
   // time. To be asked again after each attempt, until one is without a doubt.
   std::optional<SearchPlace> next(const cv::Mat& image, const RegionAligner& aligner);
-  // What came of the place that next() has said last, as `aligner` has just aligned it. True when it is believed.
+  // The result of aligning at the place that next() returned last, with `aligner` as that alignment left it. True when
+  // the result is accepted.
   bool judge(const Attempt& attempt, const RegionAligner& aligner);
 
-  // Of the image, the attempt without a doubt, or that with the highest correlation: what it lacked is what matters.
+  // The accepted attempt in this image; when there is none, the one with the highest correlation, which tells best why.
   const Attempt& best() const { return best_; }
   Suggestion suggestedBy() const { return best_by_; }
 
@@ -104,9 +105,9 @@ class RegionSearch {
   SearchBudget budget_;
   EsmState last_;
   std::deque<SearchPlace> suggested_;  // those that there was no time for stay for the next one
-  bool began_ = false;                 // a pass: another one would find the same
-  bool worked_ = true;                 // something of a pass was done,
-  bool hungry_ = false;                // or was not in the image before
+  bool began_ = false;                 // a pass has begun in this image: a second one would find the same places
+  bool worked_ = true;                 // a piece of a pass was done in this image
+  bool hungry_ = false;                // none was done in the image before: this image begins with one
   Suggestion tried_ = Suggestion::kLast;
   double likeliest_ = 0.0;  // correlation of the places that were looked at
   bool aligned_ = false;    // one of them was

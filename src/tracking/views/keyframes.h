@@ -10,7 +10,7 @@
 
 #include "laparoscope_servo/geometry/homography.h"
 #include "laparoscope_servo/image/lens.h"
-#include "tracking/views/features.h"
+#include "tracking/views/point_features.h"
 
 namespace laparoscope_servo::tracking {
 
@@ -21,7 +21,7 @@ struct Keyframe {
   cv::Mat1b trusted;  // 255 for the ROI's pixels (of the reference) that were neither occluded nor saturated, else 0
 
   bool described = false;  // features are drawn when a search first needs them: a tracked image only pays for the copy
-  Features features;
+  DescribedPoints features;
 };
 
 // How differently two homographies show the ROI's centre: 1 for a factor of 1.3 in length in some direction, or a turn
@@ -40,8 +40,8 @@ class Keyframes {
   void setReference(const cv::Mat& image, const geometry::Rectangle& roi, const cv::Mat1f& weights);
 
   // Whether a keyframe at `g` would be at a distance of at least 1 from each that is stored and, when all places are
-  // taken, further from them than the least singular of those is from the others: what is stored spreads, and comes to
-  // rest.
+  // taken, further from them than the least singular of those is from the others. Keyframes spread in this way, and
+  // after some time none is replaced any more.
   bool wants(const Eigen::Matrix3d& g) const;
 
   // Stores a keyframe that wants() said yes to.

@@ -49,12 +49,12 @@ TEST(EsmLevelTest, BlocksOfLightAreWholeStripsAndCoverEverything) {
     image::RegionPyramid reference;
     reference.build(test::tissue(cv::Size(220, 220), 2), cv::Rect(0, 0, 220, 220), 1, image::kLuma);
     const EsmLevel level(reference, {3.0, 5.0, static_cast<double>(side), static_cast<double>(side)}, 0);
-    EXPECT_EQ(static_cast<int>(level.block_of_strip.size()), level.weight.strips());
-    EXPECT_EQ(level.block_of_strip.front(), 0);
-    EXPECT_EQ(level.block_of_strip.back(), level.block_columns - 1);
-    EXPECT_EQ(level.block_row_begin.front(), 0);
-    EXPECT_EQ(level.block_row_begin.back(), side);
-    EXPECT_EQ(level.planes[0].bias.size(), level.block_columns * (level.block_row_begin.size() - 1));
+    EXPECT_EQ(static_cast<int>(level.light_column_of_strip.size()), level.weight.strips());
+    EXPECT_EQ(level.light_column_of_strip.front(), 0);
+    EXPECT_EQ(level.light_column_of_strip.back(), level.light_columns - 1);
+    EXPECT_EQ(level.light_row_begin.front(), 0);
+    EXPECT_EQ(level.light_row_begin.back(), side);
+    EXPECT_EQ(level.planes[0].bias.size(), level.light_columns * (level.light_row_begin.size() - 1));
   }
 }
 
@@ -63,23 +63,23 @@ TEST(EsmLevelTest, LightIsInheritedFromTheBlockAbove) {
   reference.build(test::tissue(cv::Size(220, 220), 2), cv::Rect(0, 0, 220, 220), 2, image::kLuma);
   const geometry::Rectangle roi = {9, 11, 196, 160};
   EsmLevel fine(reference, roi, 0), coarse(reference, roi, 1);
-  matchBlocks(coarse, fine);
-  ASSERT_EQ(fine.coarser_block.size(), fine.planes[0].bias.size());
-  EXPECT_EQ(fine.coarser_block.front(), 0);
-  EXPECT_EQ(fine.coarser_block.back(), static_cast<int>(coarse.planes[0].bias.size()) - 1);
+  matchLightBlocks(coarse, fine);
+  ASSERT_EQ(fine.coarser_light_block.size(), fine.planes[0].bias.size());
+  EXPECT_EQ(fine.coarser_light_block.front(), 0);
+  EXPECT_EQ(fine.coarser_light_block.back(), static_cast<int>(coarse.planes[0].bias.size()) - 1);
   for (std::size_t k = 0; k < coarse.planes[0].bias.size(); ++k)
     coarse.planes[0].bias[k] = coarse.planes[0].before[k] + k;
   fine.planes[0].bias.assign(fine.planes[0].bias.size(), 3.0);
   inheritLight(coarse, fine);
   for (std::size_t k = 0; k < fine.planes[0].bias.size(); ++k)
-    EXPECT_EQ(fine.planes[0].bias[k], 3.0 + fine.coarser_block[k]);
+    EXPECT_EQ(fine.planes[0].bias[k], 3.0 + fine.coarser_light_block[k]);
 }
 
 TEST(EsmLevelTest, ABlocksBiasIsAboutItsMean) {
   EsmLevel level(pyramid(), kRoi, 0);
   EXPECT_EQ(level.planes[0].biasOf(0, 2.0), 0.0);
   level.centreLight();
-  const cv::Rect first_block(0, 0, image::Patch::kStrip, level.block_row_begin[1]);
+  const cv::Rect first_block(0, 0, image::Patch::kStrip, level.light_row_begin[1]);
   const double mean = cv::mean(level.planes[0].value.view()(first_block))[0];
   EXPECT_NEAR(level.planes[0].biasOf(0, 2.0), -mean, 1e-3);
 }

@@ -1,6 +1,6 @@
-#include "tracking/esm/factors.h"
-
 #include <gtest/gtest.h>
+
+#include "tracking/esm/normal_equations.h"
 
 namespace laparoscope_servo::tracking {
 namespace {

@@ -21,14 +21,14 @@ TEST(SearchBudget, TheFirstPieceIsDoneWhateverItCosts) {
   budget.start(1.0);
   EXPECT_TRUE(budget.pay(50.0));
   EXPECT_FALSE(budget.pay(0.001));
-  EXPECT_FALSE(budget.payTrifle(0.001));
+  EXPECT_FALSE(budget.payCheap(0.001));
 }
 
 TEST(SearchBudget, ATrifleIsPaidButIsNotTheFirstPiece) {
   SearchBudget budget;
   budget.start(1.0);
-  EXPECT_TRUE(budget.payTrifle(0.75));
-  EXPECT_FALSE(budget.payTrifle(0.5));
+  EXPECT_TRUE(budget.payCheap(0.75));
+  EXPECT_FALSE(budget.payCheap(0.5));
   EXPECT_TRUE(budget.pay(0.5));
   EXPECT_FALSE(budget.pay(0.5));
 }

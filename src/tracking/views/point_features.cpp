@@ -1,4 +1,4 @@
-#include "tracking/search/point_features.h"
+#include "tracking/views/point_features.h"
 
 #include <algorithm>
 #include <opencv2/core/version.hpp>
@@ -40,7 +40,7 @@ void detect(const cv::Mat1b& grey, const cv::Mat1b& mask, int count, std::vector
 
 }  // namespace
 
-cv::Mat1f descriptorDistances(const Features& a, const Features& b) {
+cv::Mat1f descriptorDistances(const DescribedPoints& a, const DescribedPoints& b) {
   cv::Mat distances;
   cv::batchDistance(a.descriptors, b.descriptors, distances, -1, cv::noArray(), kNorm);
   cv::Mat1f result;
@@ -48,8 +48,8 @@ cv::Mat1f descriptorDistances(const Features& a, const Features& b) {
   return result;
 }
 
-Features drawPoints(const cv::Mat1b& grey, const cv::Mat1b& mask, int count) {
-  Features features;
+DescribedPoints drawPoints(const cv::Mat1b& grey, const cv::Mat1b& mask, int count) {
+  DescribedPoints features;
   if (std::min(grey.cols, grey.rows) < kLeastSide) return features;
   std::vector<cv::KeyPoint> points;
   detect(grey, mask, count, points, features.descriptors);

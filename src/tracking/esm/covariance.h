@@ -1,4 +1,4 @@
-// How sure an estimate of ESM is: by the residuals, and by what was known before.
+// The covariance of an estimate of ESM, from its residuals and its prior.
 #pragma once
 
 #include <Eigen/Core>
@@ -6,19 +6,19 @@
 #include <vector>
 
 #include "laparoscope_servo/geometry/homography.h"
-#include "tracking/esm/block_equations.h"
 #include "tracking/esm/normal_equations.h"
 
 namespace laparoscope_servo::tracking {
 
-struct Certainty {
+struct EstimateCovariance {
   std::optional<Matrix8d> covariance;  // of x, as in MotionPrior; empty when nothing determines it
   double noise = 0.0;                  // see EsmResult
 };
 
 // `matrix` and `blocks`: the equations at the estimate, whose residuals scatter by `sigma` [grey levels]. `prior`:
 // inverse covariance of x before the image was seen, zero for none.
-Certainty certainty(const Matrix10d& matrix, const std::vector<BlockSums>& blocks, double sigma, const Matrix8d& prior);
+EstimateCovariance estimateCovariance(const Matrix10d& matrix, const std::vector<LightBlockSums>& blocks, double sigma,
+                                      const Matrix8d& prior);
 
 // The covariance if residuals were independent noise of that variance [grey levels squared], without a prior.
 std::optional<Matrix8d> covarianceOfNoise(const Matrix10d& matrix, double variance);

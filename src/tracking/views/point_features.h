@@ -6,15 +6,20 @@
 #pragma once
 
 #include <opencv2/core.hpp>
-
-#include "tracking/views/features.h"
+#include <vector>
 
 namespace laparoscope_servo::tracking {
 
+// Points with a descriptor each, a row of `descriptors`.
+struct DescribedPoints {
+  std::vector<cv::Point2f> points;  // px, of the image that they were drawn from; with a lens rectified ones
+  cv::Mat descriptors;
+};
+
 // About the `count` strongest of `grey`, where `mask` is not 0; in its pixels.
-Features drawPoints(const cv::Mat1b& grey, const cv::Mat1b& mask, int count);
+DescribedPoints drawPoints(const cv::Mat1b& grey, const cv::Mat1b& mask, int count);
 
 // How much the descriptors differ, those of `a` in rows, of `b` in columns. Neither may be empty.
-cv::Mat1f descriptorDistances(const Features& a, const Features& b);
+cv::Mat1f descriptorDistances(const DescribedPoints& a, const DescribedPoints& b);
 
 }  // namespace laparoscope_servo::tracking

@@ -1,5 +1,3 @@
-#include "tracking/esm/block_equations.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 #include <vector>
 
 #include "support/synthetic_tissue.h"
+#include "tracking/esm/normal_equations.h"
 
 namespace laparoscope_servo::tracking {
 namespace {
@@ -15,7 +14,7 @@ const geometry::Rectangle kRoi = {30, 20, 60, 50};
 constexpr double kGain = 0.9;
 constexpr double kBias = 6.0;
 
-class BlockEquationsTest : public ::testing::Test {
+class LevelEquationsTest : public ::testing::Test {
  protected:
   EsmLevel level_ = level(0);
 
@@ -70,14 +69,14 @@ double difference(const Matrix10d& a, const Matrix10d& b) {
   return (units.asDiagonal() * (a - b) * units.asDiagonal()).cwiseAbs().maxCoeff();
 }
 
-TEST_F(BlockEquationsTest, AreThoseOfThePixels) {
+TEST_F(LevelEquationsTest, AreThoseOfThePixels) {
   for (const int l : {0, 1}) {
-    const EsmLevel level = BlockEquationsTest::level(l);
+    const EsmLevel level = LevelEquationsTest::level(l);
     for (const double rejection : {0.0, 20.0}) {
       Matrix10d matrix;
       Vector10d vector;
       dense(level, rejection, matrix, vector);
-      BlockEquations equations;
+      LevelEquations equations;
       equations.sum(level, kRoi, Light::kGlobal, kGain, rejection);
       EXPECT_LT(difference(equations.matrix(), matrix), 0.03) << l << ' ' << rejection;
       const Vector10d units = matrix.diagonal().cwiseSqrt();
@@ -87,14 +86,14 @@ TEST_F(BlockEquationsTest, AreThoseOfThePixels) {
   }
 }
 
-TEST_F(BlockEquationsTest, BlocksTogetherAreTheWhole) {
-  BlockEquations equations;
+TEST_F(LevelEquationsTest, BlocksTogetherAreTheWhole) {
+  LevelEquations equations;
   equations.sum(level_, kRoi, Light::kGlobal, kGain, 0.0);
   ASSERT_EQ(equations.blocks().size(), level_.planes[0].bias.size());
   ASSERT_GT(equations.blocks().size(), 1u);
   Vector10d score = Vector10d::Zero();
   double weight = 0.0;
-  for (const BlockSums& sums : equations.blocks()) {
+  for (const LightBlockSums& sums : equations.blocks()) {
     score += sums.score;
     weight += sums.weight;
   }
@@ -102,30 +101,30 @@ TEST_F(BlockEquationsTest, BlocksTogetherAreTheWhole) {
   EXPECT_NEAR(weight, cv::sum(level_.weight.view())[0], 1e-3);
 }
 
-TEST_F(BlockEquationsTest, EachBlockHasItsOwnBias) {
-  BlockEquations equations;
+TEST_F(LevelEquationsTest, EachBlockHasItsOwnBias) {
+  LevelEquations equations;
   level_.planes[0].bias[1] += 4.0;
   equations.sum(level_, kRoi, Light::kGlobal, kGain, 0.0);
-  const std::vector<BlockSums> shifted = equations.blocks();
+  const std::vector<LightBlockSums> shifted = equations.blocks();
   level_.planes[0].bias[1] -= 4.0;
   equations.sum(level_, kRoi, Light::kGlobal, kGain, 0.0);
   ASSERT_EQ(equations.blocks().size(), shifted.size());
   for (std::size_t k = 0; k < shifted.size(); ++k) {
-    const BlockSums& plain = equations.blocks()[k];
+    const LightBlockSums& plain = equations.blocks()[k];
     EXPECT_NEAR(shifted[k].residual, plain.residual + (k == 1 ? 4.0 * plain.weight : 0.0), 1e-2) << k;
   }
 }
 
-TEST_F(BlockEquationsTest, WhatIsRejectedAddsNothing) {
-  BlockEquations equations;
+TEST_F(LevelEquationsTest, WhatIsRejectedAddsNothing) {
+  LevelEquations equations;
   level_.planes[0].warped.view() += 500.0f;
   equations.sum(level_, kRoi, Light::kGlobal, kGain, 20.0);
   EXPECT_EQ(equations.vector().norm(), 0.0);
-  for (const BlockSums& sums : equations.blocks()) EXPECT_EQ(sums.weight, 0.0);
+  for (const LightBlockSums& sums : equations.blocks()) EXPECT_EQ(sums.weight, 0.0);
 }
 
-TEST_F(BlockEquationsTest, ASumStartsAfresh) {
-  BlockEquations used, fresh;
+TEST_F(LevelEquationsTest, ASumStartsAfresh) {
+  LevelEquations used, fresh;
   used.sum(level(1), kRoi, Light::kLocal, 1.2, 10.0);
   used.sum(level_, kRoi, Light::kGlobal, kGain, 0.0);
   fresh.sum(level_, kRoi, Light::kGlobal, kGain, 0.0);

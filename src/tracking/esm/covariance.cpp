@@ -1,9 +1,9 @@
-#include "tracking/esm/certainty.h"
+#include "tracking/esm/covariance.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "tracking/esm/factors.h"
+#include "tracking/esm/normal_equations.h"
 
 namespace laparoscope_servo::tracking {
 
@@ -24,16 +24,16 @@ double pointError(const Eigen::Matrix3d& g, const geometry::Rectangle& roi, cons
 // The covariance that the residuals show is A^-1 B A^-1 with A = J'WJ and B the sum of the blocks' J'Wr times itself:
 // whatever the residuals within a block have in common is in it. `noise` is the one number that makes A/noise as large
 // as its inverse.
-Certainty certainty(const Matrix10d& matrix, const std::vector<BlockSums>& blocks, double sigma,
-                    const Matrix8d& prior) {
+EstimateCovariance estimateCovariance(const Matrix10d& matrix, const std::vector<LightBlockSums>& blocks, double sigma,
+                                      const Matrix8d& prior) {
   Matrix10d scores = Matrix10d::Zero();
   int count = 0;
-  for (const BlockSums& sums : blocks) {
+  for (const LightBlockSums& sums : blocks) {
     if (!(sums.weight > 0.0)) continue;
     scores += sums.score * sums.score.transpose();
     ++count;
   }
-  Certainty result;
+  EstimateCovariance result;
   result.noise = sigma * sigma;
   Matrix8d information = Matrix8d::Zero();
   const Factors<10> factors(matrix);

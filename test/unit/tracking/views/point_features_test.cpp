@@ -1,4 +1,4 @@
-#include "tracking/search/point_features.h"
+#include "tracking/views/point_features.h"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ class PointFeaturesTest : public ::testing::Test {
 };
 
 TEST_F(PointFeaturesTest, GivesAboutAsManyAsAreAskedForEachWithADescriptor) {
-  const Features drawn = drawPoints(grey_, all_, 100);
+  const DescribedPoints drawn = drawPoints(grey_, all_, 100);
   EXPECT_GE(drawn.points.size(), 60u);
   EXPECT_LE(drawn.points.size(), 110u);
   EXPECT_EQ(drawn.descriptors.rows, static_cast<int>(drawn.points.size()));
@@ -25,7 +25,7 @@ TEST_F(PointFeaturesTest, GivesAboutAsManyAsAreAskedForEachWithADescriptor) {
 TEST_F(PointFeaturesTest, OnlyWhereTheMaskIs) {
   cv::Mat1b half = all_.clone();
   half.colRange(0, 100).setTo(0);
-  const Features drawn = drawPoints(grey_, half, 200);
+  const DescribedPoints drawn = drawPoints(grey_, half, 200);
   ASSERT_FALSE(drawn.points.empty());
   for (const cv::Point2f& point : drawn.points) EXPECT_GE(point.x, 99.0f);
 }
@@ -33,8 +33,8 @@ TEST_F(PointFeaturesTest, OnlyWhereTheMaskIs) {
 TEST_F(PointFeaturesTest, AThirdOfTheUsualContrastGivesPointsThatAreTheSame) {
   cv::Mat1b dim;
   grey_.convertTo(dim, -1, 0.33, 60.0);
-  const Features bright = drawPoints(grey_, all_, 100);
-  const Features faint = drawPoints(dim, all_, 300);
+  const DescribedPoints bright = drawPoints(grey_, all_, 100);
+  const DescribedPoints faint = drawPoints(dim, all_, 300);
   ASSERT_GE(faint.points.size(), 60u);
   const cv::Mat1f distance = descriptorDistances(bright, faint);
   int same = 0;

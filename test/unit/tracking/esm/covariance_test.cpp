@@ -1,4 +1,4 @@
-#include "tracking/esm/certainty.h"
+#include "tracking/esm/covariance.h"
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ constexpr double kSigma = 3.0;
 // block.
 struct Equations {
   Matrix10d matrix = Matrix10d::Zero();
-  std::vector<BlockSums> blocks;
+  std::vector<LightBlockSums> blocks;
 };
 
 Equations randomEquations(int count, double of_pixel, double of_block, unsigned seed = 1) {
@@ -28,7 +28,7 @@ Equations randomEquations(int count, double of_pixel, double of_block, unsigned 
   std::normal_distribution<double> normal;
   Equations result;
   for (int k = 0; k < count; ++k) {
-    BlockSums sums{0.0, 0.0, Vector10d::Zero(), Vector10d::Zero()};
+    LightBlockSums sums{0.0, 0.0, Vector10d::Zero(), Vector10d::Zero()};
     const double common = of_block * normal(generator);
     const Vector10d mean = Vector10d::NullaryExpr([&] { return normal(generator); });
     for (int i = 0; i < 20; ++i) {
@@ -42,13 +42,13 @@ Equations randomEquations(int count, double of_pixel, double of_block, unsigned 
   return result;
 }
 
-Certainty of(const Equations& e, const Matrix8d& prior = Matrix8d::Zero()) {
-  return certainty(e.matrix, e.blocks, kSigma, prior);
+EstimateCovariance of(const Equations& e, const Matrix8d& prior = Matrix8d::Zero()) {
+  return estimateCovariance(e.matrix, e.blocks, kSigma, prior);
 }
 
-TEST(Certainty, OfIndependentResidualsIsTheTextbooks) {
+TEST(EstimateCovariance, OfIndependentResidualsIsTheTextbooks) {
   const Equations e = randomEquations(400, kSigma, 0.0);
-  const Certainty found = of(e);
+  const EstimateCovariance found = of(e);
   ASSERT_TRUE(found.covariance);
   EXPECT_GE(found.noise, kSigma * kSigma);
   EXPECT_LT(found.noise, 1.2 * kSigma * kSigma);
@@ -57,43 +57,43 @@ TEST(Certainty, OfIndependentResidualsIsTheTextbooks) {
   EXPECT_TRUE(expected.isApprox(found.noise * e.matrix.inverse().topLeftCorner<8, 8>(), 1e-9));
 }
 
-TEST(Certainty, ResidualsThatErrTogetherCountAsFewer) {
+TEST(EstimateCovariance, ResidualsThatErrTogetherCountAsFewer) {
   const double alone = of(randomEquations(400, kSigma, 0.0)).noise;
   const double together = of(randomEquations(400, kSigma, kSigma)).noise;
   EXPECT_GT(together, 4.0 * alone);
 }
 
 // All the blocks that there are have been fitted to: their scatter shows less than there is.
-TEST(Certainty, FewBlocksMakeLessSure) {
+TEST(EstimateCovariance, FewBlocksMakeLessSure) {
   const Equations e = randomEquations(12, kSigma, kSigma);
   Equations many = e;
-  for (BlockSums& sums : many.blocks) sums.score /= std::sqrt(40.0);
+  for (LightBlockSums& sums : many.blocks) sums.score /= std::sqrt(40.0);
   for (int k = 1; k < 40; ++k) many.blocks.insert(many.blocks.end(), many.blocks.begin(), many.blocks.begin() + 12);
   // The same sum of squares, from blocks of which nine are a large part or a small one.
   EXPECT_GT(of(e).noise, 3.0 * of(many).noise);
 }
 
-TEST(Certainty, BlocksWithoutWeightDoNotCount) {
+TEST(EstimateCovariance, BlocksWithoutWeightDoNotCount) {
   const Equations e = randomEquations(30, kSigma, kSigma);
   Equations more = e;
   for (int k = 0; k < 100; ++k) more.blocks.push_back({0.0, 0.0, Vector10d::Zero(), Vector10d::Constant(7.0)});
   EXPECT_EQ(of(e).noise, of(more).noise);
 }
 
-TEST(Certainty, APriorAddsItsInformation) {
+TEST(EstimateCovariance, APriorAddsItsInformation) {
   const Equations e = randomEquations(100, kSigma, 0.0);
   const Matrix8d prior = 50.0 * Matrix8d::Identity();
-  const Certainty without = of(e);
-  const Certainty with = of(e, prior);
+  const EstimateCovariance without = of(e);
+  const EstimateCovariance with = of(e, prior);
   EXPECT_EQ(with.noise, without.noise);
   EXPECT_TRUE(with.covariance->inverse().isApprox(without.covariance->inverse() + prior, 1e-9));
 }
 
-TEST(Certainty, WithoutEquationsThereIsThePriorOrNothing) {
+TEST(EstimateCovariance, WithoutEquationsThereIsThePriorOrNothing) {
   const Equations none{Matrix10d::Zero(), {}};
   EXPECT_FALSE(of(none).covariance);
   EXPECT_FALSE(covarianceOfNoise(none.matrix, 4.0));
-  const Certainty prior = of(none, 4.0 * Matrix8d::Identity());
+  const EstimateCovariance prior = of(none, 4.0 * Matrix8d::Identity());
   ASSERT_TRUE(prior.covariance);
   EXPECT_TRUE(prior.covariance->isApprox(0.25 * Matrix8d::Identity(), 1e-12));
 }
