@@ -179,8 +179,11 @@ void describe(Table& table, ControllerConfig& c) {
     table.flag("inverse", c.dead_zone.inverse, "the width is added to what the law asks for");
     table.group("width", "", [&] { describeVelocity(table, c.dead_zone.width, {0, 0.1}, {0, 0.02}, "s"); });
   });
-  table.group("limits", "all four components are scaled together, so that the direction is kept", [&] {
-    // Not zero: since all components are scaled together, it would stop the others too. A gain of zero keeps one still.
+  const std::string limits =
+      "the four components of a motion are scaled together, so that its direction is kept; spin and insertion are "
+      "slowed down for themselves while the guard of effect has not seen enough";
+  table.group("limits", limits, [&] {
+    // Not zero: since the components are scaled together, it would stop the others too. A gain of zero keeps one still.
     table.group("velocity", "above dead_zone/width where its inverse is used", [&] {
       describeVelocity(table, c.limits.velocity, {1e-6, 1}, {1e-6, 0.1}, "s");
     });
