@@ -5,8 +5,11 @@
 
 #include "laparoscope_servo/parameters/pages.h"
 #include "ros/aesop/aesop_parameters.h"
+#include "ros/camera/camera_config.h"
 #include "ros/controller/controller_parameters.h"
+#include "ros/joystick/joystick_node.h"
 #include "ros/playback/video_player.h"
+#include "ros/recording/recorder_config.h"
 #include "ros/simulation/demo_director.h"
 #include "ros/simulation/scope_markers.h"
 #include "ros/simulation/servo_simulation_config.h"
@@ -70,6 +73,9 @@ Rows rowsOfDirector() {
 
 std::vector<ParameterPage> parameterPages() {
   return {
+      file("camera.yaml", "Parameters of the node and nodelet `camera`.", rowsOf<CameraConfig>()),
+      file("recorder.yaml", "Parameters of the node `recorder`.", rowsOf<RecorderConfig>()),
+      file("joystick.yaml", "Parameters of the node `joystick`.", rowsOf<JoystickNodeConfig>()),
       file(
           "tracker.yaml",
           "Parameters of the tracker: of the nodelet (private), and of track_bag (--params lays a file over this one).",
@@ -91,6 +97,9 @@ std::vector<ParameterPage> parameterPages() {
       page("tracker.md", "~", rowsOf<TrackerParameters>()),
       page("controller.md", "~", rowsOf<ControllerNodeConfig>()),
       page("aesop.md", "~", rowsOf<AesopParameters>()),
+      page("camera.md", "~", rowsOf<CameraConfig>()),
+      page("recorder.md", "~", rowsOf<RecorderConfig>()),
+      page("joystick.md", "~", rowsOf<JoystickNodeConfig>()),
       page("aesop_emulator.md", "", rowsOfEmulator()),
       page("simulate_servo.md", "", rowsOfSimulation()),
       page("simulated_camera.md", "~", rowsOfCamera()),

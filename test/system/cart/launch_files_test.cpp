@@ -58,6 +58,11 @@ TEST(LaunchFiles, CartAndDemoStartWhatTheySay) {
             std::string::npos);
   EXPECT_EQ(nodesOf("calibrate.launch port:=/dev/ttyX file:=/x.yaml"), Nodes{"/aesop"});
   EXPECT_EQ(nodesOf("tracker.launch"), Nodes{"/tracker"});
+  EXPECT_EQ(nodesOf("joystick.launch"), Nodes{"/joystick"});
+  EXPECT_EQ(nodesOf("joystick.launch name:=pedal device:=/dev/input/js1"), Nodes{"/pedal"});
+  EXPECT_EQ(nodesOf("record.launch folder:=/tmp/case"), Nodes{"/recorder"});
+  EXPECT_EQ(nodesOf("camera.launch device:=/dev/video0"), Nodes{"/camera_driver"});
+  EXPECT_EQ(nodesOf("camera.launch manager:=camera_manager"), (Nodes{"/camera_driver", "/camera_manager"}));
   EXPECT_EQ(nodesOf("tracker.launch manager:=camera_manager"), Nodes{"/tracker"});
 }
 
@@ -133,11 +138,11 @@ TEST(LaunchFiles, EveryNodeOfAnotherPackageIsKeptToTheLoopbackAddress) {
       ++others;
     }
   }
-  EXPECT_EQ(others, 3) << "rviz twice, and what loads the nodelet";
+  EXPECT_EQ(others, 5) << "rviz twice, a manager, and what loads the nodelets of tracker and camera";
 }
 
 TEST(LaunchFiles, EveryArgumentIsDocumented) {
-  for (const char* launch : {"calibrate", "cart", "demo", "replay", "tracker"}) {
+  for (const char* launch : {"calibrate", "camera", "cart", "demo", "joystick", "record", "replay", "tracker"}) {
     const std::string text = outputOf("roslaunch --ros-args laparoscope_servo " + std::string(launch) + ".launch");
     EXPECT_NE(text.find("YAML file laid over config/"), std::string::npos) << text;
     EXPECT_EQ(text.find("undocumented"), std::string::npos) << text;

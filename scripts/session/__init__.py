@@ -1,0 +1,1 @@
+"""What scripts/session_report is made of."""
