@@ -35,7 +35,7 @@ const char* const kStyle = R"(
   QPushButton#stop:pressed { background: #ff3030; }
   QLabel { color: white; font-size: 14px; }
   QTabWidget::pane { border: 1px solid #40464f; }
-  QTabBar::tab { background: #242a33; color: #c8d0dc; padding: 5px 11px; font-size: 14px; }
+  QTabBar::tab { background: #242a33; color: #c8d0dc; padding: 3px 11px; font-size: 14px; }
   QTabBar::tab:selected { background: #414a58; color: white; font-weight: bold; }
   QListWidget, QTableWidget, QLineEdit { background: #0c0e12; color: white; font-size: 13px;
                                          border: 1px solid #40464f; gridline-color: #2a3038; }
@@ -197,8 +197,8 @@ QWidget* ScreenWidget::makeTabs() {
 QWidget* ScreenWidget::makeDrive() {
   auto* column = new QWidget(this);
   auto* layout = new QVBoxLayout(column);
-  layout->setContentsMargins(4, 4, 4, 4);
-  layout->setSpacing(4);
+  layout->setContentsMargins(2, 2, 2, 2);
+  layout->setSpacing(2);
   const auto said = [this] { link_->said(); };
   auto* tasks = new QHBoxLayout;
   follow_ = makeButton("Follow", "The scope keeps the region where it was", [this] { link_->selectTask("HOLD_VIEW"); });
