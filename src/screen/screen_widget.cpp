@@ -25,7 +25,7 @@ constexpr int kAnswerHeight = 40;    // px
 
 const char* const kStyle = R"(
   laparoscope_servo--screen--ScreenWidget { background: #10131a; }
-  QPushButton { background: #333a46; color: white; border: 1px solid #6a7280; border-radius: 5px; padding: 4px;
+  QPushButton { background: #333a46; color: white; border: 1px solid #6a7280; border-radius: 5px; padding: 4px 2px;
                 font-size: 15px; font-weight: bold; }
   QPushButton:hover { background: #414a58; }
   QPushButton:pressed { background: #5b6678; }
@@ -140,7 +140,7 @@ QWidget* ScreenWidget::makeActions() {
   auto* stop = makeButton("STOP", "Disengages and disables: also by Escape or Pause", [] {});
   // When it is pressed, and not when it is let go.
   connect(stop, &QPushButton::pressed, this, [this] { this->stop(); });
-  stop->setMinimumWidth(150);
+  stop->setMinimumWidth(136);
   grid->addWidget(stop, 0, 5, 2, 1);
   for (int column = 0; column < 5; ++column) grid->setColumnStretch(column, 2);
   grid->setColumnStretch(5, 3);
