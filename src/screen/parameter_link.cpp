@@ -102,8 +102,12 @@ void ParameterLink::connect(ros::NodeHandle& node) {
            [](Node& of, const dynamic_reconfigure::ConfigDescription& message) { of.description = message; });
     listen(dynamic_reconfigure::Config(), "parameter_updates",
            [](Node& of, const dynamic_reconfigure::Config& message) { of.values = message; });
-    listen(std_msgs::String(), "parameters_refused",
-           [](Node& of, const std_msgs::String& message) { of.refusal = message.data; });
+    const boost::function<void(const std_msgs::StringConstPtr&)> refused =
+        [refusals = refusals_, name](const std_msgs::StringConstPtr& message) {
+          const std::lock_guard<std::mutex> taken(refusals->mutex);
+          refusals->words[name] = message->data;
+        };
+    subscribers_.push_back(node.subscribe<std_msgs::String>(name + "/parameters_refused", 5, refused));
   }
 }
 
@@ -134,26 +138,28 @@ void ParameterLink::set(const LiveParameter& parameter, const std::string& text)
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     service = nodes_[parameter.node].service;
-    nodes_[parameter.node].refusal.clear();
   }
+  refusals_->take(parameter.node);
   told_({what, "", false, true});
-  calls_.ask([this, what, config, service, node = parameter.node]() -> std::function<void()> {
+  calls_.ask([this, what, config, service, refusals = refusals_, node = parameter.node]() -> std::function<void()> {
     dynamic_reconfigure::Reconfigure call;
     call.request.config = *config;
     Answer answer{what, "", ros::service::call(service, call), false};
-    if (answer.success) return [this, answer] { told_(answer); };
-    return [this, answer, node]() mutable {
-      for (int look = 0; look < kLooks && answer.text.empty(); ++look) {
-        {
-          const std::lock_guard<std::mutex> lock(mutex_);
-          answer.text = nodes_[node].refusal;
-        }
-        if (answer.text.empty()) std::this_thread::sleep_for(kLookPause);
-      }
-      if (answer.text.empty()) answer.text = "the " + node + " does not say why";
-      told_(answer);
-    };
+    for (int look = 0; look < kLooks && !answer.success && answer.text.empty(); ++look) {
+      std::this_thread::sleep_for(kLookPause);
+      answer.text = refusals->take(node);
+    }
+    if (!answer.success && answer.text.empty()) answer.text = "the " + node + " does not say why";
+    return [this, answer] { told_(answer); };
   });
+}
+
+// What was there is gone then.
+std::string ParameterLink::Refusals::take(const std::string& node) {
+  const std::lock_guard<std::mutex> lock(mutex);
+  std::string text;
+  text.swap(words[node]);
+  return text;
 }
 
 }  // namespace laparoscope_servo::screen

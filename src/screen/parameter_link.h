@@ -10,6 +10,7 @@
 
 #include <functional>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -41,7 +42,12 @@ class ParameterLink {
     dynamic_reconfigure::ConfigDescription description;
     dynamic_reconfigure::Config values;
     std::string service;
-    std::string refusal;  // of the last change
+  };
+  // Of the last changes, by node; with the threads that wait for them.
+  struct Refusals {
+    std::mutex mutex;
+    std::map<std::string, std::string> words;
+    std::string take(const std::string& node);
   };
   void publish();
 
@@ -49,6 +55,7 @@ class ParameterLink {
   std::function<void(const Answer&)> told_;
   std::mutex mutex_;
   std::map<std::string, Node> nodes_;
+  std::shared_ptr<Refusals> refusals_ = std::make_shared<Refusals>();
   std::vector<ros::Subscriber> subscribers_;
   NewestCall calls_;
 };

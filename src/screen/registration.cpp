@@ -42,18 +42,32 @@ void tellPublishers(const std::string& topic, XmlRpc::XmlRpcValue& publishers) {
 Registration::Registration() : client_(ros::master::getHost(), ros::master::getPort()) {}
 
 bool Registration::renew(const std::atomic<bool>& ending) {
-  if (!isUnknown(ending)) return false;
+  const int now = process(ending);
+  if (now == 0 || now == process_) return false;
+  const bool first = process_ == 0;
+  if (!first && isTaken(ending)) return false;
+  process_ = now;
+  if (first) return false;
   publishers(ending);
   subscribers(ending);
   return true;
 }
 
-// Not when another process has this name by now: then that one counts.
-bool Registration::isUnknown(const std::atomic<bool>& ending) {
+// 0 when it does not answer.
+int Registration::process(const std::atomic<bool>& ending) {
+  XmlRpc::XmlRpcValue answer;
+  const auto outcome = client_.call("getPid", {ros::this_node::getName()}, kPatience, ending, answer);
+  if (outcome != MasterClient::Outcome::kAnswered || !isDone(answer)) return 0;
+  return answer[2].getType() == XmlRpc::XmlRpcValue::TypeInt ? static_cast<int>(answer[2]) : 0;
+}
+
+// Another process has this name by now: then that one counts, and would be ended by the master otherwise.
+bool Registration::isTaken(const std::atomic<bool>& ending) {
   XmlRpc::XmlRpcValue answer;
   const std::string& name = ros::this_node::getName();
   const auto outcome = client_.call("lookupNode", {name, name}, kPatience, ending, answer);
-  return outcome == MasterClient::Outcome::kAnswered && !isDone(answer);
+  if (outcome != MasterClient::Outcome::kAnswered || !isDone(answer)) return false;
+  return answer[2].getType() == XmlRpc::XmlRpcValue::TypeString && static_cast<std::string>(answer[2]) != here();
 }
 
 void Registration::publishers(const std::atomic<bool>& ending) {

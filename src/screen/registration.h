@@ -14,16 +14,18 @@ class Registration {
   // After ros::start.
   Registration();
 
-  // Asks the master whether it knows this process, for half a second at most, and tells it if it does not. True when it
-  // was told. `ending`: gives up.
+  // Asks the master who it is, for half a second at most; another one than the last time is told. True when it was.
+  // The first call, before anything is published, only notes who it is. `ending`: gives up.
   bool renew(const std::atomic<bool>& ending);
 
  private:
-  bool isUnknown(const std::atomic<bool>& ending);
+  int process(const std::atomic<bool>& ending);
+  bool isTaken(const std::atomic<bool>& ending);
   void publishers(const std::atomic<bool>& ending);
   void subscribers(const std::atomic<bool>& ending);
 
   MasterClient client_;
+  int process_ = 0;  // of the master; 0: not known yet
 };
 
 }  // namespace laparoscope_servo::screen

@@ -91,6 +91,8 @@ RosLink::~RosLink() {
 void RosLink::run() {
   while (!ends_ && !ros::master::check()) std::this_thread::sleep_for(kMasterPause);
   if (ends_) return;
+  Registration registration;
+  registration.renew(ends_);
   std::unique_ptr<Connection> made = connect();
   Connection& connection = *made;
   {
@@ -100,7 +102,6 @@ void RosLink::run() {
   keeper_.change([](Facts& facts) { facts.master = true; });
   ros::AsyncSpinner listener(1, &queue_);
   listener.start();
-  Registration registration;
   while (!ends_ && ros::ok()) {
     if (connection.turns % kMasterTurns == 0 && registration.renew(ends_)) renewed();
     look(connection);

@@ -25,7 +25,7 @@ constexpr int kAnswerHeight = 40;    // px
 
 const char* const kStyle = R"(
   laparoscope_servo--screen--ScreenWidget { background: #10131a; }
-  QPushButton { background: #333a46; color: white; border: 1px solid #6a7280; border-radius: 5px; padding: 4px;
+  QPushButton { background: #333a46; color: white; border: 1px solid #6a7280; border-radius: 5px; padding: 4px 2px;
                 font-size: 15px; font-weight: bold; }
   QPushButton:hover { background: #414a58; }
   QPushButton:pressed { background: #5b6678; }
@@ -35,7 +35,7 @@ const char* const kStyle = R"(
   QPushButton#stop:pressed { background: #ff3030; }
   QLabel { color: white; font-size: 14px; }
   QTabWidget::pane { border: 1px solid #40464f; }
-  QTabBar::tab { background: #242a33; color: #c8d0dc; padding: 5px 11px; font-size: 14px; }
+  QTabBar::tab { background: #242a33; color: #c8d0dc; padding: 3px 11px; font-size: 14px; }
   QTabBar::tab:selected { background: #414a58; color: white; font-weight: bold; }
   QListWidget, QTableWidget, QLineEdit { background: #0c0e12; color: white; font-size: 13px;
                                          border: 1px solid #40464f; gridline-color: #2a3038; }
@@ -140,7 +140,7 @@ QWidget* ScreenWidget::makeActions() {
   auto* stop = makeButton("STOP", "Disengages and disables: also by Escape or Pause", [] {});
   // When it is pressed, and not when it is let go.
   connect(stop, &QPushButton::pressed, this, [this] { this->stop(); });
-  stop->setMinimumWidth(150);
+  stop->setMinimumWidth(136);
   grid->addWidget(stop, 0, 5, 2, 1);
   for (int column = 0; column < 5; ++column) grid->setColumnStretch(column, 2);
   grid->setColumnStretch(5, 3);
@@ -197,8 +197,8 @@ QWidget* ScreenWidget::makeTabs() {
 QWidget* ScreenWidget::makeDrive() {
   auto* column = new QWidget(this);
   auto* layout = new QVBoxLayout(column);
-  layout->setContentsMargins(4, 4, 4, 4);
-  layout->setSpacing(4);
+  layout->setContentsMargins(2, 2, 2, 2);
+  layout->setSpacing(2);
   const auto said = [this] { link_->said(); };
   auto* tasks = new QHBoxLayout;
   follow_ = makeButton("Follow", "The scope keeps the region where it was", [this] { link_->selectTask("HOLD_VIEW"); });

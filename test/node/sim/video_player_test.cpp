@@ -10,7 +10,9 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 
+#include "laparoscope_servo/ControlPlayback.h"
 #include "laparoscope_servo/Homography.h"
+#include "laparoscope_servo/PlaybackState.h"
 #include "node_bench.h"
 #include "ros/tracker/result_messages.h"
 
@@ -216,6 +218,52 @@ TEST_F(VideoPlayer, InLockstepImagesWithoutStampsWaitForTheirResultsToo) {
   }
   EXPECT_EQ(player_->exitStatus(5.0), 0);
   EXPECT_NE(contents(log()).find("6 images have the stamp 0"), std::string::npos) << contents(log());
+}
+
+TEST_F(VideoPlayer, HoldsItsFirstImageUntilARegionIsSelectedAndGoesOnAsItIsTold) {
+  parameters_["fps"] = 50.0;
+  parameters_["hold"] = true;
+  parameters_["stay"] = true;
+  parameters_["wait_for_screen"] = true;
+  ros::Publisher tracker = node_.advertise<Homography>("homography", 10);
+  const auto track = [&](int state) {
+    Homography result;
+    result.state = static_cast<std::uint8_t>(state);
+    tracker.publish(result);
+  };
+  start(folder());
+  ASSERT_NO_FATAL_FAILURE(listen());
+  EXPECT_FALSE(spinUntil([&] { return !images_->all.empty(); }, 0.3)) << "nobody looks at it";
+  Recorder<PlaybackState> states(node_, "player/state");
+  const auto state = [&] { return states.all.empty() ? std::string() : states.all.back()->state; };
+  const auto number = [&] { return images_->all.empty() ? -1 : numberOf(*images_->all.back()); };
+  ASSERT_TRUE(spinUntil([&] { return images_->all.size() >= 3; })) << "again and again";
+  EXPECT_EQ(state(), PlaybackState::HOLDING);
+  EXPECT_EQ(number(), 0);
+  EXPECT_LT(stamp(0), stamp(1));
+  EXPECT_LT(stamp(2).toSec() - stamp(0).toSec(), 0.001) << "before the next one";
+  track(Homography::TRACKING);
+  ASSERT_TRUE(spinUntil([&] { return state() == PlaybackState::ENDED; }));
+  EXPECT_EQ(number(), kImages - 1);
+  EXPECT_NEAR(states.all.back()->duration, kImages / 50.0, 1e-9);
+
+  const auto control = [&](const std::string& command, double position = 0.0) {
+    ControlPlayback call;
+    call.request.command = command;
+    call.request.position = position;
+    return ros::service::call("player/control", call) && call.response.success;
+  };
+  EXPECT_FALSE(control("PLAY")) << "it has ended";
+  EXPECT_TRUE(control("SEEK", 2.0 / 50.0));
+  EXPECT_TRUE(spinUntil([&] { return state() == PlaybackState::PAUSED && number() == 2; })) << number();
+  EXPECT_TRUE(control("STEP"));
+  EXPECT_TRUE(spinUntil([&] { return number() == 3; }));
+  EXPECT_FALSE(spinUntil([&] { return number() != 3; }, 0.2));
+  EXPECT_TRUE(control("SEEK", 1e6)) << "beyond the end";
+  EXPECT_TRUE(spinUntil([&] { return state() == PlaybackState::ENDED; }));
+  EXPECT_TRUE(control("AGAIN"));
+  EXPECT_TRUE(spinUntil([&] { return number() == kImages - 1 && state() == PlaybackState::ENDED; }));
+  EXPECT_TRUE(player_->isRunning());
 }
 
 TEST_F(VideoPlayer, TakesIntrinsicsFromACalibration) {

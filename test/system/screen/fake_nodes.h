@@ -77,7 +77,7 @@ class FakeNodes {
            dead_man_.getNumPublishers() > 0 && manual_.getNumPublishers() > 0;
   }
 
-  std::atomic<int> robot_stops{0}, controller_stops{0}, disables{0}, disengages{0}, enables{0}, checks{0};
+  std::atomic<int> robot_stops{0}, controller_stops{0}, disables{0}, disengages{0}, enables{0}, checks{0}, freezes{0};
 
  private:
   template <class Value>
@@ -192,7 +192,8 @@ class FakeNodes {
         return true;
       });
   ros::ServiceServer freeze_ = node_.advertiseService<FreezeImage::Request, FreezeImage::Response>(
-      "tracker/freeze_image", [](FreezeImage::Request&, FreezeImage::Response& response) {
+      "tracker/freeze_image", [this](FreezeImage::Request&, FreezeImage::Response& response) {
+        ++freezes;
         response.success = 1;
         response.preview = picture(ros::Time(5.0), 3);
         response.width = 1280;
