@@ -63,15 +63,27 @@ TrackerParameters readParameters(const std::string& file) {
   return parameters;
 }
 
+// Place, rate, time left and state: on a terminal in a line that changes, in a log a line of its own now and then.
 class ProgressLine {
  public:
   void operator()(const OfflineSummary& summary, std::size_t expected) {
+    const auto state =
+        std::mismatch(summary.by_state.begin(), summary.by_state.end(), by_state_.begin(), by_state_.end());
+    if (state.first != summary.by_state.end())
+      state_ = static_cast<std::size_t>(state.first - summary.by_state.begin());
+    by_state_ = summary.by_state;
     const auto now = std::chrono::steady_clock::now();
-    if (!terminal_ || now - last_ < std::chrono::milliseconds(200)) return;
+    if (now - last_ < (terminal_ ? std::chrono::milliseconds(200) : std::chrono::seconds(10))) return;
     last_ = now;
-    std::fprintf(stderr, "\rimage %zu", summary.images);
+    const double rate = static_cast<double>(summary.images) / std::chrono::duration<double>(now - begin_).count();
+    std::fprintf(stderr, "%simage %zu", terminal_ ? "\r" : "", summary.images);
     if (expected > 0) std::fprintf(stderr, " of %zu", expected);
-    shown_ = true;
+    std::fprintf(stderr, ", %.1f images/s", rate);
+    if (expected > summary.images)
+      std::fprintf(stderr, ", %.0f s left", static_cast<double>(expected - summary.images) / rate);
+    std::fprintf(stderr, ", %s%s", tracking::stateName(static_cast<tracking::State>(state_)),
+                 terminal_ ? "\033[K" : "\n");
+    shown_ = terminal_;
   }
   void end() {
     if (shown_) std::fputs("\r\033[K", stderr);
@@ -79,9 +91,12 @@ class ProgressLine {
   }
 
  private:
-  bool terminal_ = isatty(STDERR_FILENO) != 0;  // a log has no use for it
+  bool terminal_ = isatty(STDERR_FILENO) != 0;
   bool shown_ = false;
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+  std::vector<std::size_t> by_state_;  // of the summary before: the one that has grown is the state now
+  std::size_t state_ = 0;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  std::chrono::steady_clock::time_point last_ = begin_;
 };
 
 void printSummary(const OfflineSummary& summary) {
