@@ -23,7 +23,7 @@ const QColor kBackground(0x16, 0x1a, 0x20);
 const QColor kLine(0x7f, 0xd4, 0xff);
 const QColor kLost(0x80, 0x40, 0x40);
 const QColor kLimit(0xff, 0x90, 0x40);
-constexpr double kWords = 112.0;  // px, left of the plots
+constexpr double kWords = 142.0;  // px, left of the plots
 
 QString number(double value, const Plot& plot) {
   return QString::number(value, 'f', plot.decimals) + plot.unit;

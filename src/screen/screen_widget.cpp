@@ -35,8 +35,9 @@ const char* const kStyle = R"(
   QPushButton#stop:pressed { background: #ff3030; }
   QLabel { color: white; font-size: 14px; }
   QTabWidget::pane { border: 1px solid #40464f; }
-  QTabBar::tab { background: #242a33; color: #c8d0dc; padding: 3px 11px; font-size: 14px; }
-  QTabBar::tab:selected { background: #414a58; color: white; font-weight: bold; }
+  QTabBar { font-size: 14px; }
+  QTabBar::tab { background: #242a33; color: #c8d0dc; padding: 3px 11px; }
+  QTabBar::tab:selected { background: #414a58; color: white; }
   QListWidget, QTableWidget, QLineEdit { background: #0c0e12; color: white; font-size: 13px;
                                          border: 1px solid #40464f; gridline-color: #2a3038; }
   QHeaderView::section { background: #242a33; color: #c8d0dc; border: 0; padding: 2px; }
