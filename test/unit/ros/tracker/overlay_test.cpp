@@ -19,7 +19,7 @@ tracking::TrackResult tracked() {
   result.roi = {100.0, 100.0, 40.0, 40.0};
   result.g(0, 2) = 60.0;
   result.visible_fraction = 0.75;
-  result.areas = {2, 2, {0.0f, 0.0f, 0.9f, 0.0f}, {false, false, true, false}};
+  result.areas = {2, 2, {0.0f, 0.0f, 0.9f, 0.0f}, {false, false, true, false}, {}};
   return result;
 }
 

@@ -33,7 +33,13 @@ Processed tracked() {
   processed.result.corner_error = 0.25;
   processed.result.centre_error = 0.125;
   processed.result.iterations = 12;
-  processed.result.areas = {2, 3, {0.f, 0.1f, 0.2f, 0.3f, 0.4f, 0.5f}, {false, false, true, false, true, true}};
+  using Cause = tracking::AreaCause;
+  processed.result.areas = {
+      2,
+      3,
+      {0.f, 0.1f, 0.2f, 0.3f, 0.4f, 0.5f},
+      {false, false, true, false, true, true},
+      {Cause::kNone, Cause::kNone, Cause::kColour, Cause::kNone, Cause::kHighlight, Cause::kBorder}};
   processed.processing_time = 0.003;
   return processed;
 }
@@ -163,6 +169,9 @@ TEST(AreaSelectionMessage, HasTheAreasRowByRow) {
   EXPECT_EQ(message.distance, tracked().result.areas.distance);
   ASSERT_EQ(message.occluded.size(), 6u);
   for (std::size_t k = 0; k < 6; ++k) EXPECT_EQ(message.occluded[k] != 0, tracked().result.areas.occluded[k]);
+  EXPECT_EQ(message.cause,
+            (std::vector<std::uint8_t>{AreaSelection::NONE, AreaSelection::NONE, AreaSelection::COLOUR,
+                                       AreaSelection::NONE, AreaSelection::HIGHLIGHT, AreaSelection::BORDER}));
 }
 
 TEST(RoiMessage, HasCornersOnlyOfARegionThatIsSomewhere) {
