@@ -105,7 +105,8 @@ Alignment RegionAligner::align(const cv::Mat& image, const EsmState& start, cons
   result.in_image = !(box & cv::Rect(cv::Point(0, 0), image.size())).empty();
   if (!result.in_image) return result;
   pyramid_.build(image, box, config_.levels, channels_);
-  bool looked = prior == nullptr;
+  // Where the prediction was off, so are masks that are drawn there; those of the image before move with the region.
+  bool looked = prior == nullptr || surprise_ <= kGateShift * lengthUnit(roi());
   if (looked) look(image, start.g);
   result.esm = esm_.align(pyramid_, start, prior, esm_.levels() - 1, 1);
   int iterations = result.esm.iterations;
@@ -132,6 +133,7 @@ Alignment RegionAligner::align(const cv::Mat& image, const EsmState& start, cons
     result.visible_fraction = gates_.visibleFraction();
     if (!level.all_valid) result.share_in_image = cv::mean(level.valid.view())[0];
     result.zncc = gates_.correlation();
+    surprise_ = geometry::cornerDistance(start.g, result.esm.state.g, roi());
     correct(result.esm, result.blocks);
     lookFurther(result.esm, result.blocks);
   }
@@ -204,6 +206,7 @@ void RegionAligner::lookFurther(EsmResult& estimate, BlockEvidence& evidence) {
 }
 
 void RegionAligner::startAfresh() {
+  surprise_ = 0.0;
   gates_.forget();
   esm_.forgetLight();
 }

@@ -87,6 +87,7 @@ class RegionAligner {
   image::Channels channels_ = image::kLuma;
   image::ColourPatch patch_;
   Eigen::Matrix3d shown_ = Eigen::Matrix3d::Identity();  // the homography at which the colour gate was last evaluated
+  double surprise_ = 0.0;  // px, by how much a corner was off the prediction in the last image
 };
 
 // Pixels of a patch of the ROI's size to those of the image that the ROI is taken from.

@@ -265,7 +265,7 @@ TEST(Doubt, AsksForBlocksThatNothingCoversAndForOthersAfterAWhile) {
   EXPECT_EQ(doubt(e, QualityConfig()), "") << "beside an instrument a block is covered, too";
   e.visible_fraction = 0.4;
   EXPECT_NE(doubt(e, QualityConfig()).find("pieces of the region found"), std::string::npos);
-  e.blocks.confident = 3;
+  e.blocks.confident = 4;
   e.blocks.off = 1.0;
   EXPECT_EQ(doubt(e, QualityConfig()), "");
   e.blocks = {7, 0, std::numeric_limits<double>::quiet_NaN(), 7};
