@@ -1,35 +1,15 @@
 // Node `camera`: see ros/camera/camera_driver.h.
-#include <ros/ros.h>
-
-#include <cstdlib>
-#include <exception>
-
+#include "nodes/configured_node.h"
 #include "ros/camera/camera_driver.h"
 #include "ros/common/network_exposure.h"
-#include "ros/common/parameters.h"
-#include "ros/common/unblocked_output.h"
 
 using namespace laparoscope_servo;
 
 int main(int argc, char** argv) {
-  const UnblockedOutput output;
-  ros::init(argc, argv, "camera");
-  ros::NodeHandle node;
-  ros::NodeHandle private_node("~");
-  ParameterReader reader(parametersOf(private_node), private_node.getNamespace());
-  CameraConfig config;
-  reader.readAll(config);
-  if (!reader.errors().empty()) {
-    ROS_FATAL("%s", reader.report().c_str());
-    return EXIT_FAILURE;
-  }
-  try {
+  const auto run = [](ros::NodeHandle& node, ros::NodeHandle& private_node, CameraConfig& config) {
     const CameraDriver driver(node, private_node, config);
     warnOfExposure();
     ros::spin();
-  } catch (const std::exception& error) {
-    ROS_FATAL("%s", error.what());
-    return EXIT_FAILURE;
-  }
-  return EXIT_SUCCESS;
+  };
+  return configuredNode<CameraConfig>(argc, argv, "camera", run);
 }

@@ -1,33 +1,15 @@
 // Node `video_player`: see ros/playback/video_player.h.
-#include <ros/ros.h>
-
-#include <cstdlib>
-#include <exception>
-
-#include "ros/common/parameters.h"
+#include "nodes/configured_node.h"
 #include "ros/playback/video_player.h"
 
 using namespace laparoscope_servo;
 
 int main(int argc, char** argv) {
-  ros::init(argc, argv, "video_player");
-  ros::NodeHandle node;
-  const ros::NodeHandle private_node("~");
-  ParameterReader reader(parametersOf(private_node), private_node.getNamespace());
-  VideoPlayerConfig config;
-  reader.readAll(config);
-  if (!reader.errors().empty()) {
-    ROS_FATAL("%s", reader.report().c_str());
-    return EXIT_FAILURE;
-  }
-  try {
+  const auto run = [](ros::NodeHandle& node, ros::NodeHandle&, VideoPlayerConfig& config) {
     VideoPlayer player(node, config);
     player.run();
     // Publishing is asynchronous: the last images have to leave before the connections close.
     ros::WallDuration(0.5).sleep();
-  } catch (const std::exception& error) {
-    ROS_FATAL("%s", error.what());
-    return EXIT_FAILURE;
-  }
-  return EXIT_SUCCESS;
+  };
+  return configuredNode<VideoPlayerConfig>(argc, argv, "video_player", run);
 }
