@@ -16,13 +16,12 @@
 #include "ros/camera/camera_config.h"
 #include "ros/playback/image_source.h"
 #include "ros/tracker/image_conversion.h"
+#include "tools/run_tool.h"
 
 namespace {
 
 namespace options = boost::program_options;
 using namespace laparoscope_servo;
-
-constexpr int kBadUsage = 2;
 
 struct Wanted {
   std::vector<std::string> inputs;
@@ -133,27 +132,11 @@ void run(const Wanted& wanted) {
 int main(int argc, char** argv) {
   Wanted wanted;
   const options::options_description description = describe(wanted);
-  try {
-    options::positional_options_description positional;
-    positional.add("input", -1);
-    options::variables_map map;
-    options::store(options::command_line_parser(argc, argv).options(description).positional(positional).run(), map);
-    options::notify(map);
-    if (map.count("help") > 0) {
-      std::cout << "calibrate_camera INPUT... [options]: intrinsics and lens from pictures of a printed chessboard.\n"
-                << "calibrate_camera --print board.svg [--board 9x6 --square 0.004]: writes the board.\n"
-                << description;
-      return EXIT_SUCCESS;
-    }
-  } catch (const options::error& error) {
-    std::cerr << "calibrate_camera: " << error.what() << "; --help lists the options\n";
-    return kBadUsage;
-  }
-  try {
+  const std::string usage =
+      "calibrate_camera INPUT... [options]: intrinsics and lens from pictures of a printed chessboard.\n"
+      "calibrate_camera --print board.svg [--board 9x6 --square 0.004]: writes the board.\n";
+  return runTool(argc, argv, "calibrate_camera", usage, description, "input", [&] {
     run(wanted);
     return EXIT_SUCCESS;
-  } catch (const std::exception& error) {
-    std::cerr << "calibrate_camera: " << error.what() << '\n';
-    return EXIT_FAILURE;
-  }
+  });
 }

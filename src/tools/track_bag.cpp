@@ -19,13 +19,13 @@
 #include "laparoscope_servo/tracking/region_tracker.h"
 #include "ros/common/parameters.h"
 #include "ros/playback/tracker_offline.h"
+#include "tools/run_tool.h"
 
 namespace {
 
 namespace options = boost::program_options;
 using namespace laparoscope_servo;
 
-constexpr int kBadUsage = 2;
 constexpr int kSignalled = 128;  // as shells count: and the signal's number
 
 options::options_description describeOptions(OfflineOptions& offline, std::string& roi, std::string& parameters) {
@@ -159,35 +159,18 @@ int main(int argc, char** argv) {
   std::string roi;
   std::string parameters;
   const options::options_description description = describeOptions(offline, roi, parameters);
-  try {
-    options::positional_options_description positional;
-    positional.add("input", -1);
-    options::variables_map map;
-    options::store(options::command_line_parser(argc, argv).options(description).positional(positional).run(), map);
-    options::notify(map);
-    if (map.count("help") > 0) {
-      std::cout
-          << "track_bag INPUT... --roi x,y,w,h [options]: tracks a region through recorded images.\n"
-          << "Ends with status 0 when every image was processed, whatever the tracker found; with 1 when images\n"
-          << "are lost or damaged (each is named) or an output cannot be written. Outputs appear under their\n"
-          << "names when they are whole. A signal ends the work as the input's end would, with status 128 and its\n"
-          << "number.\n"
-          << description;
-      return EXIT_SUCCESS;
-    }
-  } catch (const options::error& error) {
-    std::cerr << "track_bag: " << error.what() << "; --help lists the options\n";
-    return kBadUsage;
-  }
-  try {
+  const std::string usage =
+      "track_bag INPUT... --roi x,y,w,h [options]: tracks a region through recorded images.\n"
+      "Ends with status 0 when every image was processed, whatever the tracker found; with 1 when images\n"
+      "are lost or damaged (each is named) or an output cannot be written. Outputs appear under their\n"
+      "names when they are whole. A signal ends the work as the input's end would, with status 128 and its\n"
+      "number.\n";
+  return runTool(argc, argv, "track_bag", usage, description, "input", [&] {
     if (offline.inputs.empty())
       throw std::invalid_argument("no input is given, expected a bag, a video or a folder of images");
     offline.parameters = readParameters(parameters);
     if (!roi.empty()) offline.parameters.roi = parseRoi(roi);
     if (!offline.parameters.roi) throw std::invalid_argument("no ROI is given, expected --roi x,y,width,height in px");
     return run(offline);
-  } catch (const std::exception& error) {
-    std::cerr << "track_bag: " << error.what() << '\n';
-    return EXIT_FAILURE;
-  }
+  });
 }

@@ -13,13 +13,12 @@
 #include "laparoscope_servo/aesop/wire_printer.h"
 #include "laparoscope_servo/aesop/wire_replay.h"
 #include "ros/aesop/aesop_parameters.h"
+#include "tools/run_tool.h"
 
 namespace {
 
 namespace options = boost::program_options;
 using namespace laparoscope_servo;
-
-constexpr int kBadUsage = 2;
 
 struct Arguments {
   std::vector<std::string> files;
@@ -140,31 +139,14 @@ int replay(const Arguments& arguments) {
 int main(int argc, char** argv) {
   Arguments arguments;
   const options::options_description description = describeOptions(arguments);
-  try {
-    options::positional_options_description positional;
-    positional.add("file", -1);
-    options::variables_map map;
-    options::store(options::command_line_parser(argc, argv).options(description).positional(positional).run(), map);
-    options::notify(map);
-    if (map.count("help") > 0) {
-      std::cout
-          << "wire_log FILE... [options]: prints what the aesop node recorded of its serial line (wire_log/file).\n"
-          << "> to the controller, < from it, * what the node was told; time in s, SI units, rad.\n"
-          << "Ends with status 1 when a file is damaged, or when --replay does otherwise than recorded.\n"
-          << description;
-      return EXIT_SUCCESS;
-    }
+  const std::string usage =
+      "wire_log FILE... [options]: prints what the aesop node recorded of its serial line (wire_log/file).\n"
+      "> to the controller, < from it, * what the node was told; time in s, SI units, rad.\n"
+      "Ends with status 1 when a file is damaged, or when --replay does otherwise than recorded.\n";
+  return runTool(argc, argv, "wire_log", usage, description, "file", [&] {
     if (arguments.files.empty()) throw options::error("no recording is given");
-  } catch (const options::error& error) {
-    std::cerr << "wire_log: " << error.what() << "; --help lists the options\n";
-    return kBadUsage;
-  }
-  try {
     const int status = arguments.replay ? replay(arguments) : print(arguments);
     if (!std::cout.flush()) throw std::runtime_error("not everything could be written, is the disk full?");
     return status;
-  } catch (const std::exception& error) {
-    std::cerr << "wire_log: " << error.what() << '\n';
-    return EXIT_FAILURE;
-  }
+  });
 }

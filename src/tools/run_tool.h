@@ -1,0 +1,39 @@
+// The main program of a tool with options on its command line.
+#pragma once
+
+#include <boost/program_options.hpp>
+#include <cstdlib>
+#include <exception>
+#include <iostream>
+#include <string>
+
+namespace laparoscope_servo {
+
+// Its exit status: that of `run`, 1 when it throws, 2 for options that are wrong, 0 after --help, which prints `usage`
+// and the options. What is no option is a value of `positional`. `run` may throw program_options::error, too.
+template <class Run>
+int runTool(int argc, char** argv, const std::string& name, const std::string& usage,
+            const boost::program_options::options_description& description, const char* positional, const Run& run) {
+  namespace options = boost::program_options;
+  constexpr int kBadUsage = 2;
+  try {
+    options::positional_options_description places;
+    places.add(positional, -1);
+    options::variables_map map;
+    options::store(options::command_line_parser(argc, argv).options(description).positional(places).run(), map);
+    options::notify(map);
+    if (map.count("help") > 0) {
+      std::cout << usage << description;
+      return EXIT_SUCCESS;
+    }
+    return run();
+  } catch (const options::error& error) {
+    std::cerr << name << ": " << error.what() << "; --help lists the options\n";
+    return kBadUsage;
+  } catch (const std::exception& error) {
+    std::cerr << name << ": " << error.what() << '\n';
+    return EXIT_FAILURE;
+  }
+}
+
+}  // namespace laparoscope_servo
