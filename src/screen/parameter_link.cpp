@@ -9,6 +9,8 @@
 #include <memory>
 #include <thread>
 
+#include "ros/common/reconfigure_messages.h"
+
 namespace laparoscope_servo::screen {
 
 namespace {
@@ -34,14 +36,6 @@ std::string textOf(double value) {
 bool readRange(const dynamic_reconfigure::Config& config, const std::string& name, double& bound) {
   const auto take = [&](double value) { bound = value; };
   return find(config.doubles, name, take) || find(config.ints, name, take);
-}
-
-template <class List, class T>
-void add(List& list, const std::string& name, const T& value) {
-  typename List::value_type entry;
-  entry.name = name;
-  entry.value = value;
-  list.push_back(entry);
 }
 
 }  // namespace
@@ -70,14 +64,14 @@ std::optional<dynamic_reconfigure::Config> requestOf(const LiveParameter& parame
   const QString trimmed = QString::fromStdString(text).trimmed();
   bool valid = true;
   if (parameter.type == "double") {
-    add(config.doubles, parameter.name, QLocale::c().toDouble(trimmed, &valid));
+    appendTo(config.doubles, parameter.name, QLocale::c().toDouble(trimmed, &valid));
   } else if (parameter.type == "int") {
-    add(config.ints, parameter.name, QLocale::c().toInt(trimmed, &valid));
+    appendTo(config.ints, parameter.name, QLocale::c().toInt(trimmed, &valid));
   } else if (parameter.type == "bool") {
     valid = trimmed == "true" || trimmed == "false";
-    add(config.bools, parameter.name, trimmed == "true");
+    appendTo(config.bools, parameter.name, trimmed == "true");
   } else {
-    add(config.strs, parameter.name, text);
+    appendTo(config.strs, parameter.name, text);
   }
   return valid ? std::make_optional(config) : std::nullopt;
 }

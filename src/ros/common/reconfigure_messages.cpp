@@ -29,21 +29,13 @@ const char* typeOf(const Row& row) {
   }
 }
 
-template <class List, class T>
-void add(List& list, const std::string& name, const T& value) {
-  typename List::value_type parameter;
-  parameter.name = name;
-  parameter.value = value;
-  list.push_back(parameter);
-}
-
 // Lists are not for this protocol: none of them may change while a node runs.
 void add(Config& config, const Row& row, const Value& value) {
   const std::string name = reconfigureName(row.name);
-  if (const auto* flag = std::get_if<bool>(&value)) add(config.bools, name, *flag);
-  if (const auto* integer = std::get_if<int>(&value)) add(config.ints, name, *integer);
-  if (const auto* number = std::get_if<double>(&value)) add(config.doubles, name, *number);
-  if (const auto* text = std::get_if<std::string>(&value)) add(config.strs, name, *text);
+  if (const auto* flag = std::get_if<bool>(&value)) appendTo(config.bools, name, *flag);
+  if (const auto* integer = std::get_if<int>(&value)) appendTo(config.ints, name, *integer);
+  if (const auto* number = std::get_if<double>(&value)) appendTo(config.doubles, name, *number);
+  if (const auto* text = std::get_if<std::string>(&value)) appendTo(config.strs, name, *text);
 }
 
 Config withRoot() {

@@ -15,6 +15,15 @@
 
 namespace laparoscope_servo {
 
+// Appends to a list of a Config: doubles, ints, bools or strs.
+template <class List, class T>
+void appendTo(List& list, const std::string& name, const T& value) {
+  typename List::value_type parameter;
+  parameter.name = name;
+  parameter.value = value;
+  list.push_back(parameter);
+}
+
 std::string reconfigureName(const std::string& path);
 // Takes names with slashes, too.
 std::string pathOfReconfigureName(const std::string& name);

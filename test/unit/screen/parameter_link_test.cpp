@@ -4,6 +4,7 @@
 
 #include <QtTest>
 
+#include "ros/common/reconfigure_messages.h"
 #include "screen/minute_limits.h"
 #include "screen/parameter_panel.h"
 
@@ -12,14 +13,6 @@ namespace {
 
 using dynamic_reconfigure::Config;
 using dynamic_reconfigure::ConfigDescription;
-
-template <class List, class T>
-void add(List& list, const std::string& name, const T& value) {
-  typename List::value_type entry;
-  entry.name = name;
-  entry.value = value;
-  list.push_back(entry);
-}
 
 class ParameterLinkTest : public testing::Test {
  protected:
@@ -34,10 +27,10 @@ class ParameterLinkTest : public testing::Test {
       group.parameters.push_back(parameter);
     }
     description_.groups.push_back(group);
-    add(description_.min.doubles, "tracking__quality__min_zncc", 0.0);
-    add(description_.max.doubles, "tracking__quality__min_zncc", 1.0);
-    add(values_.doubles, "tracking__quality__min_zncc", 0.5);
-    add(values_.bools, "search__features", true);
+    appendTo(description_.min.doubles, "tracking__quality__min_zncc", 0.0);
+    appendTo(description_.max.doubles, "tracking__quality__min_zncc", 1.0);
+    appendTo(values_.doubles, "tracking__quality__min_zncc", 0.5);
+    appendTo(values_.bools, "search__features", true);
   }
   ConfigDescription description_;
   Config values_;
