@@ -9,7 +9,7 @@
 #include <cmath>
 
 #include "ros/common/clocks.h"
-#include "screen/hold_words.h"
+#include "ros/common/hold_words.h"
 
 namespace laparoscope_servo::screen {
 

@@ -222,7 +222,6 @@ Attempt RegionTracker::Implementation::attempt(const cv::Mat& image, double stam
   e.in_image = found.share_in_image;
   e.zncc = found.zncc;
   e.blocks = found.blocks;
-  if (e.blocks.confident >= leastBlocks(e.blocks, e.visible_fraction)) proven_stamp_ = stamp;
   e.unproven = stamp - proven_stamp_;
   result.doubt = found.in_image ? doubt(e, config_.quality) : "the ROI is outside the image";
   return result;
@@ -261,6 +260,7 @@ void RegionTracker::Implementation::decide(const Attempt& best, const MotionPrio
     filter_.update(prior, e.esm, stamp, e.visible_fraction >= kRecordVisible, carried_);
   }
   search_.confirmation().forget();
+  if (e.blocks.confident >= leastBlocks(e.blocks, e.visible_fraction)) proven_stamp_ = stamp;
   unseen_before_ = 0.0;
   last_ = e.esm.state;
 }

@@ -1,12 +1,10 @@
-#include "screen/hold_words.h"
+#include "ros/common/hold_words.h"
 
-namespace laparoscope_servo::screen {
+namespace laparoscope_servo {
 
 namespace {
 
-// Turns of 0.05 s. One that is lost on its way does no harm: silence ends the hold as well, a moment later.
-constexpr int kReleases = 3;
-constexpr int kZeros = 10;
+constexpr int kReleases = 3;  // turns, as kFarewellZeros
 
 }  // namespace
 
@@ -24,11 +22,11 @@ std::vector<bool> DeadManWords::turn(bool held) {
 SliderWords::Word SliderWords::turn(bool held) {
   const bool taken = held && !was_held_;
   was_held_ = held;
-  if (held) farewells_ = kZeros;
+  if (held) farewells_ = kFarewellZeros;
   if (held) return taken ? Word::kZero : Word::kValue;
   if (farewells_ == 0) return Word::kNothing;
   --farewells_;
   return Word::kZero;
 }
 
-}  // namespace laparoscope_servo::screen
+}  // namespace laparoscope_servo

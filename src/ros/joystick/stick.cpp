@@ -10,9 +10,6 @@ namespace laparoscope_servo {
 namespace {
 
 constexpr double kFull = 32767.0;
-// Turns. A word that is lost on its way does no harm: silence ends the hold as well, a moment later.
-constexpr int kReleases = 3;
-constexpr int kZeros = 10;
 
 }  // namespace
 
@@ -96,25 +93,14 @@ Stick::Words Stick::turn(double now) {
   const bool has_axes =
       config_.pan.axis >= 0 || config_.tilt.axis >= 0 || config_.spin.axis >= 0 || config_.insertion.axis >= 0;
   const bool active = has_axes && ready_ && (held || !config_.only_while_held);
-  Words words{deadManWords(held), manualWord(active)};
+  Words words{dead_man_.turn(held), manualWord(active)};
   if (active && !drives_) problem_ = "the stick was deflected when the switch was taken: release the stick once";
   return words;
 }
 
-std::vector<bool> Stick::deadManWords(bool held) {
-  const bool taken = held && !was_held_;
-  if (was_held_ && !held) dead_man_farewells_ = kReleases;
-  was_held_ = held;
-  if (taken) return {false, true};
-  if (held) return {true};
-  if (dead_man_farewells_ == 0) return {};
-  --dead_man_farewells_;
-  return {false};
-}
-
 // The first word is a zero: the controller obeys a stick only that it has seen at rest.
 std::optional<scope::Velocity> Stick::manualWord(bool active) {
-  if (drives_ && !active) manual_farewells_ = kZeros;
+  if (drives_ && !active) manual_farewells_ = kFarewellZeros;
   drives_ = active && ((was_active_ && drives_) || !deflected());
   was_active_ = active;
   scope::Velocity velocity;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "laparoscope_servo/scope/velocity.h"
+#include "ros/common/hold_words.h"
 #include "ros/joystick/joystick_events.h"
 #include "ros/joystick/stick_config.h"
 
@@ -20,10 +21,7 @@ class Stick {
  public:
   // To be published now.
   struct Words {
-    // In this order. A false comes before the first true: the controller believes only a switch that it has seen
-    // released since it was engaged, which is so when a hand takes it anew. Released it is silent, for a false from
-    // anywhere stops who holds another one.
-    std::vector<bool> dead_man;
+    std::vector<bool> dead_man;  // in this order, see DeadManWords
     std::optional<scope::Velocity> manual;
   };
 
@@ -38,7 +36,7 @@ class Stick {
 
   // Why nothing may be said; empty when all is well.
   const std::string& problem() const { return problem_; }
-  bool isHeld() const { return was_held_; }
+  bool isHeld() const { return dead_man_.isHeld(); }
 
  private:
   // -1 to 1, 0 up to the bound of neutral; of one that is not used 0.
@@ -47,7 +45,6 @@ class Stick {
   bool deflected() const;
   std::string missing() const;
   std::string judge(double now);
-  std::vector<bool> deadManWords(bool held);
   std::optional<scope::Velocity> manualWord(bool active);
 
   StickConfig config_;
@@ -55,8 +52,7 @@ class Stick {
   std::map<int, bool> buttons_;
   double last_event_ = 0.0;  // s
   bool ready_ = false;       // everything was seen released
-  bool was_held_ = false;
-  int dead_man_farewells_ = 0;
+  DeadManWords dead_man_;
   bool was_active_ = false;
   bool drives_ = false;  // it was active and at rest
   int manual_farewells_ = 0;

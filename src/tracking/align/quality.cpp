@@ -37,7 +37,6 @@ constexpr double kGainChangeRate = 0.5;  // 1/s
 constexpr int kEnoughBlocks = 6;
 constexpr double kRecognised = 0.3;
 constexpr double kNear = 3.0;       // px, the median of the blocks
-constexpr double kMostOff = 4.0;    // px: from 5 px on an estimate is wrong
 constexpr int kTelling = 8;         // blocks; where fewer can be told from their surroundings, they tell nothing
 constexpr int kVisibleTelling = 6;  // the same of those that nothing covers
 constexpr int kFewBlocks = 3;       // that moved alike: as many as it takes to be confident of any

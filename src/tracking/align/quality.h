@@ -40,6 +40,9 @@ struct BlockEvidence {
   int visible = 0;    // of those seen, that nothing covers
 };
 
+// lengthUnit()s of the image: where the median of the blocks is off by more, the estimate is wrong, as it is from 5 px on.
+constexpr double kMostOff = 4.0;
+
 // How many blocks have to be found for an estimate; 0 where there are too few to tell.
 double leastBlocks(const BlockEvidence& blocks, double visible_fraction);
 

@@ -24,8 +24,6 @@ constexpr double kSignificant = 1.0;
 // px of the level that blocks are searched on. Where their median is off by less, ESM is the more accurate.
 constexpr double kNearOff = 0.3;
 constexpr double kFarOff = 1.5;  // lengthUnit()s of the image, the blocks' median: ESM is off, however they scatter
-// lengthUnit()s of the image, the same: the place is not the region's, and what few blocks say for it is chance.
-constexpr double kMostOff = 4.0;
 constexpr double kMostMissing = 0.5;  // share of the blocks that are found, from which on they are not searched further
 constexpr double kBlockVisible = 0.8;  // share of a visible block's pixels that have weight
 constexpr double kGateShift =
@@ -152,15 +150,14 @@ const std::vector<BlockShift>& RegionAligner::measure(const EsmResult& estimate,
   evidence.seen = static_cast<int>(shifts.size());
   evidence.confident = confidentShifts(shifts);
   evidence.off = medianShift(shifts, estimate.state.g);
-  evidence.visible = visibleBlocks(shifts, blocks_.side());
   return shifts;
 }
 
-int RegionAligner::visibleBlocks(const std::vector<BlockShift>& shifts, double side) const {
+int RegionAligner::visibleBlocks(const std::vector<BlockShift>& shifts) const {
   const cv::Mat1f weight = esm_.level(0).weight.view();
   const auto visible = [&](const BlockShift& block) {
     const cv::Point centre(cvRound(block.centre.x() - roi().x), cvRound(block.centre.y() - roi().y));
-    const int half = static_cast<int>(side / 2.0);
+    const int half = static_cast<int>(blocks_.side() / 2.0);
     const cv::Rect box =
         cv::Rect(centre.x - half, centre.y - half, 2 * half, 2 * half) & cv::Rect({0, 0}, weight.size());
     return cv::mean(weight(box))[0] >= kBlockVisible;
@@ -181,6 +178,7 @@ void RegionAligner::correct(EsmResult& estimate, BlockEvidence& evidence) {
     follow(*fit, estimate);
     shifts = &measure(estimate, evidence);
   }
+  evidence.visible = visibleBlocks(*shifts);
 }
 
 // A part of the region that stands still (a reflection, a fold) holds ESM there, while the rest has moved further than
@@ -190,7 +188,7 @@ void RegionAligner::lookFurther(EsmResult& estimate, BlockEvidence& evidence) {
   if (evidence.seen == 0 || evidence.confident > kMostMissing * evidence.seen) return;
   const std::vector<BlockShift>& shifts = far_blocks_.measure(pyramid_, estimate.state.g);
   const BlockEvidence further = {static_cast<int>(shifts.size()), confidentShifts(shifts),
-                                 medianShift(shifts, estimate.state.g), visibleBlocks(shifts, far_blocks_.side())};
+                                 medianShift(shifts, estimate.state.g)};
   const std::optional<ShiftFit> fit = fitShifts(shifts, roi(), far_blocks_.side());
   if (!fit || !(further.off > kFarOff * lengthUnit(roi())) || further.confident <= evidence.confident) return;
   EsmResult other = estimate;

@@ -71,7 +71,7 @@ class RegionAligner {
   void look(const cv::Mat& image, const Eigen::Matrix3d& g);
   void follow(const ShiftFit& fit, EsmResult& estimate) const;
   const std::vector<BlockShift>& measure(const EsmResult& estimate, BlockEvidence& evidence);
-  int visibleBlocks(const std::vector<BlockShift>& shifts, double side) const;
+  int visibleBlocks(const std::vector<BlockShift>& shifts) const;
   void correct(EsmResult& estimate, BlockEvidence& evidence);
   void lookFurther(EsmResult& estimate, BlockEvidence& evidence);
   int observeStructure(const EsmResult& estimate);

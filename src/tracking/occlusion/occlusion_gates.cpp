@@ -240,15 +240,18 @@ void OcclusionGates::causes(std::vector<AreaCause>& causes) const {
 }
 
 AreaCause OcclusionGates::hidden(int row, int column) const {
-  int pixels = 0, outside = 0, saturated = 0;
+  const int begin = samples_.columnBegin(column), end = samples_.columnBegin(column + 1);
+  int outside = 0, saturated = 0;
   for (int j = samples_.rowBegin(row); j < samples_.rowBegin(row + 1); ++j) {
-    for (int i = samples_.columnBegin(column); i < samples_.columnBegin(column + 1); ++i) {
-      const bool inside = valid_(j, i) != 0;
-      ++pixels;
-      outside += !inside;
-      saturated += inside && (saturated_(j, i) | reference_saturated_(j, i)) != 0;
+    const unsigned char* const valid = valid_.ptr<unsigned char>(j);  // 255 or 0, as the other two
+    const unsigned char* const here = saturated_.ptr<unsigned char>(j);
+    const unsigned char* const in_reference = reference_saturated_.ptr<unsigned char>(j);
+    for (int i = begin; i < end; ++i) {
+      outside += (valid[i] ^ 255) & 1;
+      saturated += valid[i] & (here[i] | in_reference[i]) & 1;
     }
   }
+  const int pixels = samples_.pixelsIn(row * samples_.columns() + column);
   if (kHidden * (outside + saturated) < pixels || pixels == 0) return AreaCause::kNone;
   return outside > saturated ? AreaCause::kBorder : AreaCause::kHighlight;
 }

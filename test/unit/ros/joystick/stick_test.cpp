@@ -31,6 +31,13 @@ class StickTest : public testing::Test {
     now_ += 0.05;
     return stick_.turn(now_);
   }
+  // Released and pressed again, the button counts.
+  void expectTakenAnew() {
+    button(kButton, false);
+    turn();
+    button(kButton, true);
+    EXPECT_EQ(turn().dead_man, (std::vector<bool>{false, true}));
+  }
   void expectSilence(int turns = 5) {
     for (int k = 0; k < turns; ++k) {
       const Stick::Words words = turn();
@@ -132,10 +139,7 @@ TEST_F(StickTest, WhatIsHeldAtTheStartCountsForNothing) {
   plugIn(true);
   expectSilence();
   EXPECT_NE(stick_.problem().find("from the start"), std::string::npos);
-  button(kButton, false);
-  turn();
-  button(kButton, true);
-  EXPECT_EQ(turn().dead_man, (std::vector<bool>{false, true}));
+  expectTakenAnew();
 }
 
 TEST_F(StickTest, WhatIsDeflectedAtTheStartKeepsTheButtonSilentToo) {
@@ -145,10 +149,7 @@ TEST_F(StickTest, WhatIsDeflectedAtTheStartKeepsTheButtonSilentToo) {
   expectSilence();
   axis(kPan, 0.0);
   expectSilence();
-  button(kButton, false);
-  turn();
-  button(kButton, true);
-  EXPECT_EQ(turn().dead_man, (std::vector<bool>{false, true}));
+  expectTakenAnew();
 }
 
 TEST_F(StickTest, AJoystickThatLacksAnAxisIsSilent) {
@@ -178,10 +179,7 @@ TEST_F(StickTest, WithoutAnyEventItIsOutOfReachUntilAllWasReleased) {
   expectSilence();
   axis(kPan, 0.0);
   expectSilence();
-  button(kButton, false);
-  turn();
-  button(kButton, true);
-  EXPECT_EQ(turn().dead_man, (std::vector<bool>{false, true}));
+  expectTakenAnew();
 }
 
 TEST_F(StickTest, EventsOfAnyAxisShowThatItIsInReach) {
