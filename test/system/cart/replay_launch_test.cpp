@@ -1,5 +1,6 @@
 // replay.launch as a user runs it, once and again on the same master.
 #include <gtest/gtest.h>
+#include <sensor_msgs/Image.h>
 
 #include <csignal>
 #include <fstream>
@@ -32,7 +33,14 @@ class ReplayLaunch : public testing::Test {
     }
     return folder_.file("images");
   }
+  // Plays when the tracker and this test receive the images, and this test the results: none is lost then.
+  void play(const std::string& arguments) {
+    launch("subscribers:=2 " + arguments);
+    ASSERT_TRUE(spinUntil([this] { return results_->connected(); }, kLongest)) << contents(log());
+    images_ = std::make_unique<Recorder<sensor_msgs::Image>>(node_, "/camera/image_raw");
+  }
   void launch(const std::string& arguments) {
+    images_.reset();
     results_ = std::make_unique<Recorder<Homography>>(node_, "/tracker/homography");
     const std::string command =
         "ROSCONSOLE_STDOUT_LINE_BUFFERED=1 exec roslaunch laparoscope_servo replay.launch rviz:=false " + arguments;
@@ -50,6 +58,7 @@ class ReplayLaunch : public testing::Test {
   test_support::TemporaryFolder folder_;
   ros::NodeHandle node_;
   std::unique_ptr<Recorder<Homography>> results_;
+  std::unique_ptr<Recorder<sensor_msgs::Image>> images_;
   std::unique_ptr<ChildProcess> launch_;
 };
 
@@ -62,7 +71,7 @@ TEST_F(ReplayLaunch, EndsWhenThePlayerFails) {
 }
 
 TEST_F(ReplayLaunch, StaysAtTheEndOfTheRecordingUntilItIsEnded) {
-  launch("video:=" + folder() + " roi:=100,60,100,100");
+  play("video:=" + folder() + " roi:=100,60,100,100");
   ASSERT_TRUE(spinUntil([this] { return contents(log()).find("played 5 images") != std::string::npos; }, kLongest))
       << contents(log());
   EXPECT_TRUE(spinUntil([this] { return results_->all.size() == kImages; }, kLongest));
@@ -75,7 +84,7 @@ TEST_F(ReplayLaunch, StaysAtTheEndOfTheRecordingUntilItIsEnded) {
 // out of a file would still hold.
 TEST_F(ReplayLaunch, NothingOfTheRunBeforeHoldsInTheNext) {
   std::ofstream(folder_.file("params.yaml")) << "tracking: {esm: {levels: 1}}\n";
-  launch("stay:=false roi:=100,60,100,100 params:=" + folder_.file("params.yaml") + " video:=" + folder());
+  play("stay:=false roi:=100,60,100,100 params:=" + folder_.file("params.yaml") + " video:=" + folder());
   ASSERT_TRUE(ends()) << contents(log());
   ASSERT_EQ(results_->all.size(), static_cast<std::size_t>(kImages)) << contents(log());
   EXPECT_EQ(results_->all.back()->state, Homography::TRACKING);
@@ -85,7 +94,7 @@ TEST_F(ReplayLaunch, NothingOfTheRunBeforeHoldsInTheNext) {
   ros::param::set("/tracker/tracking/esm/no_such_parameter", 1);  // a misspelt one of before, that is refused
   ros::param::set("/player/start", 100.0);
 
-  launch("stay:=false video:=" + folder_.file("images"));
+  play("stay:=false video:=" + folder_.file("images"));
   ASSERT_TRUE(ends()) << contents(log());
   ASSERT_EQ(results_->all.size(), static_cast<std::size_t>(kImages)) << contents(log());
   for (const auto& result : results_->all) EXPECT_EQ(result->state, Homography::IDLE);
