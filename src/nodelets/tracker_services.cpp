@@ -4,11 +4,21 @@
 #include <stdexcept>
 
 #include "nodelets/tracker.h"
+#include "ros/tracker/region_proposal.h"
 #include "ros/tracker/result_messages.h"
 
 namespace laparoscope_servo::nodelets {
 
 namespace {
+
+sensor_msgs::RegionOfInterest roiMessage(const geometry::Rectangle& roi) {
+  sensor_msgs::RegionOfInterest message;
+  message.x_offset = static_cast<std::uint32_t>(roi.x);
+  message.y_offset = static_cast<std::uint32_t>(roi.y);
+  message.width = static_cast<std::uint32_t>(roi.width);
+  message.height = static_cast<std::uint32_t>(roi.height);
+  return message;
+}
 
 geometry::Rectangle rectangleOf(const sensor_msgs::RegionOfInterest& roi) {
   return {static_cast<double>(roi.x_offset), static_cast<double>(roi.y_offset), static_cast<double>(roi.width),
@@ -33,17 +43,24 @@ bool Tracker::selectRoi(SelectRoi::Request& request, SelectRoi::Response& respon
 
 bool Tracker::checkRoi(CheckRoi::Request& request, CheckRoi::Response& response) {
   response.success = static_cast<std::uint8_t>(false);
+  const geometry::Rectangle roi = rectangleOf(request.roi);
+  std::shared_ptr<const Snapshot> live;
+  const Snapshot* snapshot = nullptr;
   try {
-    if (!request.stamp.isZero()) {
-      desk_->check(desk_->kept(request.stamp), rectangleOf(request.roi));
-    } else {
+    if (request.stamp.isZero()) {
       const TrackerRequest::Answer answer = ask(TrackerRequest::WantSnapshot());
-      if (!answer.snapshot) throw std::runtime_error(answer.message);
-      desk_->check(*answer.snapshot, rectangleOf(request.roi));
+      live = answer.snapshot;
+      if (!live) throw std::runtime_error(answer.message);
     }
+    snapshot = live ? live.get() : &desk_->kept(request.stamp);
+    desk_->check(*snapshot, roi);
     response.success = static_cast<std::uint8_t>(true);
   } catch (const std::exception& error) {
     response.message = error.what();
+    const auto proposal = snapshot != nullptr ? desk_->propose(*snapshot, roi) : std::nullopt;
+    response.message += proposalText(proposal);
+    // Rectified pixels may be negative, which the message cannot say.
+    if (proposal && proposal->x >= 0.0 && proposal->y >= 0.0) response.proposal = roiMessage(*proposal);
   }
   return true;
 }

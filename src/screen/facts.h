@@ -78,6 +78,7 @@ struct Verdict {
   std::int64_t stamp = 0;  // of the picture that is frozen; 0: the live one
   bool taken = false;      // it would be
   std::string why;         // not
+  QRect proposal;          // px: one that would be; empty where none is known
 };
 
 // A picture that the tracker keeps, to draw a region in.

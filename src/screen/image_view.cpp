@@ -153,6 +153,7 @@ void ImageView::paintEvent(QPaintEvent*) {
   if (const std::optional<QRect> pixels = shown()) {
     const std::int64_t stamp = facts_.frozen ? facts_.frozen->stamp : 0;
     const bool told = facts_.verdict && facts_.verdict->region == *pixels && facts_.verdict->stamp == stamp;
+    if (told && !facts_.verdict->proposal.isEmpty()) drawProposal(painter, box.fromPixels(facts_.verdict->proposal));
     drawRegion(painter, box.fromPixels(*pixels), *pixels, told ? &*facts_.verdict : nullptr, draft_ == pixels, rect());
   }
   if (!words_.live && !facts_.frozen)

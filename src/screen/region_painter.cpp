@@ -25,7 +25,18 @@ void drawCross(QPainter& painter, const QPointF& at) {
 QString wordsOf(const Verdict& verdict) {
   if (verdict.taken) return "The tracker would take it.";
   const ReasonRow* row = explain(Speaker::kTracker, verdict.why);
-  return QString::fromStdString(row != nullptr ? row->sentence + " " + row->cure : verdict.why);
+  const QString words = QString::fromStdString(row != nullptr ? row->sentence + " " + row->cure : verdict.why);
+  return verdict.proposal.isEmpty() ? words : words + " The dotted one would do.";
+}
+
+void drawProposal(QPainter& painter, const QRectF& outline) {
+  painter.save();
+  painter.setBrush(Qt::NoBrush);
+  painter.setPen(QPen(Qt::black, 4));
+  painter.drawRect(outline);
+  painter.setPen(QPen(kTaken, 2, Qt::DotLine));
+  painter.drawRect(outline);
+  painter.restore();
 }
 
 void drawRegion(QPainter& painter, const QRectF& outline, const QRect& pixels, const Verdict* verdict, bool by_keys,

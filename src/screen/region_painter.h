@@ -17,4 +17,7 @@ QString wordsOf(const Verdict& verdict);
 void drawRegion(QPainter& painter, const QRectF& outline, const QRect& pixels, const Verdict* verdict, bool by_keys,
                 const QRectF& canvas);
 
+// One that the tracker would take instead, in the widget.
+void drawProposal(QPainter& painter, const QRectF& outline);
+
 }  // namespace laparoscope_servo::screen

@@ -20,6 +20,16 @@ namespace {
 using StoredView_ = laparoscope_servo::StoredView;
 using Views = std::shared_ptr<const std::vector<StoredView>>;
 
+// Of what anybody may have sent.
+int side(std::uint32_t pixels) {
+  constexpr std::uint32_t kLargest = 1u << 20;
+  return static_cast<int>(std::min(pixels, kLargest));
+}
+
+QRect pixelsOf(const sensor_msgs::RegionOfInterest& roi) {
+  return {side(roi.x_offset), side(roi.y_offset), side(roi.width), side(roi.height)};
+}
+
 sensor_msgs::RegionOfInterest messageOf(const QRect& pixels) {
   sensor_msgs::RegionOfInterest roi;
   roi.x_offset = static_cast<std::uint32_t>(pixels.x());
@@ -34,12 +44,6 @@ CheckRoi questionOf(const QRect& pixels, const std::optional<Frozen>& frozen) {
   question.request.roi = messageOf(pixels);
   if (frozen) question.request.stamp.fromNSec(static_cast<std::uint64_t>(frozen->stamp));
   return question;
-}
-
-// Of what anybody may have sent.
-int side(std::uint32_t pixels) {
-  constexpr std::uint32_t kLargest = 1u << 20;
-  return static_cast<int>(std::min(pixels, kLargest));
 }
 
 Views viewsOf(const ListViews::Response& response) {
@@ -96,6 +100,7 @@ void TrackerLink::checkRegion(const QRect& pixels) {
     const bool answered = ros::service::call(name, call);
     verdict.taken = answered && call.response.success != 0;
     verdict.why = answered ? call.response.message : "no answer from " + name;
+    if (answered && !verdict.taken) verdict.proposal = pixelsOf(call.response.proposal);
     return [this, verdict] {
       keeper_.change([&](Facts& facts) { facts.verdict = verdict; });
       news_();

@@ -14,6 +14,7 @@
 #include "tracking/motion_filter.h"
 #include "tracking/roi_check.h"
 #include "tracking/search/region_search.h"
+#include "tracking/selection/proposal.h"
 
 namespace laparoscope_servo::tracking {
 
@@ -23,6 +24,10 @@ namespace {
 constexpr double kReach = 4.0;
 constexpr double kLeastReach = 12.0;   // lengthUnit()s
 constexpr double kSearchReach = 0.25;  // of the ROI's larger side, when it has been lost
+
+// Of min_texture, what noise may do in a region that is proposed. Of 92 regions on eight films the 60 in which it did
+// less than this were held for a second in 42 cases, the others in 15 of 32.
+constexpr double kClearly = 0.3;
 
 }  // namespace
 
@@ -48,6 +53,7 @@ class RegionTracker::Implementation {
   void setLens(const std::optional<image::Lens>& lens);
   TrackResult select(const cv::Mat& image, double stamp, const geometry::Rectangle& roi);
   double check(const cv::Mat& image, const geometry::Rectangle& wanted, RegionAligner& aligner) const;
+  std::optional<geometry::Rectangle> propose(const cv::Mat& image, const geometry::Rectangle& wanted) const;
   void recall(const cv::Mat& reference, double reference_stamp, const geometry::Rectangle& roi, double now);
   const TrackResult& track(const cv::Mat& image, double stamp, const std::optional<Eigen::Matrix3d>& motion);
   void reset();
@@ -100,6 +106,26 @@ double RegionTracker::Implementation::check(const cv::Mat& image, const geometry
   checkImage(image);
   aligner.setReference(image, checkedRoi(image, wanted, config_.min_roi_side, lens_.get()));
   return checkedCornerError(aligner, config_.min_texture);
+}
+
+std::optional<geometry::Rectangle> RegionTracker::Implementation::propose(const cv::Mat& image,
+                                                                          const geometry::Rectangle& wanted) const {
+  checkImage(image);
+  if (!(wanted.width >= 1.0 && wanted.height >= 1.0) ||
+      !std::isfinite(wanted.x + wanted.y + wanted.width + wanted.height))
+    throw std::invalid_argument("the ROI has no size, or is not finite");
+  geometry::Rectangle least = wanted;
+  least.width = std::max<double>(wanted.width, config_.min_roi_side);
+  least.height = std::max<double>(wanted.height, config_.min_roi_side);
+  RegionAligner aligner(config_, lens_);
+  return proposeRegion(image, least, lens_.get(), [&](const geometry::Rectangle& roi) {
+    try {
+      aligner.setReference(image, checkedRoi(image, roi, config_.min_roi_side, lens_.get()));
+      return aligner.referenceTexture().corner_error <= kClearly * config_.min_texture;
+    } catch (const std::invalid_argument&) {
+      return false;
+    }
+  });
 }
 
 double RegionTracker::Implementation::setReference(const cv::Mat& image, double stamp,
@@ -346,6 +372,9 @@ TrackResult RegionTracker::select(const cv::Mat& image, double stamp, const geom
 void RegionTracker::check(const cv::Mat& image, const geometry::Rectangle& roi) const {
   RegionAligner aligner(config(), implementation_->lens());
   implementation_->check(image, roi, aligner);
+}
+std::optional<geometry::Rectangle> RegionTracker::propose(const cv::Mat& image, const geometry::Rectangle& roi) const {
+  return implementation_->propose(image, roi);
 }
 void RegionTracker::recall(const cv::Mat& reference, double reference_stamp, const geometry::Rectangle& roi,
                            double now) {

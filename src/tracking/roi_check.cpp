@@ -10,8 +10,6 @@ namespace laparoscope_servo::tracking {
 
 namespace {
 
-constexpr double kTypicalNoise = 2.0;  // grey levels, of a laparoscope's camera
-
 // Every pixel of the border, through the lens: what is one to one takes the inside of the border to the inside. False
 // for NaN.
 bool shows(const cv::Mat& image, const geometry::Rectangle& roi, const image::Lens& lens) {
@@ -66,12 +64,13 @@ geometry::Rectangle checkedRoi(const cv::Mat& image, const geometry::Rectangle& 
 }
 
 double checkedCornerError(RegionAligner& aligner, double max_error) {
-  const double error = aligner.referenceCornerError(kTypicalNoise);
-  if (error <= max_error) return error;
+  const ReferenceTexture texture = aligner.referenceTexture();
+  if (texture.corner_error <= max_error) return texture.corner_error;
   std::ostringstream message;
   message.precision(3);
-  message << text(aligner.roi()) << " has too little texture: " << kTypicalNoise
-          << " grey levels of noise would move a corner by " << error << " px, expected at most " << max_error;
+  message << text(aligner.roi()) << " has too little texture: " << texture.noise
+          << " grey levels of noise would move a corner by " << texture.corner_error << " px, expected at most "
+          << max_error;
   throw std::invalid_argument(message.str());
 }
 

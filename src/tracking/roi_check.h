@@ -17,7 +17,7 @@ void checkImage(const cv::Mat& image);
 geometry::Rectangle checkedRoi(const cv::Mat& image, const geometry::Rectangle& roi, int min_side,
                                const image::Lens* lens);
 
-// px, the corner error that two grey levels of noise cause in the aligner's reference. Throws std::invalid_argument
+// px, the corner error that noise causes in the aligner's reference, see ReferenceTexture. Throws std::invalid_argument
 // when it is more than `max_error`: the ROI has too little texture.
 double checkedCornerError(RegionAligner& aligner, double max_error);
 

@@ -28,6 +28,14 @@ struct Channels {
   std::array<ChannelWeights, kMaxChannels> weights;
 };
 
+// Level 0's smoothing: a kernel of three pixels with the variance of a Gaussian of sigma 0.65 px.
+constexpr double kSmoothSide = 0.5 * 0.65 * 0.65;
+constexpr double kSmoothMiddle = 1.0 - 2.0 * kSmoothSide;
+// What it leaves of white noise with a standard deviation of 1: that of level 0, and the mean square of the central
+// differences there, both directions together.
+constexpr double kNoiseLeft = kSmoothMiddle * kSmoothMiddle + 2.0 * kSmoothSide * kSmoothSide;
+constexpr double kNoiseGradient = (kSmoothMiddle * kSmoothMiddle + kSmoothSide * kSmoothSide) * kNoiseLeft;
+
 class RegionPyramid {
  public:
   RegionPyramid() = default;

@@ -78,6 +78,11 @@ class RegionTracker {
   // Whether select() would take the ROI: throws as that would, and selects nothing.
   void check(const cv::Mat& image, const geometry::Rectangle& roi) const;
 
+  // A region near `roi` whose texture is clearly enough to be tracked, where that of `roi` is not, or was not in what
+  // followed: larger, or beside it. Empty where there is none. Throws std::invalid_argument for an image that select()
+  // would not take, and for a ROI without size or number.
+  std::optional<geometry::Rectangle> propose(const cv::Mat& image, const geometry::Rectangle& roi) const;
+
   // Takes an older image for the reference, whose ROI is then to be found in the images that come: SEARCHING, as after
   // a loss, since `now`, the stamp [s] of the next image or of one before it. `reference_stamp` may lie any time
   // before. Throws as select() does, and leaves the tracker as it was.

@@ -76,6 +76,10 @@ const std::vector<ReasonRow>& trackerReasons() {
        "Wait, or select it again."},
       {{"image stamp is not finite"}, "The time of a picture is no number.", "Look at the camera's driver."},
       // Lost, and how it is found again.
+      {{"it was not held in its first second"},
+       "The region could not be followed from the start.",
+       "Draw the one that the reason names, or one with more vessels or edges.",
+       "first_minutes.md#which-region-can-be-tracked"},
       {{"found, waits for confirmation"}, "The region was found; it has to be found a few times in a row.", "Wait."},
       {{"the ROI is outside the image"}, "The region has left the picture.", "Move the scope back."},
       {{"visible fraction"}, "Something covers the region.", "Take away what covers it, or wait."},

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "laparoscope_servo/tracking/region_tracker.h"
+#include "ros/tracker/region_proposal.h"
 
 namespace laparoscope_servo {
 
@@ -29,9 +29,18 @@ const Snapshot& RegionDesk::kept(const ros::Time& stamp) const {
 
 void RegionDesk::check(const Snapshot& snapshot, const geometry::Rectangle& roi) const {
   if (!snapshot.lens_error.empty()) throw std::invalid_argument(snapshot.lens_error);
+  trackerFor(snapshot).check(snapshot.image, roi);
+}
+
+std::optional<geometry::Rectangle> RegionDesk::propose(const Snapshot& snapshot, const geometry::Rectangle& roi) const {
+  if (!snapshot.lens_error.empty()) return std::nullopt;
+  return regionThatWouldDo(trackerFor(snapshot), snapshot.image, roi);
+}
+
+tracking::RegionTracker RegionDesk::trackerFor(const Snapshot& snapshot) const {
   tracking::RegionTracker tracker(parameters_.tracking);
   if (snapshot.lens) tracker.setLens(*snapshot.lens);
-  tracker.check(snapshot.image, roi);
+  return tracker;
 }
 
 RecallRoute RegionDesk::route(const ros::Time& stamp, const geometry::Rectangle& roi, const Snapshot& now) const {

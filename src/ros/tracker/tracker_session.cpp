@@ -7,6 +7,7 @@
 
 #include "laparoscope_servo/validation/error_report.h"
 #include "ros/tracker/image_conversion.h"
+#include "ros/tracker/region_proposal.h"
 
 namespace laparoscope_servo {
 
@@ -64,6 +65,7 @@ void TrackerSession::complete(Processed& processed, const std::optional<geometry
   processed.result = track(processed, request, new_reference);
   const tracking::TrackResult found = processed.result;
   watchPicture(processed);
+  judgeSelection(found, processed.result);
   before_ = found;
   if (had_roi && !tracker_.hasRoi()) ++epoch_;
   if (!tracker_.hasRoi() && recall_.due() == nullptr) recall_.end(processed.result.reason);
@@ -142,6 +144,8 @@ bool TrackerSession::takeDueView(double time) {
   recall_.taken();
   reference_ = Reference{step->view.image, step->view.roi, step->stamp};
   start_roi_pending_ = false;
+  trial_ends_.reset();
+  trial_failed_.clear();
   believed_stamp_.reset();
   reference_stamp_ = step->stamp;
   return recall_.first();
@@ -156,7 +160,7 @@ tracking::TrackResult TrackerSession::track(Processed& processed, const std::opt
   } else if (request || from_parameters) {
     try {
       const auto result = tracker_.select(processed.image, time_, request ? *request : *parameters_.roi);
-      start_roi_pending_ = false;
+      start_roi_pending_ = start_roi_refused_ = false;
       recall_.end("a region was selected");
       ++epoch_;
       new_reference = true;
@@ -164,6 +168,10 @@ tracking::TrackResult TrackerSession::track(Processed& processed, const std::opt
     } catch (const std::invalid_argument& error) {
       // The parameters' ROI stays pending: the first images of a camera may be black.
       processed.selection_error = error.what();
+      const geometry::Rectangle& wanted = request ? *request : *parameters_.roi;
+      if (request || !start_roi_refused_)
+        processed.selection_error += proposalText(regionThatWouldDo(tracker_, processed.image, wanted));
+      if (from_parameters) start_roi_refused_ = true;
     }
   }
   const bool had_roi = tracker_.hasRoi();

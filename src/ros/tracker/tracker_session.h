@@ -111,6 +111,7 @@ class TrackerSession {
   void lookForReference(const std::string& why);
   geometry::Quadrilateral onSensor(geometry::Quadrilateral corners) const;
   void watchPicture(Processed& processed);
+  void judgeSelection(const tracking::TrackResult& found, tracking::TrackResult& result);
   std::string turnedTooFast(const tracking::TrackResult& result) const;
   tracking::TrackResult track(Processed& processed, const std::optional<geometry::Rectangle>& request,
                               bool& new_reference);
@@ -128,6 +129,9 @@ class TrackerSession {
   std::shared_ptr<const image::Lens> lens_;  // in force
   std::string lens_error_;                   // why the newest camera_info gives none, and nothing can be selected
   bool start_roi_pending_ = false;           // the parameters' ROI waits for its image
+  bool start_roi_refused_ = false;           // it was refused once
+  std::optional<double> trial_ends_;         // s, the tracker's time: until then a new region is on trial
+  std::string trial_failed_;                 // what is said of a region that did not pass; empty otherwise
   BitDepth depth_;
   ImageGate gate_;
   cv::Rect box_;  // px, of the image as it comes: about the region where it was tracked last

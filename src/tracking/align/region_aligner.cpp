@@ -11,6 +11,8 @@
 #include "tracking/align/detail.h"
 #include "tracking/align/shift_fit.h"
 #include "tracking/esm/covariance.h"
+#include "tracking/search/coarse_image.h"
+#include "tracking/selection/texture.h"
 
 namespace laparoscope_servo::tracking {
 
@@ -55,6 +57,7 @@ void RegionAligner::setReference(const cv::Mat& image, const geometry::Rectangle
   const cv::Rect box = image::seenBox(lens_.get(), roi.corners(), 0.0) & cv::Rect(cv::Point(0, 0), image.size());
   channels_ = chosenChannels(config_.channels, image(box), config_.saturation);
   const cv::Rect with_border = image::seenBox(lens_.get(), roi.corners(), kBorder * (1 << config_.levels));
+  noise_ = noiseOf(cv::Mat1f(oneChannel(image(box), channels_.weights[0])));
   pyramid_.build(image, with_border, config_.levels, channels_);
   esm_.setReference(pyramid_, roi);
   blocks_.setReference(pyramid_, roi);
@@ -63,6 +66,16 @@ void RegionAligner::setReference(const cv::Mat& image, const geometry::Rectangle
   gates_.setReference(patch_, cv::Size(static_cast<int>(roi.width), static_cast<int>(roi.height)),
                       coloursIn(channels_));
   esm_.setWeights(weights());
+}
+
+ReferenceTexture RegionAligner::referenceTexture() {
+  const cv::Mat1f plane = esm_.level(0).planes[0].value.view();
+  ReferenceTexture result;
+  result.noise = std::max(kTypicalNoise, image::kNoiseLeft * noise_);
+  esm_.setWeights(weights().mul(textureShare(plane, image::kNoiseGradient * noise_ * noise_)));
+  result.corner_error = esm_.referenceCornerError(result.noise);
+  esm_.setWeights(weights());
+  return result;
 }
 
 // Samples the image for the gates where `g` puts the ROI.

@@ -29,6 +29,12 @@ struct Alignment {
   BlockEvidence blocks;
 };
 
+struct ReferenceTexture {
+  double noise = 0.0;         // grey levels, of the finest level: the image's own, or kTypicalNoise where that is more
+  double corner_error = 0.0;  // px, that this noise causes; infinite where the texture does not determine the motion
+};
+constexpr double kTypicalNoise = 2.0;  // grey levels, of a laparoscope's camera, as the finest level shows it
+
 class RegionAligner {
  public:
   // With a lens images are raw; the ROI and homographies are in rectified pixels.
@@ -56,8 +62,8 @@ class RegionAligner {
   // Of an image of `size`: 255 where a pixel of the ROI, seen there at `g`, is taken for occluded, 0 elsewhere.
   cv::Mat occlusionMask(const Eigen::Matrix3d& g, const cv::Size& size) const;
 
-  // See Esm::referenceCornerError.
-  double referenceCornerError(double sigma) { return esm_.referenceCornerError(sigma); }
+  // What the reference's texture, beyond its noise, determines.
+  ReferenceTexture referenceTexture();
 
   const Esm& esm() const { return esm_; }
   const OcclusionGates& gates() const { return gates_; }
@@ -87,6 +93,7 @@ class RegionAligner {
   image::Channels channels_ = image::kLuma;
   image::ColourPatch patch_;
   Eigen::Matrix3d shown_ = Eigen::Matrix3d::Identity();  // the homography at which the colour gate was last evaluated
+  double noise_ = 0.0;                                   // grey levels, of the reference image
   double surprise_ = 0.0;  // px, by how much a corner was off the prediction in the last image
 };
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <opencv2/core.hpp>
 #include <stdexcept>
 
@@ -61,6 +62,24 @@ TEST(RegionPyramid, RefusesWhatItCannotBuild) {
   EXPECT_THROW(pyramid.build(image, cv::Rect(50, 0, 10, 10), 2, kLuma), std::invalid_argument);
   EXPECT_THROW(pyramid.build(image, cv::Rect(0, 0, 10, 10), 0, kLuma), std::invalid_argument);
   EXPECT_THROW(pyramid.build(cv::Mat(30, 40, CV_32FC1), cv::Rect(0, 0, 10, 10), 1, kLuma), std::invalid_argument);
+}
+
+TEST(RegionPyramid, LeavesOfNoiseWhatItSaysItLeaves) {
+  cv::Mat1b noise(400, 400);
+  cv::RNG(5).fill(noise, cv::RNG::NORMAL, 128.0, 10.0);
+  RegionPyramid pyramid;
+  pyramid.build(noise, cv::Rect(0, 0, 400, 400), 1, kLuma);
+  const cv::Mat1f level = pyramid.level(0);
+  cv::Scalar mean, deviation;
+  cv::meanStdDev(level, mean, deviation);
+  EXPECT_NEAR(deviation[0], 10.0 * kNoiseLeft, 0.1);
+  double square = 0.0;
+  for (int j = 1; j < 399; ++j) {
+    for (int i = 1; i < 399; ++i)
+      square += std::pow(0.5 * (level(j, i + 1) - level(j, i - 1)), 2) +
+                std::pow(0.5 * (level(j + 1, i) - level(j - 1, i)), 2);
+  }
+  EXPECT_NEAR(square / (398.0 * 398.0), 100.0 * kNoiseGradient, 0.5);
 }
 
 }  // namespace

@@ -214,5 +214,32 @@ TEST_F(RegionTrackerTest, ThePublishedDetectorHoldsAStillTargetBehindAMovingShee
   EXPECT_GT(lost_without, 0);
 }
 
+TEST_F(RegionTrackerTest, ProposesARegionThatItTakesWhereOneIsRefused) {
+  cv::Mat image(kSize, CV_8UC3, cv::Scalar(70, 80, 150));
+  const cv::Rect textured(200, 60, 120, 120);
+  scene_(textured).copyTo(image(textured));
+  const geometry::Rectangle smooth = {90, 80, 80, 80};
+  EXPECT_THROW(tracker_.select(image, 0.0, smooth), std::invalid_argument);
+  const auto proposal = tracker_.propose(image, smooth);
+  ASSERT_TRUE(proposal);
+  EXPECT_NO_THROW(tracker_.check(image, *proposal));
+  EXPECT_FALSE(tracker_.hasRoi());
+  EXPECT_EQ(tracker_.select(image, 0.0, *proposal).state, State::kTracking);
+}
+
+TEST_F(RegionTrackerTest, ProposesALargerRegionForOneThatIsTooSmall) {
+  const auto proposal = tracker_.propose(scene_, {100, 100, 4, 4});
+  ASSERT_TRUE(proposal);
+  EXPECT_GE(proposal->width, tracker_.config().min_roi_side);
+  EXPECT_NO_THROW(tracker_.check(scene_, *proposal));
+}
+
+TEST_F(RegionTrackerTest, ProposesNothingWithoutARegionOrAnImage) {
+  EXPECT_THROW(tracker_.propose(cv::Mat(), kRoi), std::invalid_argument);
+  EXPECT_THROW(tracker_.propose(scene_, {10, 10, 0, 50}), std::invalid_argument);
+  EXPECT_THROW(tracker_.propose(scene_, {std::nan(""), 10, 50, 50}), std::invalid_argument);
+  EXPECT_FALSE(tracker_.propose(cv::Mat(kSize, CV_8UC3, cv::Scalar(70, 80, 150)), kRoi));
+}
+
 }  // namespace
 }  // namespace laparoscope_servo::tracking

@@ -110,5 +110,33 @@ TEST(CheckedCornerError, IsLargerTheLessTextureThereIs) {
   }
 }
 
+// Noise has gradients, too, and by them a smooth region in a noisy image would be as good as any.
+TEST(CheckedCornerError, DoesNotTakeNoiseForTexture) {
+  const geometry::Rectangle roi = {40, 30, 80, 80};
+  for (const double sigma : {2.0, 5.0, 10.0}) {
+    RegionAligner noisy{TrackerConfig()};
+    const cv::Mat flat(140, 160, CV_8UC3, cv::Scalar(90, 90, 90));
+    noisy.setReference(test::view(flat, Eigen::Matrix3d::Identity(), 1.0, 0.0, sigma, 7), roi);
+    EXPECT_THROW(checkedCornerError(noisy, 10.0), std::invalid_argument) << sigma;
+  }
+}
+
+TEST(CheckedCornerError, IsThatOfTheImagesOwnNoiseWhereThatIsMoreThanUsual) {
+  const geometry::Rectangle roi = {40, 30, 80, 80};
+  const cv::Mat scene = test::tissue(cv::Size(160, 140), 5);
+  RegionAligner clean{TrackerConfig()}, noisy{TrackerConfig()};
+  clean.setReference(scene, roi);
+  noisy.setReference(test::view(scene, Eigen::Matrix3d::Identity(), 1.0, 0.0, 20.0, 7), roi);
+  const double clean_error = checkedCornerError(clean, 100.0);
+  const double noisy_error = checkedCornerError(noisy, 100.0);
+  EXPECT_GT(noisy_error, 2.0 * clean_error);
+  try {
+    checkedCornerError(noisy, 0.5 * noisy_error);
+    FAIL() << "the limit was not kept";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_EQ(std::string(error.what()).find(" 2 grey levels"), std::string::npos) << error.what();
+  }
+}
+
 }  // namespace
 }  // namespace laparoscope_servo::tracking

@@ -73,5 +73,17 @@ TEST_F(RegionDeskTest, TheRegionIsCutFromThatVeryImage) {
             std::string::npos);
 }
 
+TEST_F(RegionDeskTest, ProposesARegionThatWouldBeTaken) {
+  auto now = snapshot(1.0);
+  now->image(cv::Rect(0, 0, 160, 240)).setTo(cv::Scalar(70, 80, 150));
+  const geometry::Rectangle smooth = {60, 75, 80, 80};
+  EXPECT_NE(whyNot([&] { desk_.check(*now, smooth); }), "");
+  const auto proposal = desk_.propose(*now, smooth);
+  ASSERT_TRUE(proposal);
+  EXPECT_EQ(whyNot([&] { desk_.check(*now, *proposal); }), "");
+  now->lens_error = "images cannot be rectified: no camera_info";
+  EXPECT_FALSE(desk_.propose(*now, smooth));
+}
+
 }  // namespace
 }  // namespace laparoscope_servo

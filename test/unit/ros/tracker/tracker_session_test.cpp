@@ -189,5 +189,59 @@ TEST_F(TrackerSessionTest, RefusesParametersOutOfRange) {
   EXPECT_THROW(TrackerSession{parameters}, std::invalid_argument);
 }
 
+TEST_F(TrackerSessionTest, SaysWhatWouldDoWhereARegionIsRefused) {
+  cv::Mat image(kSize, CV_8UC3, cv::Scalar(70, 80, 150));
+  const cv::Rect textured(160, 60, 120, 120);
+  image_(textured).copyTo(image(textured));
+  TrackerSession session{TrackerParameters()};
+  const std::string error = session.process(image, at(1.0), geometry::Rectangle{70, 80, 70, 70}).selection_error;
+  EXPECT_NE(error.find("too little texture"), std::string::npos) << error;
+  EXPECT_NE(error.find(" would do"), std::string::npos) << error;
+}
+
+// The first second is a region's trial.
+TEST_F(TrackerSessionTest, SaysThatARegionWasNotHeldInItsFirstSecondUntilItIsTracked) {
+  const cv::Mat other = test_support::view(test_support::texture(cv::Size(400, 300)), Eigen::Matrix3d::Identity());
+  const cv::Mat elsewhere = other(cv::Rect(cv::Point(70, 50), kSize));
+  TrackerSession session(withRoi());
+  session.process(picture(), at(1.0));
+  cv::Mat grain(kSize, CV_8UC3);
+  std::string early, late;
+  for (int k = 1; k <= 40; ++k) {
+    random_.fill(grain, cv::RNG::UNIFORM, 0, 2);
+    const Processed processed = session.process(grain + elsewhere, at(1.0 + 0.04 * k));
+    ASSERT_NE(processed.result.state, State::kTracking) << k;
+    (k < 25 ? early : late) = processed.result.reason;
+  }
+  const std::string said = "it was not held in its first second";
+  EXPECT_EQ(early.find(said), std::string::npos) << early;
+  EXPECT_NE(late.find(said), std::string::npos) << late;
+  Processed processed;
+  for (int k = 41; k <= 80 && processed.result.state != State::kTracking; ++k)
+    processed = session.process(picture(), at(1.0 + 0.04 * k));
+  EXPECT_EQ(processed.result.state, State::kTracking);
+  EXPECT_EQ(processed.result.reason, "");
+  for (int k = 81; k <= 90; ++k) processed = session.process(grain + elsewhere, at(1.0 + 0.04 * k));
+  EXPECT_NE(processed.result.state, State::kTracking);
+  EXPECT_EQ(processed.result.reason.find(said), std::string::npos) << processed.result.reason;
+}
+
+TEST_F(TrackerSessionTest, SaysNothingOfARegionThatWasHeldOrIsCovered) {
+  TrackerSession session(withRoi());
+  for (int k = 0; k <= 30; ++k) session.process(picture(), at(1.0 + 0.04 * k));
+  TrackerSession covered(withRoi());
+  covered.process(picture(), at(1.0));
+  const cv::Mat blue(kSize, CV_8UC3, cv::Scalar(200, 60, 30));
+  cv::Mat grain(kSize, CV_8UC3);
+  for (int k = 1; k <= 30; ++k) {
+    random_.fill(grain, cv::RNG::UNIFORM, 0, 2);
+    const double stamp = 0.04 * k;
+    const Processed lost = session.process(grain + blue, at(2.2 + stamp));
+    EXPECT_EQ(lost.result.reason.find("first second"), std::string::npos) << lost.result.reason;
+    const Processed hidden = covered.process(grain + blue, at(1.0 + stamp));
+    EXPECT_EQ(hidden.result.reason.find("first second"), std::string::npos) << hidden.result.reason;
+  }
+}
+
 }  // namespace
 }  // namespace laparoscope_servo

@@ -1,0 +1,108 @@
+#include "tracking/selection/proposal.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <vector>
+
+#include "tracking/search/coarse_image.h"
+
+namespace laparoscope_servo::tracking {
+
+namespace {
+
+constexpr int kMostPixels = 250000;  // of the coarse image: texture of 2 px of a 1080p image still shows
+constexpr int kSaturated = 250;      // grey levels
+constexpr std::array<double, 4> kScales = {1.0, 1.25, 1.6, 2.0};
+constexpr double kFurthest = 1.5;  // sides of the region, a shift
+constexpr int kShifts = 6;         // of a side, in each direction
+constexpr int kMostAsked = 5;
+constexpr double kMoreTexture = 2.0;  // of what was not enough, is looked for next
+
+struct Candidate {
+  geometry::Rectangle roi;
+  double difference;  // from what was wanted: its shift in sides of the region, and how often it is doubled
+  double texture;
+};
+
+// Sums of products of the gradient over any box.
+class Texture {
+ public:
+  Texture(const cv::Mat& image, const image::Lens* lens) : lens_(lens) {
+    const CoarseImage coarse = coarseImage(image, coarseScale(image.size(), kMostPixels), image::kLuma, kSaturated);
+    scale_ = coarse.scale;
+    cv::Mat1f dx, dy;
+    cv::Sobel(coarse.grey, dx, CV_32F, 1, 0, 1, 0.5);
+    cv::Sobel(coarse.grey, dy, CV_32F, 0, 1, 1, 0.5);
+    dx.setTo(0.0f, coarse.usable == 0);
+    dy.setTo(0.0f, coarse.usable == 0);
+    cv::integral(dx.mul(dx), xx_, CV_64F);
+    cv::integral(dx.mul(dy), xy_, CV_64F);
+    cv::integral(dy.mul(dy), yy_, CV_64F);
+  }
+
+  // In the direction in which there is least; 0 outside the image.
+  double in(const geometry::Rectangle& roi) const {
+    const cv::Rect seen = image::seenBox(lens_, roi.corners(), 0.0);
+    const cv::Rect coarse(cv::Point(seen.x / scale_, seen.y / scale_),
+                          cv::Point((seen.x + seen.width) / scale_, (seen.y + seen.height) / scale_));
+    const cv::Rect box = coarse & cv::Rect(0, 0, xx_.cols - 1, xx_.rows - 1);
+    const double xx = sum(xx_, box), xy = sum(xy_, box), yy = sum(yy_, box);
+    return 0.5 * (xx + yy - std::hypot(xx - yy, 2.0 * xy));
+  }
+
+ private:
+  static double sum(const cv::Mat1d& integral, const cv::Rect& box) {
+    return integral(box.br()) - integral(box.y, box.x + box.width) - integral(box.y + box.height, box.x) +
+           integral(box.tl());
+  }
+
+  const image::Lens* lens_;
+  int scale_ = 1;
+  cv::Mat1d xx_, xy_, yy_;
+};
+
+std::vector<Candidate> candidates(const geometry::Rectangle& wanted, const cv::Rect& whole, const Texture& texture) {
+  std::vector<Candidate> found;
+  for (const double scale : kScales) {
+    for (int i = -kShifts; i <= kShifts; ++i) {
+      for (int j = -kShifts; j <= kShifts; ++j) {
+        const double right = kFurthest * i / kShifts, down = kFurthest * j / kShifts;  // sides
+        geometry::Rectangle roi;
+        roi.width = std::floor(scale * wanted.width);
+        roi.height = std::floor(scale * wanted.height);
+        roi.x = std::floor(wanted.x + right * wanted.width - 0.5 * (roi.width - wanted.width));
+        roi.y = std::floor(wanted.y + down * wanted.height - 0.5 * (roi.height - wanted.height));
+        if (!(roi.x >= whole.x && roi.y >= whole.y && roi.x + roi.width <= whole.br().x &&
+              roi.y + roi.height <= whole.br().y))
+          continue;
+        found.push_back({roi, std::hypot(right, down) + std::log2(scale), texture.in(roi)});
+      }
+    }
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.difference < b.difference; });
+  return found;
+}
+
+}  // namespace
+
+std::optional<geometry::Rectangle> proposeRegion(const cv::Mat& image, const geometry::Rectangle& wanted,
+                                                 const image::Lens* lens,
+                                                 const std::function<bool(const geometry::Rectangle&)>& would_do) {
+  const cv::Rect whole =
+      lens != nullptr ? image::rectifiedBox(*lens, image.size()) : cv::Rect(cv::Point(0, 0), image.size());
+  const Texture texture(image, lens);
+  double too_little = texture.in(wanted);
+  int asked = 0;
+  for (const Candidate& candidate : candidates(wanted, whole, texture)) {
+    if (!(candidate.texture > kMoreTexture * too_little)) continue;
+    if (would_do(candidate.roi)) return candidate.roi;
+    if (++asked == kMostAsked) break;
+    too_little = candidate.texture;
+  }
+  return std::nullopt;
+}
+
+}  // namespace laparoscope_servo::tracking

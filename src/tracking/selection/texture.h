@@ -1,0 +1,17 @@
+// How much of what an image shows is texture, and how much is the camera's noise.
+#pragma once
+
+#include <opencv2/core.hpp>
+
+namespace laparoscope_servo::tracking {
+
+// Standard deviation [grey levels] of the noise of a plane: white noise is estimated in blocks, by a filter that takes
+// out what is linear or a saddle (Immerkaer 1996), and the lower quartile of the blocks counts, as texture adds to it.
+// 0 for a plane of less than 3 pixels in a direction.
+double noiseOf(const cv::Mat1f& plane);
+
+// Per pixel, 0 to 1: which share of the mean square of the gradient around it, both directions together, is more than
+// noise has by chance. `noise`: what noise has on average [grey levels^2].
+cv::Mat1f textureShare(const cv::Mat1f& plane, double noise);
+
+}  // namespace laparoscope_servo::tracking
