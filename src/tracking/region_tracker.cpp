@@ -151,8 +151,8 @@ TrackResult RegionTracker::Implementation::select(const cv::Mat& image, double s
   Attempt attempt;
   attempt.evidence.roi = roi;
   attempt.evidence.esm.status = EsmStatus::kConverged;
-  attempt.evidence.esm.corner_error = error;
-  attempt.evidence.esm.centre_error = error;  // it is not known worse than the worst corner
+  attempt.evidence.corner_error = error;
+  attempt.evidence.centre_error = error;  // it is not known worse than the worst corner
   attempt.evidence.visible_fraction = cv::sum(aligner_.weights())[0] / roi.width / roi.height;
   attempt.evidence.zncc = 1.0;
   TrackResult result = report(attempt);
@@ -248,6 +248,8 @@ Attempt RegionTracker::Implementation::attempt(const cv::Mat& image, double stam
   e.in_image = found.share_in_image;
   e.zncc = found.zncc;
   e.blocks = found.blocks;
+  e.corner_error = found.corner_error;
+  e.centre_error = found.centre_error;
   e.unproven = stamp - proven_stamp_;
   result.doubt = found.in_image ? doubt(e, config_.quality) : "the ROI is outside the image";
   return result;
@@ -309,8 +311,8 @@ const TrackResult& RegionTracker::Implementation::report(const Attempt& attempt)
   result.visible_fraction = attempt.evidence.visible_fraction;
   result.zncc = attempt.evidence.zncc;
   result.iterations = attempt.evidence.esm.iterations;
-  result.corner_error = attempt.evidence.esm.corner_error;
-  result.centre_error = attempt.evidence.esm.centre_error;
+  result.corner_error = attempt.evidence.corner_error;
+  result.centre_error = attempt.evidence.centre_error;
   result.sigma = attempt.evidence.esm.sigma;
   result.motion_used = carried_ && attempt.doubt.empty();
   result.gain = attempt.evidence.esm.state.gain;

@@ -6,6 +6,7 @@
 #include "laparoscope_servo/geometry/homography.h"
 #include "laparoscope_servo/tracking/tracker_config.h"
 #include "tracking/esm/esm.h"
+#include "tracking/esm/normal_equations.h"
 
 namespace laparoscope_servo::tracking {
 
@@ -38,9 +39,11 @@ struct BlockEvidence {
   int confident = 0;  // of which the place is known
   double off = 0.0;   // px of the image, their median distance from where the estimate has them; NaN without any
   int visible = 0;    // of those seen, that nothing covers
+  Matrix8d deformation = Matrix8d::Zero();  // see deformationCovariance
 };
 
-// lengthUnit()s of the image: where the median of the blocks is off by more, the estimate is wrong, as it is from 5 px on.
+// lengthUnit()s of the image: where the median of the blocks is off by more, the estimate is wrong, as it is from 5 px
+// on.
 constexpr double kMostOff = 4.0;
 
 // How many blocks have to be found for an estimate; 0 where there are too few to tell.
@@ -58,7 +61,9 @@ struct Evidence {
   double in_image = 1.0;          // 0 to 1, share of the ROI that lies in the image
   double zncc = 0.0;              // over the pixels used, the means of the areas taken out
   BlockEvidence blocks;
-  double unproven = 0.0;  // s, since as many blocks as it takes were last found
+  double corner_error = 0.0;  // px, that is claimed: ESM's, and what the tissue deforms by
+  double centre_error = 0.0;  // px
+  double unproven = 0.0;      // s, since as many blocks as it takes were last found
   TrackRecord record;
 };
 

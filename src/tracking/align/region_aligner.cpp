@@ -148,6 +148,11 @@ Alignment RegionAligner::align(const cv::Mat& image, const EsmState& start, cons
     correct(result.esm, result.blocks);
     lookFurther(result.esm, result.blocks);
   }
+  const Matrix8d covariance = result.esm.covariance + result.blocks.deformation;
+  result.corner_error = std::isfinite(result.esm.corner_error) ? cornerError(result.esm.state.g, roi(), covariance)
+                                                               : result.esm.corner_error;
+  result.centre_error = std::isfinite(result.esm.centre_error) ? centreError(result.esm.state.g, roi(), covariance)
+                                                               : result.esm.centre_error;
   return result;
 }
 
@@ -192,6 +197,7 @@ void RegionAligner::correct(EsmResult& estimate, BlockEvidence& evidence) {
     shifts = &measure(estimate, evidence);
   }
   evidence.visible = visibleBlocks(*shifts);
+  evidence.deformation = deformationCovariance(*shifts, evidence.off, roi());
 }
 
 // A part of the region that stands still (a reflection, a fold) holds ESM there, while the rest has moved further than

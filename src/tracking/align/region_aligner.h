@@ -27,6 +27,10 @@ struct Alignment {
   double share_in_image = 1.0;    // 0 to 1, of the ROI's pixels
   double zncc = 0.0;              // see OcclusionGates::correlation
   BlockEvidence blocks;
+  // px, standard deviations that are claimed: with what the tissue deforms by, which residuals do not show, as ESM has
+  // followed it.
+  double corner_error = 0.0;
+  double centre_error = 0.0;
 };
 
 struct ReferenceTexture {

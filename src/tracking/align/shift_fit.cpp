@@ -20,6 +20,17 @@ constexpr double kPlace = 0.15;  // px, how well a block's place is measured at 
 // keep shear and perspective small unless the blocks determine them.
 constexpr double kShift = 0.08, kAffine = 0.04, kPerspective = 0.024;
 
+// Pieces of the region that deform independently of each other: a third of it along each side. Corners on the same five
+// films with noise of 1 and 3 grey levels and without then differ by 0.2 to 1.1 times what is claimed, in single images
+// by up to 4.5; with 36 pieces by 0.25 to 1.2 and 5.1; where nothing of this is claimed by 1.3 and 6.7 on one film.
+constexpr double kPieces = 9.0;
+
+Matrix8d knownBefore() {
+  geometry::Vector8d spread;
+  spread << kShift, kShift, kAffine, kAffine, kAffine, kAffine, kPerspective, kPerspective;
+  return spread.cwiseAbs2().cwiseInverse().asDiagonal();
+}
+
 template <typename Value>
 using OfBlocks = boost::container::static_vector<Value, BlockMatching::kMostBlocks>;  // does not allocate
 
@@ -44,6 +55,22 @@ double medianShift(const std::vector<BlockShift>& shifts, const Eigen::Matrix3d&
   return lengths.empty() ? std::numeric_limits<double>::quiet_NaN() : robust::median(lengths);
 }
 
+Matrix8d deformationCovariance(const std::vector<BlockShift>& shifts, double median, const geometry::Rectangle& roi) {
+  const double deviation = median / robust::kRayleighMedian;  // in each direction
+  const int count = confidentShifts(shifts);
+  if (!(deviation > kPlace) || count < static_cast<int>(kFew)) return Matrix8d::Zero();
+  const double variance = (deviation * deviation - kPlace * kPlace) / std::pow(halfSize(roi), 2);
+  const double alike = std::max(1.0, static_cast<double>(shifts.size()) / kPieces);  // blocks of one piece
+  const Eigen::Matrix3d n = templateFromPixels(roi);
+  Matrix8d a = knownBefore();
+  for (const BlockShift& s : shifts) {
+    if (!s.confident) continue;
+    const Eigen::Matrix<double, 2, 8> j = pointJacobian(geometry::apply(n, s.centre));
+    a += j.transpose() * j / (alike * variance);
+  }
+  return a.ldlt().solve(Matrix8d::Identity());
+}
+
 std::optional<ShiftFit> fitShifts(const std::vector<BlockShift>& shifts, const geometry::Rectangle& roi, double side) {
   const Eigen::Matrix3d n = templateFromPixels(roi);
   const double unit = halfSize(roi);
@@ -52,9 +79,7 @@ std::optional<ShiftFit> fitShifts(const std::vector<BlockShift>& shifts, const g
     if (s.confident) rows.push_back({pointJacobian(geometry::apply(n, s.centre)), s.shift / unit, s.correlation});
   }
   if (rows.size() < kFew) return std::nullopt;
-  geometry::Vector8d spread;
-  spread << kShift, kShift, kAffine, kAffine, kAffine, kAffine, kPerspective, kPerspective;
-  const Matrix8d known = spread.cwiseAbs2().cwiseInverse().asDiagonal();
+  const Matrix8d known = knownBefore();
   // Blocks overlap, so their shifts are not independent: each counts for the share of its area that is its own.
   const double overlap = std::max(1.0, static_cast<double>(rows.size()) * side * side / (roi.width * roi.height));
   ShiftFit result;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <random>
 
+#include "tracking/esm/covariance.h"
+
 namespace laparoscope_servo::tracking {
 namespace {
 
@@ -117,6 +119,34 @@ TEST(MedianShift, IsInPixelsOfTheImageAndNanWithoutAny) {
   EXPECT_NEAR(medianShift(shifts, Eigen::Matrix3d::Identity()), 3.0, 1e-9);
   EXPECT_NEAR(medianShift(shifts, Eigen::Vector3d(2.0, 2.0, 1.0).asDiagonal()), 6.0, 1e-9);
   EXPECT_TRUE(std::isnan(medianShift({}, Eigen::Matrix3d::Identity())));
+}
+
+double cornersBy(const Matrix8d& covariance) {
+  return cornerError(Eigen::Matrix3d::Identity(), kRoi, covariance);
+}
+
+TEST(DeformationCovariance, IsZeroWhereBlocksAreOffByNoMoreThanTheyAreMeasured) {
+  const auto shifts = shiftsOf(geometry::Vector8d::Zero(), 0.1);
+  EXPECT_TRUE(deformationCovariance(shifts, 0.15, kRoi).isZero());
+  EXPECT_TRUE(deformationCovariance(shifts, std::nan(""), kRoi).isZero());
+  EXPECT_TRUE(deformationCovariance({}, 2.0, kRoi).isZero());
+}
+
+TEST(DeformationCovariance, GrowsWithWhatBlocksAreOffBy) {
+  const auto shifts = shiftsOf(geometry::Vector8d::Zero(), 0.1);
+  const double little = cornersBy(deformationCovariance(shifts, 0.5, kRoi));
+  const double much = cornersBy(deformationCovariance(shifts, 1.5, kRoi));
+  EXPECT_GT(little, 0.2);
+  EXPECT_GT(much, 2.0 * little);
+}
+
+TEST(DeformationCovariance, IsLargerFarFromTheBlocksThatAreFound) {
+  auto shifts = shiftsOf(geometry::Vector8d::Zero(), 0.1);
+  const double all = cornersBy(deformationCovariance(shifts, 0.5, kRoi));
+  for (BlockShift& s : shifts) s.confident = s.centre.x() < kRoi.x + 0.5 * kRoi.width;
+  const Matrix8d half = deformationCovariance(shifts, 0.5, kRoi);
+  EXPECT_GT(cornersBy(half), 1.5 * all);
+  EXPECT_LT(centreError(Eigen::Matrix3d::Identity(), kRoi, half), cornersBy(half));
 }
 
 }  // namespace
