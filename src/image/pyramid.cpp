@@ -11,7 +11,7 @@ namespace laparoscope_servo::image {
 
 namespace {
 
-constexpr float kSide = static_cast<float>(kSmoothSide);
+constexpr float kSide = 0.5f * 0.65f * 0.65f;  // kSmoothSide
 constexpr float kMiddle = 1.0f - 2.0f * kSide;
 
 constexpr int kPadding = 2;  // pixels on each side of a row that is halved

@@ -66,7 +66,8 @@ class RegionTracker::Implementation {
  private:
   double setReference(const cv::Mat& image, double stamp, const geometry::Rectangle& wanted);
   std::optional<Eigen::Matrix3d> carriedBy(const std::optional<Eigen::Matrix3d>& motion) const;
-  Attempt attempt(const cv::Mat& image, double stamp, const EsmState& start, const MotionPrior* prior);
+  Attempt attempt(const cv::Mat& image, double stamp, const EsmState& start, const MotionPrior* prior,
+                  bool confirming = false);
   Attempt search(const cv::Mat& image, double stamp);
   void decide(const Attempt& best, const MotionPrior& prior, double stamp);
   const Eigen::Matrix3d& shown() const;
@@ -229,7 +230,7 @@ std::optional<Eigen::Matrix3d> RegionTracker::Implementation::carriedBy(
 
 // With a prior when the ROI was tracked until the image before; without when it is searched for.
 Attempt RegionTracker::Implementation::attempt(const cv::Mat& image, double stamp, const EsmState& start,
-                                               const MotionPrior* prior) {
+                                               const MotionPrior* prior, bool confirming) {
   const geometry::Rectangle& roi = aligner_.roi();
   const double reach = prior != nullptr ? std::max(kLeastReach * lengthUnit(roi), kReach * record_.innovation())
                                         : std::max(32.0, kSearchReach * std::max(roi.width, roi.height));
@@ -239,6 +240,7 @@ Attempt RegionTracker::Implementation::attempt(const cv::Mat& image, double stam
   e.roi = roi;
   e.predicted = start.g;
   e.from_track = prior != nullptr;
+  e.confirming = confirming;
   e.last_gain = last_.gain;
   e.light_gain = aligner_.gates().lightGain();
   e.unseen = unseen_before_ + stamp - filter_.lastStamp();
@@ -259,7 +261,8 @@ Attempt RegionTracker::Implementation::search(const cv::Mat& image, double stamp
   search_.begin(last_, carried_);
   while (const std::optional<SearchPlace> place = search_.next(image, aligner_)) {
     aligner_.startAfresh();
-    if (search_.judge(attempt(image, stamp, place->start, nullptr), aligner_)) break;
+    const bool confirming = place->by == Suggestion::kConfirmation;
+    if (search_.judge(attempt(image, stamp, place->start, nullptr, confirming), aligner_)) break;
   }
   if (search_.suggestedBy() != Suggestion::kCarried) carried_.reset();
   return search_.best();

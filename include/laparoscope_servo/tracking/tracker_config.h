@@ -59,7 +59,7 @@ struct QualityConfig {
   double min_return_fraction = 0.3;   // the same to be believed again after a loss
   // px: standard deviations expected of the worst corner, where block matching does not say that it is the
   // ROI, and of the centre. The centre may be known where the corners are not: who needs them looks at corner_error.
-  double max_corner_error = 1.5;
+  double max_corner_error = 3.0;
   double max_centre_error = 2.5;
   double max_area_ratio = 6.0;   // area of the ROI in the image over that in the reference, or its inverse
   double max_jump = 0.35;        // of the ROI's diagonal: how far a corner may be from its prediction; less when

@@ -96,7 +96,7 @@ std::string doubt(const Evidence& e, const QualityConfig& q) {
   const BlockEvidence& blocks = e.blocks;
   const bool recognised =
       blocks.confident >= std::max<double>(kEnoughBlocks, kRecognised * blocks.seen) && blocks.off <= kNear * unit;
-  const double min_visible = e.from_track ? q.min_visible_fraction : q.min_return_fraction;
+  const double min_visible = e.from_track || e.confirming ? q.min_visible_fraction : q.min_return_fraction;
   if (!(e.visible_fraction >= min_visible))
     return text("visible fraction", e.visible_fraction, "at least", min_visible);
   const double of_image = e.visible_fraction / std::max(e.in_image, 1e-9);

@@ -54,6 +54,7 @@ struct Evidence {
   geometry::Rectangle roi;                                  // px, in the reference
   Eigen::Matrix3d predicted = Eigen::Matrix3d::Identity();  // G before ESM
   bool from_track = false;  // the prediction comes from the image before; false: from a search, which has to prove more
+  bool confirming = false;  // a search found it there in the image before, with as much visible as a return takes
   double last_gain = 1.0;   // of the last estimate that was believed
   double light_gain = 0.0;  // that the colours show, which says as much of the gain; 0 where they tell of none
   double unseen = 0.0;      // s, since the last estimate that was believed

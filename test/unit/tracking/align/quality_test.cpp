@@ -272,5 +272,19 @@ TEST(Doubt, AsksForBlocksThatNothingCoversAndForOthersAfterAWhile) {
   EXPECT_EQ(doubt(e, QualityConfig()), "") << "fewer than can tell";
 }
 
+// What was found with enough of it visible is confirmed by less: under light that flickers every second image shows
+// less.
+TEST(Doubt, ConfirmsWithAsMuchVisibleAsTrackingTakes) {
+  Evidence e = good();
+  e.from_track = false;
+  e.visible_fraction = 0.25;
+  e.blocks = {36, 9, 0.3, 9};
+  EXPECT_NE(doubt(e, QualityConfig()).find("visible fraction"), std::string::npos);
+  e.confirming = true;
+  EXPECT_EQ(doubt(e, QualityConfig()), "");
+  e.visible_fraction = 0.05;
+  EXPECT_NE(doubt(e, QualityConfig()).find("visible fraction"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace laparoscope_servo::tracking
