@@ -45,6 +45,7 @@ std::vector<std::string> validate(const DemoConfig& config) {
 
 DemoDirector::DemoDirector(ros::NodeHandle node, const DemoConfig& config)
     : config_(config),
+      steps_(demoSteps(config.hand_time, config.settled_time, config.cross_instrument)),
       node_(node),
       kinematics_(config.emulator.kinematics),
       settling_(config.settled_error, config.settled_scale, config.settled_time) {
@@ -63,6 +64,10 @@ DemoSummary DemoDirector::run() {
   }
   summary_.converged = summary_.reason.empty();
   return summary_;
+}
+
+void DemoDirector::announce(DemoStepIndex step) {
+  ROS_INFO("%s", announcement(steps_, step).c_str());
 }
 
 void DemoDirector::play() {
@@ -118,6 +123,7 @@ PoseError DemoDirector::truth() {
 }
 
 void DemoDirector::waitForNodes() {
+  announce(kDemoNodes);
   waitFor("the emulated arm at " + config_.control, config_.startup_timeout, [this] {
     try {
       emulator_ = std::make_unique<sim::EmulatorControlClient>(config_.control);
@@ -136,6 +142,7 @@ void DemoDirector::waitForNodes() {
 }
 
 void DemoDirector::selectRoi() {
+  announce(kDemoSelect);
   roi_.width = roi_.height = std::floor(config_.roi_side);
   roi_.x = std::max(0.0, std::floor((camera_info_->width - roi_.width) / 2.0));
   roi_.y = std::max(0.0, std::floor((camera_info_->height - roi_.height) / 2.0));
@@ -152,7 +159,7 @@ void DemoDirector::selectRoi() {
 }
 
 void DemoDirector::moveByHand() {
-  ROS_INFO("moving the scope by hand");
+  announce(kDemoHand);
   // Tilt is a turn about x, which takes the optical axis up.
   emulator_->hand({config_.pan, config_.tilt, config_.spin, config_.deeper}, config_.hand_time);
   const double end = steadyNow() + config_.hand_time + 0.5;
@@ -164,6 +171,7 @@ void DemoDirector::moveByHand() {
 }
 
 void DemoDirector::closeLoop() {
+  announce(kDemoLoop);
   call(node_.resolveName("aesop/enable"), std_srvs::Trigger());
   waitFor("aesop/operating_state ENABLED", 5.0, [this] { return operating_state_ == "ENABLED"; });
   std_srvs::SetBool engage;
@@ -181,6 +189,7 @@ void DemoDirector::closeLoop() {
 }
 
 void DemoDirector::crossInstrument() {
+  announce(kDemoInstrument);
   call(node_.resolveName("simulated_camera/cross_instrument"), std_srvs::Trigger());
   summary_.crossed = true;
   crossing_ = true;
