@@ -13,6 +13,10 @@
 
 namespace laparoscope_servo {
 
+namespace {
+constexpr double kPatience = 10.0;  // s
+}
+
 void describeDirector(parameters::Table& table, DemoConfig& c) {
   table.text("control", c.control, "path of the emulator's control socket").required("/tmp/aesop_control");
   table.text("summary", c.summary, "JSON file to write; empty: none");
@@ -91,9 +95,16 @@ void DemoDirector::waitFor(const std::string& what, double timeout, const std::f
   }
 }
 
+// A busy machine makes the nodes refuse for a moment: an image or a status is late.
 template <typename Service>
-void DemoDirector::call(const std::string& name, Service service) {
-  if (!ros::service::call(name, service)) throw Failed("the service " + name + " cannot be called");
+void DemoDirector::call(const std::string& name, Service service, double patience) {
+  const double last_try = steadyNow() + patience;
+  bool answered = false;
+  waitFor("an answer of " + name, patience + 5.0, [&] {
+    answered = ros::service::call(name, service);
+    return (answered && service.response.success) || steadyNow() > last_try;
+  });
+  if (!answered) throw Failed("the service " + name + " cannot be called");
   if (!service.response.success) throw Failed("the service " + name + " refused: " + service.response.message);
   ROS_INFO("%s: %s", name.c_str(), service.response.message.c_str());
 }
@@ -172,16 +183,12 @@ void DemoDirector::moveByHand() {
 
 void DemoDirector::closeLoop() {
   announce(kDemoLoop);
-  call(node_.resolveName("aesop/enable"), std_srvs::Trigger());
+  call(node_.resolveName("aesop/enable"), std_srvs::Trigger(), kPatience);
   waitFor("aesop/operating_state ENABLED", 5.0, [this] { return operating_state_ == "ENABLED"; });
   std_srvs::SetBool engage;
   engage.request.data = static_cast<std::uint8_t>(true);
   // The controller may hear of ENABLED a moment later.
-  const std::string service = node_.resolveName("controller/engage");
-  const double last_try = steadyNow() + 2.0;
-  waitFor("an answer of " + service, 5.0,
-          [&] { return (ros::service::call(service, engage) && engage.response.success) || steadyNow() > last_try; });
-  if (!engage.response.success) throw Failed("the service " + service + " refused: " + engage.response.message);
+  call(node_.resolveName("controller/engage"), engage, kPatience);
   const double begin = steadyNow();
   waitFor("convergence", config_.timeout, [this] { return settling_.settled(); });
   summary_.settling_time = std::max(0.0, settling_.since() - begin);

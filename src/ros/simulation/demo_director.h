@@ -80,8 +80,9 @@ class DemoDirector {
   void onHomography(const Homography& message);
   Eigen::Isometry3d truePose();
   PoseError truth();
+  // Once more while it is refused, for `patience` s.
   template <typename Service>
-  void call(const std::string& name, Service service);
+  void call(const std::string& name, Service service, double patience = 0.0);
 
   DemoConfig config_;
   std::vector<DemoStep> steps_;
