@@ -1,7 +1,7 @@
-// A camera of 1080p60 and the tracker's nodelet in one manager: what a screen beside them costs the tracker. Run by
+// A camera of 1080p and the tracker's nodelet in one manager: what a screen beside them costs the tracker. Run by
 // scripts/measure_screen; no test.
 //
-//   screen_load SECONDS FRAMES.csv
+//   screen_load SECONDS FRAMES.csv [RATE]     60 images a second where nothing is said
 //
 // Every image is stamped when it is published. Two bands at its top tell its number by their grey, for who looks at the
 // screen. FRAMES.csv: number, stamp [s], delay to the homography [s; empty: none], of that the processing [s], state.
@@ -27,9 +27,8 @@ namespace {
 
 const cv::Size kSize(1920, 1080);
 constexpr int kImages =
-    120;  // made before, a closed walk of which no two are alike: a picture that repeats is no picture
-constexpr double kRate = 60.0;
-constexpr int kBand = 60;    // px
+    120;                   // made before, a closed walk of which no two are alike: a picture that repeats is no picture
+constexpr int kBand = 60;  // px
 constexpr int kLevels = 12;  // 144 numbers, 2.4 s
 
 struct Frame {
@@ -63,10 +62,11 @@ void writeNumber(cv::Mat& image, int number) {
 int main(int argc, char** argv) {
   ros::init(argc, argv, "screen_load");
   if (argc < 3) {
-    std::fprintf(stderr, "screen_load SECONDS FRAMES.csv\n");
+    std::fprintf(stderr, "screen_load SECONDS FRAMES.csv [RATE]\n");
     return 2;
   }
-  const int count = static_cast<int>(std::stod(argv[1]) * kRate);
+  const double rate = argc > 3 ? std::stod(argv[3]) : 60.0;
+  const int count = static_cast<int>(std::stod(argv[1]) * rate);
   ros::NodeHandle node;
   nodelet::Loader loader;
   const ros::M_string no_remappings{{"image", "camera/image_raw"}};
@@ -106,7 +106,7 @@ int main(int argc, char** argv) {
     std_msgs::Header header;
     header.frame_id = "camera";
     const sensor_msgs::ImagePtr message = cv_bridge::CvImage(header, "bgr8", picture).toImageMsg();
-    std::this_thread::sleep_until(begin + std::chrono::duration<double>(k / kRate));
+    std::this_thread::sleep_until(begin + std::chrono::duration<double>(k / rate));
     message->header.stamp = ros::Time::now();
     {
       const std::lock_guard<std::mutex> lock(mutex);
