@@ -34,6 +34,10 @@ void explainTo(BandText& band, Speaker speaker, const std::string& reason) {
   band.cure = row != nullptr ? row->cure : reason.empty() ? "" : "See doc/troubleshooting.md.";
 }
 
+std::string percent(double share) {
+  return std::isfinite(share) ? std::to_string(std::lround(100.0 * share)) + " %" : "?";
+}
+
 // No camera has failed where a recording stands.
 void explainRecording(BandText& band, const std::string& playback) {
   if (playback == "ENDED") {
@@ -43,10 +47,6 @@ void explainRecording(BandText& band, const std::string& playback) {
     band.sentence = "The recording stands.";
     band.cure = "Draw a region, or play on.";
   }
-}
-
-std::string percent(double share) {
-  return std::isfinite(share) ? std::to_string(std::lround(100.0 * share)) + " %" : "?";
 }
 
 }  // namespace
