@@ -38,6 +38,17 @@ std::string percent(double share) {
   return std::isfinite(share) ? std::to_string(std::lround(100.0 * share)) + " %" : "?";
 }
 
+// No camera has failed where a recording stands.
+void explainRecording(BandText& band, const std::string& playback) {
+  if (playback == "ENDED") {
+    band.sentence = "The recording has ended.";
+    band.cure = "\"Again\" plays it once more.";
+  } else if (playback == "PAUSED" || playback == "HOLDING") {
+    band.sentence = "The recording stands.";
+    band.cure = "Draw a region, or play on.";
+  }
+}
+
 }  // namespace
 
 BandText trackerBand(const Facts& facts, double now) {
@@ -48,6 +59,7 @@ BandText trackerBand(const Facts& facts, double now) {
   for (char& letter : band.word) letter = letter == '_' ? ' ' : letter;
   explainTo(band, Speaker::kTracker, tracker.reason);
   band.level = Level::kBad;
+  if (tracker.state == "NO_IMAGE" && facts.playback.connected) explainRecording(band, facts.playback.state);
   if (tracker.state == "IDLE") band.level = Level::kResting;
   if (tracker.state == "SEARCHING") band.level = Level::kWaiting;
   if (tracker.state == "TRACKING") {

@@ -13,6 +13,10 @@
 
 namespace laparoscope_servo {
 
+namespace {
+constexpr double kPatience = 10.0;  // s
+}
+
 void describeDirector(parameters::Table& table, DemoConfig& c) {
   table.text("control", c.control, "path of the emulator's control socket").required("/tmp/aesop_control");
   table.text("summary", c.summary, "JSON file to write; empty: none");
@@ -45,6 +49,7 @@ std::vector<std::string> validate(const DemoConfig& config) {
 
 DemoDirector::DemoDirector(ros::NodeHandle node, const DemoConfig& config)
     : config_(config),
+      steps_(demoSteps(config.hand_time, config.settled_time, config.cross_instrument)),
       node_(node),
       kinematics_(config.emulator.kinematics),
       settling_(config.settled_error, config.settled_scale, config.settled_time) {
@@ -63,6 +68,10 @@ DemoSummary DemoDirector::run() {
   }
   summary_.converged = summary_.reason.empty();
   return summary_;
+}
+
+void DemoDirector::announce(DemoStepIndex step) {
+  ROS_INFO("%s", announcement(steps_, step).c_str());
 }
 
 void DemoDirector::play() {
@@ -86,9 +95,16 @@ void DemoDirector::waitFor(const std::string& what, double timeout, const std::f
   }
 }
 
+// A busy machine makes the nodes refuse for a moment: an image or a status is late.
 template <typename Service>
-void DemoDirector::call(const std::string& name, Service service) {
-  if (!ros::service::call(name, service)) throw Failed("the service " + name + " cannot be called");
+void DemoDirector::call(const std::string& name, Service service, double patience) {
+  const double last_try = steadyNow() + patience;
+  bool answered = false;
+  waitFor("an answer of " + name, patience + 5.0, [&] {
+    answered = ros::service::call(name, service);
+    return (answered && service.response.success) || steadyNow() > last_try;
+  });
+  if (!answered) throw Failed("the service " + name + " cannot be called");
   if (!service.response.success) throw Failed("the service " + name + " refused: " + service.response.message);
   ROS_INFO("%s: %s", name.c_str(), service.response.message.c_str());
 }
@@ -118,6 +134,7 @@ PoseError DemoDirector::truth() {
 }
 
 void DemoDirector::waitForNodes() {
+  announce(kDemoNodes);
   waitFor("the emulated arm at " + config_.control, config_.startup_timeout, [this] {
     try {
       emulator_ = std::make_unique<sim::EmulatorControlClient>(config_.control);
@@ -136,6 +153,7 @@ void DemoDirector::waitForNodes() {
 }
 
 void DemoDirector::selectRoi() {
+  announce(kDemoSelect);
   roi_.width = roi_.height = std::floor(config_.roi_side);
   roi_.x = std::max(0.0, std::floor((camera_info_->width - roi_.width) / 2.0));
   roi_.y = std::max(0.0, std::floor((camera_info_->height - roi_.height) / 2.0));
@@ -152,7 +170,7 @@ void DemoDirector::selectRoi() {
 }
 
 void DemoDirector::moveByHand() {
-  ROS_INFO("moving the scope by hand");
+  announce(kDemoHand);
   // Tilt is a turn about x, which takes the optical axis up.
   emulator_->hand({config_.pan, config_.tilt, config_.spin, config_.deeper}, config_.hand_time);
   const double end = steadyNow() + config_.hand_time + 0.5;
@@ -164,16 +182,13 @@ void DemoDirector::moveByHand() {
 }
 
 void DemoDirector::closeLoop() {
-  call(node_.resolveName("aesop/enable"), std_srvs::Trigger());
+  announce(kDemoLoop);
+  call(node_.resolveName("aesop/enable"), std_srvs::Trigger(), kPatience);
   waitFor("aesop/operating_state ENABLED", 5.0, [this] { return operating_state_ == "ENABLED"; });
   std_srvs::SetBool engage;
   engage.request.data = static_cast<std::uint8_t>(true);
   // The controller may hear of ENABLED a moment later.
-  const std::string service = node_.resolveName("controller/engage");
-  const double last_try = steadyNow() + 2.0;
-  waitFor("an answer of " + service, 5.0,
-          [&] { return (ros::service::call(service, engage) && engage.response.success) || steadyNow() > last_try; });
-  if (!engage.response.success) throw Failed("the service " + service + " refused: " + engage.response.message);
+  call(node_.resolveName("controller/engage"), engage, kPatience);
   const double begin = steadyNow();
   waitFor("convergence", config_.timeout, [this] { return settling_.settled(); });
   summary_.settling_time = std::max(0.0, settling_.since() - begin);
@@ -181,6 +196,7 @@ void DemoDirector::closeLoop() {
 }
 
 void DemoDirector::crossInstrument() {
+  announce(kDemoInstrument);
   call(node_.resolveName("simulated_camera/cross_instrument"), std_srvs::Trigger());
   summary_.crossed = true;
   crossing_ = true;

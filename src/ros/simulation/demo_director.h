@@ -17,12 +17,14 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "laparoscope_servo/aesop/kinematics.h"
 #include "laparoscope_servo/parameters/table.h"
 #include "laparoscope_servo/sim/emulator.h"
 #include "laparoscope_servo/sim/emulator_control_client.h"
 #include "ros/simulation/demo_measures.h"
+#include "ros/simulation/demo_plan.h"
 
 namespace laparoscope_servo {
 
@@ -65,6 +67,7 @@ class DemoDirector {
   };
 
   void play();
+  void announce(DemoStepIndex step);
   void waitForNodes();
   void selectRoi();
   void moveByHand();
@@ -77,10 +80,12 @@ class DemoDirector {
   void onHomography(const Homography& message);
   Eigen::Isometry3d truePose();
   PoseError truth();
+  // Once more while it is refused, for `patience` s.
   template <typename Service>
-  void call(const std::string& name, Service service);
+  void call(const std::string& name, Service service, double patience = 0.0);
 
   DemoConfig config_;
+  std::vector<DemoStep> steps_;
   ros::NodeHandle node_;
   aesop::Kinematics kinematics_;
   std::unique_ptr<sim::EmulatorControlClient> emulator_;

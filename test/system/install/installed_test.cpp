@@ -149,6 +149,15 @@ TEST_F(Installed, trackBagTracksAVideo) {
   EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), 9) << rows;
 }
 
+TEST_F(Installed, theReportOfASessionIsMade) {
+  const std::string table = prefix->scratch("session.csv"), page = prefix->scratch("session.html");
+  std::ofstream(table) << "frame,stamp,state,visible_fraction,processing_time,corner_error,reason\n"
+                          "0,0.00,1,0.9,0.004,0.3,\n1,0.04,1,0.9,0.004,0.3,\n";
+  const auto run = prefix->run("rosrun laparoscope_servo session_report '" + table + "' '" + page + "'", 1);
+  EXPECT_EQ(run.status, 0) << run.text;
+  EXPECT_NE(contentOf(page).find("2 results of the tracker"), std::string::npos) << run.text;
+}
+
 TEST_F(Installed, aManagerLoadsTheNodelet) {
   const std::string file = prefix->scratch("manager.launch");
   std::ofstream(file) << R"(<launch>

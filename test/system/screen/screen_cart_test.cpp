@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "system/screen/display_text.h"
 #include "system/screen/screen_fixture.h"
 
 namespace laparoscope_servo {
@@ -33,6 +34,13 @@ TEST_F(ScreenCart, SelectsEnablesEngagesAndStops) {
   ASSERT_TRUE(waitFor([this] { return word("Robot") == "ENABLED"; })) << word("Robot");
   click("engage");
   ASSERT_TRUE(waitFor([this] { return word("Controller") == "SERVO"; })) << word("Controller");
+  std::string text;
+  EXPECT_TRUE(waitFor([&] {
+    text = test_support::textOnDisplay();
+    return test_support::notRead(text, {"TRACKING", "SERVO", "ENABLED", "STOP"}).empty();
+  })) << test_support::notRead(text, {"TRACKING", "SERVO", "ENABLED", "STOP"})
+      << " cannot be read:\n"
+      << text;
   click("stop");
   EXPECT_TRUE(waitFor([this] { return word("Robot") == "DISABLED" && word("Controller") != "SERVO"; }))
       << word("Robot") << word("Controller");

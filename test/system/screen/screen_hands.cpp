@@ -11,14 +11,22 @@
 #include <std_msgs/Bool.h>
 #include <std_srvs/SetBool.h>
 #include <std_srvs/Trigger.h>
+#include <sys/stat.h>
 
+#include <atomic>
 #include <cstdio>
+#include <fstream>
 #include <functional>
 #include <iostream>
 #include <map>
+#include <memory>
 #include <mutex>
+#include <sstream>
 #include <thread>
+#include <vector>
 
+#include "support/temporary_folder.h"
+#include "system/aesop/child_process.h"
 #include "system/screen/screen_fixture.h"
 
 namespace laparoscope_servo {
@@ -74,6 +82,43 @@ class Hand {
   int (*motion_)(void*, int, int, int, unsigned long);
 };
 
+// Another hand, on controller/manual; no two words are alike, or it would count as a stick out of reach.
+class Stick {
+ public:
+  Stick() {
+    thread_ = std::thread([this] {
+      for (ros::WallRate rate(50.0); !ends_ && ros::ok(); rate.sleep()) {
+        const double speed = speed_;
+        command_.pan = speed == 0.0 ? 0.0 : speed + 1e-6 * (command_.header.seq % 2);
+        say();
+      }
+    });
+  }
+  ~Stick() {
+    ends_ = true;
+    thread_.join();
+    command_.pan = 0.0;
+    say();
+  }
+  // The controller wants to see it at rest first.
+  void rest() { speed_ = 0.0; }
+  void push(double speed) { speed_ = speed; }  // rad/s
+
+ private:
+  void say() {
+    ++command_.header.seq;
+    command_.header.stamp = ros::Time::now();
+    publisher_.publish(command_);
+  }
+
+  ros::NodeHandle node_;
+  ros::Publisher publisher_ = node_.advertise<ScopeVelocity>("controller/manual", 1);
+  ScopeVelocity command_;
+  std::atomic<double> speed_{0.0};  // rad/s
+  std::atomic<bool> ends_{false};
+  std::thread thread_;
+};
+
 struct Heard {
   bool moves = false;
   double since = -1.0;  // s, when this began
@@ -82,15 +127,20 @@ struct Heard {
 class Measurement {
  public:
   Measurement(const std::string& program, int times, double held) : times_(times), held_(held) {
-    ears_ = ::popen((program + " --listen").c_str(), "r");
-    reader_ = std::thread([this] { read(); });
+    const std::string pipe = folder_.file("ears");
+    if (::mkfifo(pipe.c_str(), 0600) != 0) throw std::runtime_error("no pipe " + pipe);
+    ears_ = std::make_unique<test::ChildProcess>(program, std::vector<std::string>{"--listen"}, pipe);
+    reader_ = std::thread([this, pipe] { read(pipe); });
   }
-  ~Measurement() { reader_.detach(); }
+  ~Measurement() {
+    ears_.reset();
+    reader_.join();
+  }
 
   void run(const std::map<std::string, QPoint>& places) {
+    call<SelectTask>("controller/select_task", [](SelectTask& task) { task.request.task = "MANUAL"; });
     stop(places.at("stop"));
     release("dead_man", places.at("dead_man"), places.at("dead_man"));
-    call<SelectTask>("controller/select_task", [](SelectTask& task) { task.request.task = "MANUAL"; });
     release("slider", places.at("slider"), places.at("slider") + QPoint(60, 0));
     hold("dead_man", places.at("dead_man"));
   }
@@ -102,11 +152,14 @@ class Measurement {
     fill(call);
     return ros::service::call(name, call) && call.response.success;
   }
-  void read() {
-    char topic[32];
-    int moves = 0;
-    double at = 0.0;
-    while (std::fscanf(ears_, "%31s %d %lf", topic, &moves, &at) == 3) {
+  void read(const std::string& pipe) {
+    std::ifstream lines(pipe);
+    for (std::string line; std::getline(lines, line);) {
+      std::istringstream words(line);
+      std::string topic;
+      int moves = 0;
+      double at = 0.0;
+      if (!(words >> topic >> moves >> at)) continue;  // a word of its log
       const std::lock_guard<std::mutex> lock(mutex_);
       Heard& heard = heard_[topic];
       if (heard.since < 0.0 || heard.moves != (moves != 0)) heard = {moves != 0, at};
@@ -124,21 +177,24 @@ class Measurement {
   }
   void tell(const std::string& name, double seconds) { std::cout << name << ',' << seconds << std::endl; }
 
-  // SERVO, with a command that is not zero.
+  // A stick that drives the scope to and fro, so that there is a motion to be stopped as often as is wanted.
   void stop(const QPoint& place) {
+    Stick stick;
     for (int k = 0; k < times_ && ros::ok(); ++k) {
-      const bool servo = wait([&] {
+      const bool moves = wait([&] {
+        stick.rest();
         call<std_srvs::Trigger>("aesop/enable", [](std_srvs::Trigger&) {});
         call<std_srvs::SetBool>("controller/engage", [](std_srvs::SetBool& engage) { engage.request.data = 1; });
+        ros::WallDuration(0.2).sleep();
+        stick.push(k % 2 == 0 ? 0.02 : -0.02);
         return wait([&] { return heard("command").moves; }, 2.0);
       });
-      if (!servo) {
+      if (!moves) {
         std::cerr << "the controller does not move the scope" << std::endl;
         return;
       }
       hand_.move(place);
       ros::WallDuration(0.2).sleep();
-      if (!heard("command").moves) continue;  // it has arrived by itself
       const double pressed = hand_.button(true);
       if (wait([&] { return !heard("command").moves; })) tell("stop", heard("command").since - pressed);
       hand_.button(false);
@@ -177,7 +233,8 @@ class Measurement {
   int times_;
   double held_;
   Hand hand_;
-  FILE* ears_;
+  test_support::TemporaryFolder folder_;
+  std::unique_ptr<test::ChildProcess> ears_;
   std::mutex mutex_;
   std::map<std::string, Heard> heard_;
   std::map<std::string, int> zeros_;
@@ -221,5 +278,5 @@ int main(int argc, char** argv) {
   QApplication::exec();
   work.join();
   ros::shutdown();
-  std::_Exit(0);  // who listens ends with the pipe
+  return 0;
 }

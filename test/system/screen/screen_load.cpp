@@ -1,10 +1,10 @@
-// A camera of 1080p60 and the tracker's nodelet in one manager: what a screen beside them costs the tracker. Run by
+// A camera of 1080p and the tracker's nodelet in one manager: what a screen beside them costs the tracker. Run by
 // scripts/measure_screen; no test.
 //
-//   screen_load SECONDS FRAMES.csv
+//   screen_load SECONDS FRAMES.csv [RATE]     60 images a second where nothing is said
 //
 // Every image is stamped when it is published. Two bands at its top tell its number by their grey, for who looks at the
-// screen. FRAMES.csv: number, stamp [s], delay to the homography [s; empty: none], state.
+// screen. FRAMES.csv: number, stamp [s], delay to the homography [s; empty: none], of that the processing [s], state.
 #include <cv_bridge/cv_bridge.h>
 #include <laparoscope_servo/Homography.h>
 #include <laparoscope_servo/SelectRoi.h>
@@ -26,23 +26,24 @@
 namespace {
 
 const cv::Size kSize(1920, 1080);
-constexpr int kImages = 120;  // made before, played forwards and backwards: a picture that repeats is no picture
-constexpr double kRate = 60.0;
-constexpr int kBand = 60;    // px
+constexpr int kImages =
+    120;                   // made before, a closed walk of which no two are alike: a picture that repeats is no picture
+constexpr int kBand = 60;  // px
 constexpr int kLevels = 12;  // 144 numbers, 2.4 s
 
 struct Frame {
   ros::Time stamp;
   double delay = -1.0;
+  double processing = 0.0;
   int state = -1;
 };
 
-// A slow walk over a texture: 3 px an image at most.
+// A walk over a texture, 5 px an image at most.
 std::vector<cv::Mat> pictures() {
   const cv::Mat scene = laparoscope_servo::test_support::texture(kSize + cv::Size(200, 200));
   std::vector<cv::Mat> result;
   for (int k = 0; k < kImages; ++k) {
-    const double t = M_PI * k / (kImages - 1);
+    const double t = 2.0 * M_PI * k / kImages;
     result.push_back(
         scene(cv::Rect(cv::Point(static_cast<int>(100 - 90 * std::cos(t)), 100 + static_cast<int>(50 * std::sin(t))),
                        kSize))
@@ -61,10 +62,11 @@ void writeNumber(cv::Mat& image, int number) {
 int main(int argc, char** argv) {
   ros::init(argc, argv, "screen_load");
   if (argc < 3) {
-    std::fprintf(stderr, "screen_load SECONDS FRAMES.csv\n");
+    std::fprintf(stderr, "screen_load SECONDS FRAMES.csv [RATE]\n");
     return 2;
   }
-  const int count = static_cast<int>(std::stod(argv[1]) * kRate);
+  const double rate = argc > 3 ? std::stod(argv[3]) : 60.0;
+  const int count = static_cast<int>(std::stod(argv[1]) * rate);
   ros::NodeHandle node;
   nodelet::Loader loader;
   const ros::M_string no_remappings{{"image", "camera/image_raw"}};
@@ -80,6 +82,7 @@ int main(int argc, char** argv) {
         for (std::size_t k = published; k-- > 0 && frames[k].stamp >= result->header.stamp;) {
           if (frames[k].stamp != result->header.stamp) continue;
           frames[k].delay = (now - frames[k].stamp).toSec();
+          frames[k].processing = result->processing_time;
           frames[k].state = result->state;
         }
       });
@@ -98,13 +101,12 @@ int main(int argc, char** argv) {
   });
   const auto begin = std::chrono::steady_clock::now();
   for (int k = 0; k < count && ros::ok(); ++k) {
-    const int turn = k % (2 * kImages);
-    cv::Mat& picture = walk[static_cast<std::size_t>(turn < kImages ? turn : 2 * kImages - 1 - turn)];
+    cv::Mat& picture = walk[static_cast<std::size_t>(k % kImages)];
     writeNumber(picture, k);
     std_msgs::Header header;
     header.frame_id = "camera";
     const sensor_msgs::ImagePtr message = cv_bridge::CvImage(header, "bgr8", picture).toImageMsg();
-    std::this_thread::sleep_until(begin + std::chrono::duration<double>(k / kRate));
+    std::this_thread::sleep_until(begin + std::chrono::duration<double>(k / rate));
     message->header.stamp = ros::Time::now();
     {
       const std::lock_guard<std::mutex> lock(mutex);
@@ -118,11 +120,11 @@ int main(int argc, char** argv) {
   const std::lock_guard<std::mutex> lock(mutex);
   std::ofstream file(argv[2]);
   file.precision(6);
-  file << "number,stamp,delay,state\n" << std::fixed;
+  file << "number,stamp,delay,processing,state\n" << std::fixed;
   for (std::size_t k = 0; k < published; ++k) {
     file << k << ',' << frames[k].stamp.toSec() << ',';
     if (frames[k].state >= 0) file << frames[k].delay;
-    file << ',' << frames[k].state << '\n';
+    file << ',' << frames[k].processing << ',' << frames[k].state << '\n';
   }
   return 0;
 }

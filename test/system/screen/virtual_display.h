@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <QGuiApplication>
 #include <QPoint>
 #include <cstdlib>
 #include <stdexcept>
@@ -15,7 +16,7 @@ namespace laparoscope_servo::test_support {
 
 class VirtualDisplay {
  public:
-  // Sets DISPLAY; to be made before the QApplication.
+  // Sets DISPLAY; to be made before the QApplication. Twice as large for a QT_SCALE_FACTOR of 2.
   VirtualDisplay() {
     int pipe_ends[2];
     if (::pipe(pipe_ends) != 0) throw std::runtime_error("no pipe");
@@ -24,8 +25,8 @@ class VirtualDisplay {
       const int null = ::open("/dev/null", O_WRONLY);
       ::dup2(null, STDERR_FILENO);
       const std::string descriptor = std::to_string(pipe_ends[1]);
-      ::execlp("Xvfb", "Xvfb", "-displayfd", descriptor.c_str(), "-screen", "0", "1600x1000x24", "-nolisten", "tcp",
-               nullptr);
+      const char* size = std::getenv("QT_SCALE_FACTOR") == nullptr ? "1600x1000x24" : "3200x2000x24";
+      ::execlp("Xvfb", "Xvfb", "-displayfd", descriptor.c_str(), "-screen", "0", size, "-nolisten", "tcp", nullptr);
       ::_exit(127);
     }
     ::close(pipe_ends[1]);
@@ -52,8 +53,10 @@ inline void hands(const std::string& commands) {
   if (std::system(("xdotool " + commands).c_str()) != 0) throw std::runtime_error("xdotool failed: " + commands);
 }
 
+// Qt's pixels are not the display's where QT_SCALE_FACTOR says so.
 inline std::string moveTo(const QPoint& at) {
-  return "mousemove " + std::to_string(at.x()) + " " + std::to_string(at.y()) + " ";
+  const QPoint pixel = (QPointF(at) * qGuiApp->devicePixelRatio()).toPoint();
+  return "mousemove " + std::to_string(pixel.x()) + " " + std::to_string(pixel.y()) + " ";
 }
 
 }  // namespace laparoscope_servo::test_support

@@ -52,6 +52,20 @@ TEST(BandText, EachStateHasItsWordReasonAndCure) {
   EXPECT_EQ(robotBand(all, kNow).sentence, "The arm's controller has a fault.");
 }
 
+TEST(BandText, ARecordingThatStandsIsNoCameraThatFails) {
+  Facts all = facts();
+  all.tracker.state = "NO_IMAGE";
+  all.tracker.reason = "no image for more than 1 s; before: TRACKING";
+  all.playback.connected = true;
+  all.playback.state = "ENDED";
+  EXPECT_EQ(trackerBand(all, kNow).word, "NO IMAGE");
+  EXPECT_EQ(trackerBand(all, kNow).sentence, "The recording has ended.");
+  all.playback.state = "PAUSED";
+  EXPECT_EQ(trackerBand(all, kNow).sentence, "The recording stands.");
+  all.playback.state = "PLAYING";
+  EXPECT_EQ(trackerBand(all, kNow).sentence, "The camera has stopped sending.");
+}
+
 TEST(BandText, ACautionIsSaidWhileItMoves) {
   Facts all = facts();
   all.controller.caution = "slow: visible fraction below 0.5";

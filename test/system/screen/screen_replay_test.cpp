@@ -1,0 +1,65 @@
+// replay.launch with the screen's window, to the end of the recording: what a user sees, read by OCR.
+#include <gtest/gtest.h>
+
+#include <QGuiApplication>
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "support/synthetic_sequence.h"
+#include "support/temporary_folder.h"
+#include "system/aesop/child_process.h"
+#include "system/screen/display_text.h"
+#include "system/screen/virtual_display.h"
+
+namespace laparoscope_servo {
+namespace {
+
+constexpr int kImages = 40;
+
+class ScreenReplay : public testing::Test {
+ protected:
+  ScreenReplay() {
+    std::filesystem::create_directory(folder_.file("images"));
+    const cv::Mat scene = test_support::texture({480, 400});
+    for (int k = 0; k < kImages; ++k) {
+      cv::imwrite(folder_.file(cv::format("images/%03d.png", k)), scene(cv::Rect(40 + k, 40 + k / 2, 320, 240)));
+    }
+  }
+  // The text in which these words stand, or the last one that was read.
+  std::string readUntil(const std::vector<std::string>& words, double seconds = 60.0) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+    std::string text;
+    do {
+      text = test_support::textOnDisplay();
+    } while (!test_support::notRead(text, words).empty() && std::chrono::steady_clock::now() < end);
+    return text;
+  }
+
+  test_support::VirtualDisplay display_;
+  test_support::TemporaryFolder folder_;
+};
+
+TEST_F(ScreenReplay, SaysThatTheRecordingHasEnded) {
+  const std::string log = folder_.file("log");
+  test::ChildProcess launch(
+      "/bin/sh",
+      {"-c", "exec roslaunch laparoscope_servo replay.launch screen:=window roi:=100,60,100,100 video:=" +
+                 folder_.file("images")},
+      log);
+  const std::vector<std::string> words{"ENDED", "last picture"};
+  const std::string text = readUntil(words);
+  EXPECT_EQ(test_support::notRead(text, words), "") << text;
+  launch.kill(SIGINT);
+  EXPECT_EQ(launch.exitStatus(60.0), 0);
+}
+
+}  // namespace
+}  // namespace laparoscope_servo
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  return RUN_ALL_TESTS();
+}
