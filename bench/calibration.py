@@ -9,7 +9,7 @@ is not known, each region of regions.csv is measured twice, and what is measured
   noise_3    the same with three grey levels
   encoding   encoded anew by ffmpeg as H.264 (crf 23), and as MPEG-4 part 2 (quantiser 5)
   start      from the first image, and from the 25th on
-  backward   from the first image, and from the last image that is TRACKING back to the first one
+  backward   from the first image, and from the last image that is TRACKING half of the region back to the first one
 For the last two the region that is tracked the second time is the largest upright rectangle about the first one's centre that lies inside it, and
 what is compared is where both take its corners from the image of the second start on. The claim on a difference is the root of the
 sum of squares of the claims that it comes of: two, or three with that of the image of the second start. Images count where both say TRACKING.
@@ -36,6 +36,7 @@ import footage  # beside this file
 WAYS = ("noise_1", "noise_3", "encoding", "start", "backward")
 OTHER_START = 25   # image
 SMALLEST = 40      # px, of a region that is tracked
+HALF = 0.5         # of the region is visible, where a second track starts
 ENCODERS = {"h264": ("mp4", ["-c:v", "libx264", "-crf", "23", "-pix_fmt", "yuv420p"]), "mpeg4": ("avi", ["-c:v", "mpeg4", "-q:v", "5"])}
 
 
@@ -142,15 +143,19 @@ class Film:
         return samples((relative[later], part(part(self.base, numbers), later)), (second.homography[later], part(second, later)), roi,
                        (self.base.corner_error[at], self.base.centre_error[at]))
 
+    def clear(self):
+        """Images in which a second track may start; the first is one of them."""
+        return np.flatnonzero(self.base.tracking & (self.base.visible > HALF))
+
     def start(self):
-        tracked = [k for k in np.flatnonzero(self.base.tracking) if k >= OTHER_START]
+        tracked = [k for k in self.clear() if k >= OTHER_START]
         if not tracked:
-            raise footage.Refused(f"not TRACKING from image {OTHER_START} on")
+            raise footage.Refused(f"not TRACKING half of the region from image {OTHER_START} on")
         return self.from_image(tracked[0], np.arange(tracked[0], len(self.images)))
 
     def backward(self):
-        tracked = np.flatnonzero(self.base.tracking & (self.base.visible > 0.8))
-        return self.from_image(tracked[-1], np.arange(tracked[-1], -1, -1))
+        last = self.clear()[-1]
+        return self.from_image(last, np.arange(last, -1, -1))
 
 
 def film_samples(a, region):
