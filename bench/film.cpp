@@ -1,10 +1,10 @@
 // This package's tracker and its peers over a region of a film, whose truth is not known: a table for each tracker, in
 // the columns that whoever judges them needs. As in bench_compare all get each image in turn, on one thread.
 #include <boost/program_options.hpp>
-#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <limits>
 
 #include "bench/support/arguments.h"
 #include "bench/support/contestant.h"
@@ -57,7 +57,7 @@ int program(int argc, char** argv) {
       ("tracker", po::value(&trackers)->composing(), "only this one, may be repeated; names as in bench_compare")  //
       ("tables", po::value(&folder),
        "folder for TRACKER.csv: frame, stamp, state (1: it claims, 3: not), g00..g22, "
-       "visible_fraction, iterations, processing_time (of the thread, s), corner_error, "
+       "visible_fraction, iterations, processing_time (of the thread, s; nan: it has stopped for good), corner_error, "
        "centre_error");
   const auto complete = [&] { return !film.empty() && !roi.empty() && !folder.empty() && from >= 0 && rate > 0.0; };
   if (const auto status = parse(argc, argv, options, "film", 1, complete)) return *status;
@@ -80,12 +80,14 @@ int program(int argc, char** argv) {
       Runner& runner = runners[(k + static_cast<std::size_t>(frame)) % runners.size()];
       const double start = cpuTime();
       Verdict verdict;
+      verdict.idle = runner.refused;
       if (frame == from) {
         verdict = select(runner, image, region);
       } else if (!runner.refused) {
         verdict = runner.contestant->track(image);
       }
-      writeRow(runner.table, frame, frame / rate, verdict, cpuTime() - start);
+      const double seconds = verdict.idle ? std::numeric_limits<double>::quiet_NaN() : cpuTime() - start;
+      writeRow(runner.table, frame, frame / rate, verdict, seconds);
     }
     image.release();  // some keep it
   }

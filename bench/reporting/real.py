@@ -20,8 +20,8 @@ def line(row):
     if "failed" in row:
         return [row["tracker"], row["failed"], *[""] * (len(COLUMNS) - 2)]
     return [row["tracker"], number(row["tracking"]), row["wrong"], row["unsupported"], row["longest_seen_run"],
-            f"{number(row['error_median'], 2)} ({number(row['unavoidable_median'], 2)})", number(row.get("rms_to_corner_error"), 2), number(row["ms_median"], 2),
-            number(row["ms_p99"], 1)]
+            f"{number(row['error_median'], 2)} ({number(row['unavoidable_median'], 2)})", number(row.get("rms_to_corner_error"), 2), number(row.get("ms_median"), 2),
+            number(row.get("ms_p99"), 1)]
 
 
 def write(report, a):

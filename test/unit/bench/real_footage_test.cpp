@@ -24,7 +24,7 @@ class RealFootage : public testing::Test {
             "echo \"$@\" >'" + folder_.file("arguments") +
                 "'\nwhile [ \"$1\" != --tables ]; do shift; done\n"
                 "for t in klt ours; do { echo frame,state,processing_time; echo 5,1,9; echo 6,1,0.002; echo 7,1,0.003; "
-                "echo 8,1,0.010; } >\"$2/$t.csv\"; done\n");
+                "echo 8,1,0.010; echo 9,3,nan; } >\"$2/$t.csv\"; done\n");
     cv::VideoWriter writer(folder_.file("film.avi"), cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 20.0,
                            cv::Size(160, 120));
     for (int k = 0; k < 3; ++k) writer.write(cv::Mat(120, 160, CV_8UC3, cv::Scalar(40, 60, 120)));
