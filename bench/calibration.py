@@ -47,6 +47,8 @@ def noisy(pictures, sigma, seed=1):
 
 
 def encode(pictures, rate, options, file):
+    if not shutil.which("ffmpeg"):
+        raise footage.Refused("ffmpeg is not installed")
     height, width = pictures[0].shape[:2]
     with subprocess.Popen(["ffmpeg", "-loglevel", "error", "-y", "-f", "rawvideo", "-pix_fmt", "bgr24", "-s", f"{width}x{height}", "-r", str(rate), "-i", "-",
                            *options, str(file)], stdin=subprocess.PIPE) as encoder:

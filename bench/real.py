@@ -101,6 +101,8 @@ def main():
         for region in footage.read_regions(a.regions, a.data, a.only):
             folder = pathlib.Path(a.keep or temporary, region.name.replace(" ", "_"))
             folder.mkdir(parents=True, exist_ok=True)
+            for old in folder.glob("*.csv"):
+                old.unlink()
             try:
                 track(a, region, folder)
             except (footage.Refused, subprocess.CalledProcessError) as error:
