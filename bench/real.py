@@ -19,6 +19,7 @@ import argparse
 import concurrent.futures
 import csv
 import json
+import os
 import pathlib
 import subprocess
 import sys
@@ -48,7 +49,7 @@ def track(a, region, folder):
                footage.rate_of(region.film), "--tables", folder]
     for name in a.tracker:
         command += ["--tracker", name]
-    subprocess.run([str(c) for c in command], check=True)
+    subprocess.run([str(c) for c in command], check=True, env={**os.environ, "OMP_NUM_THREADS": "1"})  # ViSP's: all on one thread
     if a.track_bag:
         track_bag(a.track_bag, region, folder / "track_bag.csv", a.limit)
 

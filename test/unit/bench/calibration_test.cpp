@@ -23,8 +23,8 @@ struct Said {
 class Calibration : public testing::Test {
  protected:
   void SetUp() override {
-    if (test_support::outputOf("/usr/bin/python3 -c 'import cv2, numpy'").status != 0)
-      GTEST_SKIP() << "no python3-opencv or python3-numpy";
+    static const int missing = test_support::outputOf("/usr/bin/python3 -c 'import cv2, numpy'").status;
+    if (missing != 0) GTEST_SKIP() << "no python3-opencv or python3-numpy";
     std::ofstream script(folder_.file("tracker"));
     script << "#!/bin/bash\ncd '" << folder_.path()
            << "'\nn=$(ls | grep -c '^used')\ncp table$n.csv \"$5\" && : >used$n\n";

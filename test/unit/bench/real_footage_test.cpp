@@ -16,8 +16,8 @@ namespace {
 class RealFootage : public testing::Test {
  protected:
   void SetUp() override {
-    if (test_support::outputOf("/usr/bin/python3 -c 'import cv2, numpy'").status != 0)
-      GTEST_SKIP() << "no python3-opencv or python3-numpy";
+    static const int missing = test_support::outputOf("/usr/bin/python3 -c 'import cv2, numpy'").status;
+    if (missing != 0) GTEST_SKIP() << "no python3-opencv or python3-numpy";
     std::filesystem::create_directories(folder_.file("build/bench"));
     // Keeps its arguments, and writes a table for each of two trackers where --tables says.
     program("build/bench/bench_film",
