@@ -1,6 +1,7 @@
 // This package's tracker beside its peers, over the same images in one run, on one thread. All contestants get each
 // image before any gets the next, in an order that turns by one each time, so that what disturbs the machine disturbs
 // all alike. Ratios are of processor time, which equals wall time on a machine that does nothing else.
+#include <algorithm>
 #include <boost/program_options.hpp>
 #include <chrono>
 #include <fstream>
@@ -11,6 +12,7 @@
 #include "bench/support/arguments.h"
 #include "bench/support/contestant.h"
 #include "bench/support/cpu_clock.h"
+#include "bench/support/field_metrics.h"
 #include "bench/support/sequence.h"
 #include "bench/support/statistics.h"
 #include "ros/common/json_writer.h"
@@ -25,6 +27,8 @@ struct Record {
   std::vector<double> claims;  // 1 or 0, likewise
   std::vector<double> ms;      // wall time of every frame of every pass, but for the reference and when it had stopped
   std::vector<double> cpu_ms;  // processor time likewise
+  PointScores points;          // of every frame of the first pass but the reference
+  std::vector<double> alignment;  // px, likewise
 };
 
 struct Summary {
@@ -36,6 +40,9 @@ struct Summary {
   double ms_median = error_mean;
   double ms_p99 = error_mean;
   double cpu_ms_median = error_mean;
+  double alignment_median = error_mean;  // px, of all frames, as are these shares:
+  double precision_5 = error_mean;
+  double precision_15 = error_mean;
 };
 
 Summary summarise(const Record& record) {
@@ -54,6 +61,9 @@ Summary summarise(const Record& record) {
   s.ms_median = quantile(record.ms, 0.5);
   s.ms_p99 = quantile(record.ms, 0.99);
   s.cpu_ms_median = quantile(record.cpu_ms, 0.5);
+  s.alignment_median = quantile(record.alignment, 0.5);
+  s.precision_5 = precision(record.alignment, 5.0);
+  s.precision_15 = precision(record.alignment, 15.0);
   return s;
 }
 
@@ -68,10 +78,19 @@ bool selects(Contestant& contestant, const cv::Mat& image, const geometry::Recta
   }
 }
 
+// What the field measures of one image but the reference.
+void score(const Sequence& sequence, std::size_t frame, const cv::Size& image, const Verdict& verdict, Record& record) {
+  const std::vector<Eigen::Vector2d> points = regionPoints(sequence.roi());
+  const Eigen::Matrix3d& truth = sequence.truth().at(frame);
+  const std::vector<double> covered = sequence.areas().empty() ? std::vector<double>() : sequence.areas().at(frame);
+  record.points.add(distances(verdict.g, truth, points), visiblePoints(truth, points, covered, image), verdict.claims);
+  record.alignment.push_back(alignmentError(verdict.g, truth, sequence.roi()));
+}
+
 std::vector<Record> compare(Sequence& sequence, const std::vector<std::string>& names, int passes) {
   std::vector<std::unique_ptr<Contestant>> contestants = makeContestants(names);
   std::vector<Record> records;
-  for (const auto& contestant : contestants) records.push_back({contestant->name(), {}, {}, {}, {}});
+  for (const auto& contestant : contestants) records.emplace_back().name = contestant->name();
   std::vector<char> refused(contestants.size(), 0);
   for (int pass = 0; pass < passes; ++pass) {
     sequence.rewind();
@@ -101,6 +120,7 @@ std::vector<Record> compare(Sequence& sequence, const std::vector<std::string>& 
         if (pass > 0) continue;
         record.claims.push_back(verdict.claims ? 1.0 : 0.0);
         record.error.push_back(cornerError(verdict.g, sequence.truth().at(frame), sequence.roi()));
+        if (frame > 0) score(sequence, frame, image.size(), verdict, record);
       }
       image.release();  // some keep it
     }
@@ -144,6 +164,12 @@ void write(JsonWriter& json, const Sequence& sequence, const std::vector<Record>
     json.value("ms_p99", s.ms_p99);
     json.value("cpu_ms_median", s.cpu_ms_median);
     json.value("time_ratio", s.cpu_ms_median / ours);
+    json.value("average_jaccard", record.points.averageJaccard());
+    json.value("average_accuracy", record.points.averageAccuracy());
+    json.value("average_claimed_accuracy", record.points.averageClaimedAccuracy());
+    json.value("alignment_median", s.alignment_median);
+    json.value("precision_5", s.precision_5);
+    json.value("precision_15", s.precision_15);
     json.values("error", record.error);
     json.values("claims", record.claims);
     json.values("ms", record.ms);
@@ -177,6 +203,8 @@ int program(int argc, char** argv) {
     Sequence sequence(folder);
     if (!sequence.hasTruth() || !sequence.hasRoi())
       throw std::runtime_error(folder + ": no truth.csv, or no scene.json");
+    if (sequence.areas().empty() && *std::max_element(sequence.covered().begin(), sequence.covered().end()) > 0.0)
+      throw std::runtime_error(folder + ": something covers the region, and there is no areas.csv to say where");
     const std::vector<Record> records = compare(sequence, trackers, passes);
     print(sequence.name(), sequence.truth().size(), records);
     write(json, sequence, records);

@@ -10,7 +10,6 @@ From image FROM on each pixel is gain * value + offset per channel, rounded and 
   wrong...  with --judge: what PROGRAM VIDEO CSV --roi x,y,w,h says, which prints its verdict as a line of JSON
 """
 import argparse
-import csv
 import json
 import pathlib
 import subprocess
@@ -20,9 +19,10 @@ import tempfile
 import cv2
 import numpy as np
 
+import footage  # beside this file
+
 FROM = 20   # image, where the change begins
 LONG = 50   # images of a ramp, from start to end
-TRACKING = 1
 JUDGED = ("wrong", "unsupported", "error_median")
 
 
@@ -61,54 +61,26 @@ LIGHTS = {
 }
 
 
-def images(video):
-    source = cv2.VideoCapture(str(video))
-    if not source.isOpened():
-        sys.exit(f"light: {video} cannot be read")
-    while True:
-        ok, image = source.read()
-        if not ok:
-            return
-        yield image
-
-
 def strong_red(video, roi):
     """Of the whole recording, its first image too: nine tenths of the region have no red left to vary."""
     x, y, w, h = roi
-    red = next(images(video))[y:y + h, x:x + w, 2]
+    red = next(footage.images(video))[y:y + h, x:x + w, 2]
     gain = 255.0 / max(1.0, np.percentile(red, 10))
     return lambda k: (np.array([1.0, 1.0, gain]), np.zeros(3))
 
 
-def write(video, light, folder):
-    """Without a loss: a folder of images."""
-    for k, image in enumerate(images(video)):
+def changed(video, light):
+    for k, image in enumerate(footage.images(video)):
         gain, offset = light(k)
-        changed = np.rint(gain * image + offset).clip(0, 255).astype(np.uint8)
-        cv2.imwrite(str(folder / f"{k:05d}.png"), changed, [cv2.IMWRITE_PNG_COMPRESSION, 1])
-
-
-def track(program, source, roi, params, table):
-    run = subprocess.run([program, str(source), "--roi", roi, "--csv", str(table), *params], capture_output=True, text=True)
-    if run.returncode:
-        sys.exit(f"light: {program} ended with {run.returncode}: {run.stderr.strip()}")
-    rows = list(csv.DictReader(open(table, encoding="utf-8")))
-    homography = np.array([[float(r[f"g{i}{j}"]) for i in range(3) for j in range(3)] for r in rows]).reshape(-1, 3, 3)
-    return np.array([int(r["state"]) == TRACKING for r in rows]), homography
-
-
-def corners(homography, roi):
-    x, y, w, h = roi
-    p = np.array([[x, y, 1], [x + w, y, 1], [x + w, y + h, 1], [x, y + h, 1]], float).T
-    q = homography @ p
-    return q[:, :2] / q[:, 2:]
+        table = np.rint(gain * np.arange(256)[:, None] + offset).clip(0, 255).astype(np.uint8)
+        yield cv2.LUT(image, table[:, None])
 
 
 def row(name, base, now, roi, verdict):
-    wanted = base[0]
-    kept = wanted & now[0]
-    missing = np.flatnonzero(wanted & ~now[0])
-    apart = np.linalg.norm(corners(now[1][kept], roi) - corners(base[1][kept], roi), axis=1).max(1)
+    wanted = base.tracking
+    kept = wanted & now.tracking
+    missing = np.flatnonzero(wanted & ~now.tracking)
+    apart = footage.apart(now.homography[kept], base.homography[kept], footage.corners(roi)).max(1)
     print(f"{name:16s} {kept.sum():4d}/{wanted.sum():<4d} {missing[0] if len(missing) else '-':>5} {np.median(apart):6.2f} {apart.max():6.2f}  "
           + "  ".join(f"{k} {verdict[k]}" for k in JUDGED if k in verdict), flush=True)
 
@@ -122,8 +94,8 @@ def main():
     p.add_argument("--judge", help="program")
     p.add_argument("--params", help="as of track_bag")
     a = p.parse_args()
-    roi = [int(v) for v in a.roi.split(",")]
-    params = ["--params", a.params] if a.params else []
+    roi = footage.roi_of(a.roi)
+    params = ["--rate", footage.rate_of(a.video), *(["--params", a.params] if a.params else [])]
     lights = {"none": lambda k: (np.ones(3), np.zeros(3)), **LIGHTS, "strong_red": strong_red(a.video, roi)}
     unknown = set(a.only or ()) - set(lights)
     if unknown:
@@ -135,9 +107,11 @@ def main():
             continue
         with tempfile.TemporaryDirectory() as folder:
             frames, table = pathlib.Path(folder, "frames"), pathlib.Path(folder, "track.csv")
-            frames.mkdir()
-            write(a.video, light, frames)
-            now = track(a.track_bag, frames, a.roi, params, table)
+            footage.write_images(changed(a.video, light), frames)
+            try:
+                now = footage.track(a.track_bag, frames, roi, table, params)
+            except footage.Refused as refused:
+                sys.exit(f"light: {refused}")
             base = base or now
             verdict = {}
             if a.judge:

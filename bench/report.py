@@ -11,12 +11,13 @@ import datetime
 import os
 import pathlib
 
-import make_sequences  # beside this file, as is reporting/
-from reporting import channels, compare, convergence, gates, honesty, kernels, measuring, occlusion, search
+import footage  # beside this file, as are these two:
+import make_sequences
+from reporting import calibration, channels, compare, convergence, gates, honesty, kernels, measuring, occlusion, real, search
 from reporting.document import Report
 
 PARTS = {"kernels": kernels, "compare": compare, "channels": channels, "convergence": convergence, "honesty": honesty, "gates": gates, "occlusion": occlusion,
-         "search": search}
+         "search": search, "real": real, "calibration": calibration}
 
 
 def arguments():
@@ -32,6 +33,10 @@ def arguments():
                    help="for convergence, instead of the first sequence's first image; may be repeated")
     p.add_argument("--region", nargs=2, action="append", default=[], metavar=("VIDEO or VIDEO@FRAME", "X,Y,W,H"),
                    help="for the search: a region of a film from that image on; may be repeated, without one this part is left out")
+    p.add_argument("--data", type=pathlib.Path, help="folder of films, for real footage and calibration; without one they are left out")
+    p.add_argument("--regions", type=pathlib.Path, default=footage.REGIONS, help="table film,roi,from of regions in these")
+    p.add_argument("--checker", type=pathlib.Path, help="program that judges a tracker's table of a film, as real.py says: for real footage")
+    p.add_argument("--track-bag", type=pathlib.Path, help="the program: for calibration, also on sequences alone")
     p.add_argument("--trials", type=int, default=200, help="of convergence, at each distance")
     p.add_argument("--corners", default="1:20", help="px, FIRST:LAST[:STEP], of convergence: noise of the corners")
     p.add_argument("--shifts", default="5:40:5", help="px, FIRST:LAST[:STEP], likewise: translation")
@@ -40,9 +45,12 @@ def arguments():
     p.add_argument("--jobs", type=int, default=os.cpu_count(), help="programs at once, of those that do not measure times")
     p.add_argument("--quick", action="store_true", help="few trials: to see that it works")
     a = p.parse_args()
+    a.here = pathlib.Path(__file__).resolve().parent
     a.programs = a.build / "bench"
     if not (a.programs / "bench_compare").exists():
         p.error(f"{a.programs}: no bench_compare; build the target `bench` first")
+    if a.checker and not a.data:
+        p.error("--checker judges films: --data says where they are")
     return a
 
 

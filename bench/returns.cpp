@@ -72,12 +72,13 @@ Scene enlarged(const Scene& scene, double factor) {
 
 Tally trial(const Scene& scene, std::size_t which, const Change& change, double absence, std::vector<double>& searching,
             std::vector<std::string>& reasons) {
-  std::mt19937 random(1);
+  std::mt19937 grains(1);  // no two images are the same: a feed that repeats itself is not tracked
   tracking::RegionTracker tracker{tracking::TrackerConfig()};
   tracker.select(scene.reference, 0.0, scene.roi);
   double now = 0.0;
   for (const cv::Mat& image : scene.before) tracker.track(image, now += kPeriod);
   const cv::Mat black = cv::Mat::zeros(scene.reference.size(), scene.reference.type());
+  const Change nothing;
   Tally tally;
   tally.trials = 1;
   const auto step = [&](const cv::Mat& image) -> const tracking::TrackResult& {
@@ -86,13 +87,16 @@ Tally trial(const Scene& scene, std::size_t which, const Change& change, double 
     if (result.state != tracking::State::kTracking) searching.push_back(threadSeconds() - start);
     return result;
   };
-  for (int k = 0; k < 12; ++k) step(black);
+  for (int k = 0; k < 12; ++k) {
+    Eigen::Matrix3d anywhere = Eigen::Matrix3d::Identity();
+    step(changed(black, nothing, scene.roi, anywhere, grains, grains));
+  }
   now += absence;
   std::string reason;
   for (int k = 1; k <= kMost; ++k) {
     Eigen::Matrix3d g = scene.g[which];
-    std::mt19937 same(1);
-    const cv::Mat image = changed(scene.images[which], change, scene.roi, g, k == 1 ? random : same);
+    std::mt19937 same(1);  // it stays where it is
+    const cv::Mat image = changed(scene.images[which], change, scene.roi, g, same, grains);
     const tracking::TrackResult& r = step(image);
     if (r.state != tracking::State::kTracking) {
       reason = r.reason;

@@ -180,7 +180,7 @@ void measure(const Method& method, const Scene& scene, Tally& tally) {
   for (std::size_t k = 0; k < scene.images.size(); ++k) {
     for (const Change& change : changes()) {
       Eigen::Matrix3d truth = scene.g[k];
-      const cv::Mat image = changed(scene.images[k], change, scene.roi, truth, random);
+      const cv::Mat image = changed(scene.images[k], change, scene.roi, truth, random, random);
       const double start = threadSeconds();
       const Points seen = draw(method.of_image, image, cv::Mat1b(), method.max_pixels, kMostOfImage, method.twice);
       const double drawn = threadSeconds();

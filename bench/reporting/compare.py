@@ -54,7 +54,12 @@ def write(report, a):
     report.text("## Beside its peers", "All trackers get each image in turn, on one thread, in one run. Error: the worst corner, mean "
                 f"over the frames kept. Kept: said to be tracked, and wrong by less than {LOST:.0f} px. Lies: said to be tracked, and wrong by "
                 "more. Peers that have no test of their own claim every frame unless they give up. Median, p99: wall time per image while it goes on; "
-                "the ratio is of processor times.")
+                "the ratio is of processor times.",
+                "Beside these, what the field publishes. Points are the centres of the region's 14 x 14 areas; one is visible where less than half of its area "
+                "is covered and it lies in the image; it is claimed when the tracker says that it tracks, which it says of all points at once. Average Jaccard (TAP-Vid): "
+                "points that are visible, claimed and near, over those that are visible and those wrongly claimed. Average accuracy (TAP-Vid, STIR): the share of visible points that "
+                "are near, whatever is claimed; and with those wrong that are not claimed. Both are means over what is near: 2, 4, 8, 16 and 32 px of the image. "
+                "Alignment error (POT): root mean square of the four corners, and the share of images in which it is under 5 and 15 px. The first image does not count.")
     sequences = json.loads(jobs(a)[0].result.read_text())
     write_summary(report, sequences)
     for sequence in sequences:
@@ -64,4 +69,7 @@ def write(report, a):
                      [[t["name"], number(t["error_mean"]), number(t["error_p95"]), f"{t['kept']:.0f}", f"{t['lies']:.0f}",
                        f"{t['silent']:.0f}", number(t["ms_median"]), number(t["ms_p99"]), number(ratio(t["ms_p99"], t["ms_median"]), 1),
                        number(t["time_ratio"], 2)] for t in sequence["trackers"]])
+        report.table(["tracker", "average Jaccard", "average accuracy", "the same, claimed", "alignment error, median [px]", "under 5 px", "under 15 px"],
+                     [[t["name"], number(t["average_jaccard"]), number(t["average_accuracy"]), number(t["average_claimed_accuracy"]),
+                       number(t["alignment_median"]), number(t["precision_5"]), number(t["precision_15"])] for t in sequence["trackers"]])
         draw(report, sequence)

@@ -63,7 +63,7 @@ Scene trackedScene(const std::string& text, int count, double seconds) {
 }
 
 cv::Mat changed(const cv::Mat& image, const Change& change, const geometry::Rectangle& roi, Eigen::Matrix3d& g,
-                std::mt19937& random) {
+                std::mt19937& random, std::mt19937& grains) {
   const Eigen::Vector2d middle = geometry::apply(g, roi.centre());
   std::uniform_real_distribution<double> shift(-0.06, 0.06);
   const double side = std::min(image.cols, image.rows);
@@ -98,7 +98,7 @@ cv::Mat changed(const cv::Mat& image, const Change& change, const geometry::Rect
     cv::rectangle(exact, from, to, cv::Scalar(150, 150, 155), cv::FILLED);
   }
   cv::Mat grain(exact.size(), exact.type());
-  cv::RNG rng(random());
+  cv::RNG rng(grains());
   rng.fill(grain, cv::RNG::NORMAL, 0.0, kNoise);
   exact += grain;
   exact.convertTo(result, CV_8U);

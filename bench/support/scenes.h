@@ -36,9 +36,9 @@ struct Change {
 };
 
 // The image so changed, about where `g` shows the region, with two grey levels of noise; `g` follows. What the film
-// does not show is black.
+// does not show is black. `random` says whereto it is moved besides; `grains` makes the noise, and may be the same.
 cv::Mat changed(const cv::Mat& image, const Change& change, const geometry::Rectangle& roi, Eigen::Matrix3d& g,
-                std::mt19937& random);
+                std::mt19937& random, std::mt19937& grains);
 
 // s that this thread has computed: other programs do not count.
 double threadSeconds();
