@@ -37,14 +37,19 @@ void Irls::reserve(int unknowns, int rows) {
   }
 }
 
-bool Irls::step(const std::vector<Row>& rows, double variance, const Eigen::MatrixXd& information) {
+bool Irls::step(const std::vector<Row>& rows, double variance, const Eigen::MatrixXd& information,
+                const Eigen::VectorXd& expected) {
   const int unknowns = static_cast<int>(x_.size());
   if (information.size() > 0) {
     normal_ = variance * information;
   } else {
     normal_.setZero();
   }
-  right_.setZero();
+  if (information.size() > 0 && expected.size() > 0) {
+    right_.noalias() = normal_ * expected;
+  } else {
+    right_.setZero();
+  }
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const Row& row = rows[i];
     const double weight = row.weight * weights_[i];
@@ -74,7 +79,7 @@ IrlsResult Irls::fail(IrlsResult result) {
 }
 
 IrlsResult Irls::solve(int unknowns, const std::vector<Row>& rows, const IrlsConfig& config,
-                       const Eigen::MatrixXd& information) {
+                       const Eigen::MatrixXd& information, const Eigen::VectorXd& expected) {
   if (x_.size() != unknowns) reserve(unknowns, static_cast<int>(rows.size()));
   IrlsResult result;
   x_.setZero();
@@ -98,7 +103,7 @@ IrlsResult Irls::solve(int unknowns, const std::vector<Row>& rows, const IrlsCon
       const double u = result.sigma > 0.0 ? centred / result.sigma : centred == 0.0 ? 0.0 : 2.0 * kTukey;
       weights_[i] = config.weights == Weights::kTukey ? tukeyWeight(u) : huberWeight(u);
     }
-    if (!step(rows, result.sigma * result.sigma, information)) return fail(result);
+    if (!step(rows, result.sigma * result.sigma, information, expected)) return fail(result);
     const double change = (next_ - x_).lpNorm<Eigen::Infinity>();
     x_.swap(next_);
     result.solved = true;

@@ -40,10 +40,10 @@ class Irls {
   // Up to so many unknowns and rows nothing is allocated afterwards.
   void reserve(int unknowns, int rows);
 
-  // Starts from x = 0. `information`, unknowns x unknowns, is what is known of x beforehand: the inverse of its
-  // covariance about 0; empty where nothing is.
+  // Starts from x = 0. `information`, unknowns x unknowns, is what is known of x beforehand, the inverse of its
+  // covariance about `expected`; empty where nothing is, and `expected` where that is 0.
   IrlsResult solve(int unknowns, const std::vector<Row>& rows, const IrlsConfig& config,
-                   const Eigen::MatrixXd& information = {});
+                   const Eigen::MatrixXd& information = {}, const Eigen::VectorXd& expected = {});
 
   // Of the last solve() that returned solved.
   const Eigen::VectorXd& x() const { return x_; }
@@ -54,7 +54,8 @@ class Irls {
 
  private:
   IrlsResult fail(IrlsResult result);
-  bool step(const std::vector<Row>& rows, double variance, const Eigen::MatrixXd& information);
+  bool step(const std::vector<Row>& rows, double variance, const Eigen::MatrixXd& information,
+            const Eigen::VectorXd& expected);
 
   Eigen::VectorXd x_, next_, right_;
   Eigen::MatrixXd normal_, covariance_;

@@ -100,6 +100,21 @@ TEST(Irls, whatIsKnownBeforehandHoldsWhatRowsLeaveOpen) {
   EXPECT_NEAR(irls.covariance()(1, 1), 1e6, 1.0);
 }
 
+// One row that says 4, as good as what was expected, which is 2: the middle.
+TEST(Irls, rowsAndWhatWasExpectedAreWeighed) {
+  std::vector<Row> rows(1);
+  rows[0].count = 1;
+  rows[0].a = {1.0};
+  rows[0].b = 4.0;
+  Irls irls;
+  IrlsConfig config;
+  config.min_sigma = 0.1;
+  const Eigen::MatrixXd information = Eigen::MatrixXd::Constant(1, 1, 100.0);
+  ASSERT_TRUE(irls.solve(1, rows, config, information, Eigen::VectorXd::Constant(1, 2.0)).solved);
+  EXPECT_NEAR(irls.x()[0], 3.0, 1e-9);
+  EXPECT_NEAR(irls.covariance()(0, 0), 0.005, 1e-9);
+}
+
 // Coefficients that go on at the first column: as if they had been written there.
 TEST(Irls, rowsGoRound) {
   std::vector<Row> round = straightLine(40, 0.1, 0), straight = round;
