@@ -10,6 +10,7 @@ namespace {
 
 constexpr int kHypotheses = 64;  // with 40 % of the candidates right, three are in one of 64 triples but for 1.4 %
 constexpr int kDraw = 3;
+constexpr double kEnough = 0.75;    // share of the score that all sites on edges would have: no other motion has more
 constexpr double kTolerance = 2.5;  // px: what a sample every other pixel, and a curve that changes its shape, leave
 constexpr double kNoise = 0.7;      // px, of one candidate
 
@@ -52,12 +53,17 @@ void CoarseMotion::describe(const std::vector<Site>& sites, const std::vector<We
   radius_ = std::max(1.0, std::sqrt(squares / static_cast<double>(sites.size())));
   rows_.clear();
   with_candidates_.clear();
+  most_ = 0.0;
   for (std::size_t i = 0; i < sites.size(); ++i) {
     const Eigen::Vector2d arm = (sites[i].point - centre_) / radius_, n = sites[i].normal;
     rows_.emplace_back(n.x(), n.y(), n.dot(arm), n.y() * arm.x() - n.x() * arm.y());
-    bool any = false;
-    for (int k = 0; k < candidates[i].found.count; ++k) any |= candidates[i].weight[static_cast<std::size_t>(k)] > 0.0f;
-    if (any && !sites[i].probe) with_candidates_.push_back(static_cast<int>(i));
+    float best = 0.0f;
+    for (int k = 0; k < candidates[i].found.count; ++k) {
+      best = std::max(best, candidates[i].weight[static_cast<std::size_t>(k)]);
+    }
+    if (!(best > 0.0f) || sites[i].probe) continue;
+    with_candidates_.push_back(static_cast<int>(i));
+    most_ += static_cast<double>(best);
   }
 }
 
@@ -112,7 +118,7 @@ CoarseResult CoarseMotion::find(const std::vector<Site>& sites, const std::vecto
   double best_score = score(candidates, best);
   Draws draws;
   const Eigen::Matrix4d known = information(range);
-  for (int h = 0; h < kHypotheses; ++h) {
+  for (int h = 0; h < kHypotheses && best_score < kEnough * most_; ++h) {
     Eigen::Matrix4d normal = known;
     Motion right = Motion::Zero();
     for (int k = 0; k < kDraw; ++k) {
@@ -139,6 +145,7 @@ CoarseResult CoarseMotion::find(const std::vector<Site>& sites, const std::vecto
     best = motion;
   }
   result.score = best_score;
+  result.share = best_score / most_;
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     if (!sites[i].probe) result.largest = std::max(result.largest, std::abs(rows_[i].dot(best)));
   }

@@ -18,6 +18,7 @@ struct WeightedCandidates {
 struct CoarseResult {
   Eigen::Matrix3d motion = Eigen::Matrix3d::Identity();  // a similarity, px
   double score = 0.0;    // weights of the sites that agree, each the less the further it is from its edge
+  double share = 0.0;    // of the score that all sites on edges would have
   double largest = 0.0;  // px along the normal, of any site
 };
 
@@ -38,6 +39,7 @@ class CoarseMotion {
   std::vector<int> with_candidates_;
   Eigen::Vector2d centre_ = Eigen::Vector2d::Zero();
   double radius_ = 1.0;
+  double most_ = 0.0;  // score of sites that all lie on their best edge
 };
 
 }  // namespace laparoscope_servo::features

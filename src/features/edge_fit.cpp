@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "features/chance.h"
 #include "features/coarse_motion.h"
@@ -16,6 +17,7 @@ constexpr int kCoarseSites = 64;
 constexpr double kCoarseStep = 2.0;  // px between samples
 // The fine stage: how far it searches, px, round by round, until a round moves the curve by less than kSettled.
 constexpr double kFineRange[] = {6.0, 3.0, 2.0, 2.0};
+constexpr double kClose = 0.7;  // of the coarse stage's score: the first round is left out
 constexpr double kSettled = 0.05;
 constexpr double kMinSigma = 0.1;  // px: what sampling leaves of an edge without noise
 // px: edges of a straight thing spread less about its line. What is gathered from a texture spreads more: where less
@@ -224,7 +226,9 @@ class EdgeFit::Implementation {
     irls.min_step = 1e-3;
     irls.max_iterations = 10;
     double moved = 0.0;
-    for (const double fine : kFineRange) {
+    // Where the whole curve moves alike the coarse stage has come close.
+    for (std::size_t round = coarse.share > kClose ? 1 : 0; round < std::size(kFineRange); ++round) {
+      const double fine = kFineRange[round];
       curve.sites(config_.spacing, config_.max_sites, sites_);
       findings_.resize(sites_.size());
       look(image, {fine, 1.0});
