@@ -6,6 +6,7 @@
 
 #include "laparoscope_servo/robust/median.h"
 #include "laparoscope_servo/robust/scale.h"
+#include "laparoscope_servo/robust/weights.h"
 #include "laparoscope_servo/validation/error_report.h"
 
 namespace laparoscope_servo::servo {
@@ -22,11 +23,6 @@ void throwUnlessValid(const InsertionPointConfig& config, const std::optional<In
 
 double distanceFromLine(const Eigen::Vector3d& point, const Shaft& line) {
   return line.direction.cross(point - line.point).norm();
-}
-
-double tukeyWeight(double normalised) {
-  const double t = normalised / robust::kTukey;
-  return t < 1.0 ? (1.0 - t * t) * (1.0 - t * t) : 0.0;
 }
 
 using Eigen3d = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>;  // eigenvalues ascending
@@ -118,7 +114,7 @@ void InsertionPointEstimator::solve(double scale) {
   const double noise = 2.0 * config_.direction_noise * config_.direction_noise;
   for (const Sample& sample : samples_) {
     const double variance = scale * scale * sample.variance;
-    const double weight = tukeyWeight(sample.distance / std::sqrt(variance)) / variance;
+    const double weight = robust::tukeyWeight(sample.distance / std::sqrt(variance)) / variance;
     const Eigen::Vector3d& a = sample.shaft.direction;
     const Eigen::Vector3d p = sample.shaft.point - origin;
     information += weight * (Eigen::Matrix3d::Identity() - a * a.transpose());

@@ -1,0 +1,70 @@
+// Tracking features asks for no memory once it is under way.
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "laparoscope_servo/features/curve_tracker.h"
+#include "laparoscope_servo/features/dots.h"
+#include "laparoscope_servo/features/ellipse.h"
+#include "laparoscope_servo/features/line.h"
+#include "support/allocation_counter.h"
+#include "support/synthetic_edges.h"
+
+namespace laparoscope_servo::features {
+namespace {
+
+constexpr int kImages = 12;
+constexpr int kCovered = 8;  // from this image on: the search asks for none either
+
+// A disc, whose outline is a dot's and an ellipse's, beside the border of a half plane.
+std::vector<cv::Mat> images() {
+  std::vector<cv::Mat> result;
+  for (int k = 0; k < kImages; ++k) {
+    test::EdgeScene scene;
+    scene.seed = static_cast<unsigned>(k + 1);
+    const test::Region disc = test::ellipse({90.0 + k, 120.0}, 25.0, 22.0, 0.3), half = test::halfPlane(220.0 + k, 0.0);
+    result.push_back(test::draw(
+        scene, [&](const Eigen::Vector2d& p) { return disc(p) || half(p); },
+        [&](cv::Mat1f& pixels) {
+          if (k >= kCovered) pixels.setTo(100.0f);
+        }));
+  }
+  return result;
+}
+
+template <class Tracker>
+void expectNoAllocations(Tracker& tracker) {
+#ifndef COUNTS_ALLOCATIONS
+  GTEST_SKIP() << "allocations can be counted with glibc's own allocator only";
+#endif
+  const std::vector<cv::Mat> sequence = images();
+  for (int k = 1; k < kImages; ++k) {
+    allocations = 0;
+    counting = true;
+    const State state = tracker.track(sequence[static_cast<std::size_t>(k)], 0.04 * k).state;
+    counting = false;
+    EXPECT_EQ(state, k < kCovered ? State::kTracking : State::kSearching) << "image " << k;
+    EXPECT_EQ(allocations, 0) << "image " << k;
+  }
+}
+
+TEST(FeaturesAllocation, thereIsNoneForALine) {
+  CurveTracker<Line> tracker;
+  tracker.select(images()[0], 0.0, Line({220.0, 30.0}, {220.0, 200.0}));
+  expectNoAllocations(tracker);
+}
+
+TEST(FeaturesAllocation, thereIsNoneForAnEllipse) {
+  CurveTracker<Ellipse> tracker;
+  tracker.select(images()[0], 0.0, Ellipse({90.0, 120.0}, 25.0, 22.0, 0.3));
+  expectNoAllocations(tracker);
+}
+
+TEST(FeaturesAllocation, thereIsNoneForDots) {
+  DotTracker tracker;
+  tracker.select(images()[0], 0.0, {{90.0, 120.0}});
+  expectNoAllocations(tracker);
+}
+
+}  // namespace
+}  // namespace laparoscope_servo::features
