@@ -30,8 +30,6 @@ constexpr double kBound = 16.0;
 constexpr double kJump = 100.0;  // the same: where no explanation is nearer, the tracker slipped or the tissue was torn
 // And here another picture may have taken the place: tissue that is pulled by 20 mm in half a second stays below.
 constexpr double kOther = 400.0;
-// Standard deviations of what stamps make: evenly spread ones are never further from each other.
-constexpr double kScattered = 3.5;
 // Log of how much less likely it is that a fault begins in an image than that there is none. Chosen, not varied since:
 // less lets faults that explain nothing lie nearer to the doubt, more makes those that begin later be found later.
 constexpr double kOnset = 3.0;
@@ -236,8 +234,7 @@ double EffectGuard::compare(const EffectObservation& image, const Features& nois
     // An explanation by which the picture is nowhere would stay without a likelihood, and the best of all with it.
     if (!innovation.allFinite()) return std::numeric_limits<double>::infinity();
     innovations.push_back(innovation);
-    const Features beyond = (innovation.cwiseAbs() - kScattered * scattered).cwiseMax(0.0);
-    nearest = std::min(nearest, beyond.cwiseAbs2().cwiseQuotient(variance).maxCoeff());
+    nearest = std::min(nearest, innovation.cwiseAbs2().cwiseQuotient(variance).maxCoeff());
   }
   if (!(nearest < kJump)) return nearest;
   calm(image.time - last_.time, innovations, variance);
