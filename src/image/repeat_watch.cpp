@@ -78,6 +78,8 @@ Repeats RepeatWatch::see(const cv::Mat& image, const cv::Rect& region) {
   take(image, ring_[static_cast<std::size_t>(newest_)]);
   const cv::Rect in_image = region & cv::Rect(cv::Point(0, 0), size_);
   counts_.whole = repeats(cv::Rect(cv::Point(0, 0), tiles_)) ? counts_.whole + 1 : 0;
+  const int in_loop = loopRepeats();
+  if (in_loop > 1) counts_.whole = std::max(counts_.whole, in_loop);
   const cv::Rect tiles = tilesOf(in_image, tiles_);
   counts_.region = !in_image.empty() && (repeats(tiles) || bandRepeats(tiles)) ? counts_.region + 1 : 0;
   counts_.region = std::max(counts_.region, counts_.whole);
@@ -89,6 +91,8 @@ Repeats RepeatWatch::see(const cv::Mat& image, const cv::Rect& region) {
 
 void RepeatWatch::clear() {
   known_ = 0;
+  wholes_.clear();
+  loop_ = 0;
   counts_ = Repeats();
   std::fill(history_.begin(), history_.end(), History());
   watched_ = cv::Rect();
@@ -112,6 +116,23 @@ void RepeatWatch::take(const cv::Mat& image, Prints& prints) const {
       }
     }
   }
+}
+
+int RepeatWatch::loopRepeats() {
+  Print whole;
+  for (const Print& tile : printsOf(0)) {
+    for (std::size_t field = 0; field < 2; ++field) {
+      whole.field[field] = mixed(whole.field[field], tile.field[field]);
+    }
+  }
+  wholes_.push_front(whole);
+  if (wholes_.size() > kLoop + 1) wholes_.pop_back();
+  const auto same = [&](std::size_t back) { return back < wholes_.size() && wholes_[back].field == whole.field; };
+  if (loop_ > 0 && same(loop_)) return ++in_loop_;
+  loop_ = 1;
+  while (loop_ < wholes_.size() && !same(loop_)) ++loop_;
+  if (loop_ == wholes_.size()) loop_ = 0;
+  return in_loop_ = loop_ > 0 ? 1 : 0;
 }
 
 const RepeatWatch::Prints& RepeatWatch::printsOf(int back) const {

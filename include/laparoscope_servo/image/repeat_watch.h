@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <opencv2/core.hpp>
 #include <vector>
 
@@ -29,6 +30,10 @@ class RepeatWatch {
   // Pictures that are remembered: more than the buffers of a driver (V4L2's usual number is 4), so that old pictures
   // which come in turn are found, too.
   static constexpr int kMemory = 8;
+  // And of these, the whole alone, in the order in which they came: a grabber that goes over the same seconds again and
+  // again. 10 s at 25 Hz; as many of 640x480 in colour are 236 MB, more than one holds. A film that runs backwards
+  // shows old pictures in another order.
+  static constexpr int kLoop = 256;
   static constexpr int kTile = 16;       // px: a macroblock
   static constexpr int kBand = 4;        // tiles: what a codec skips does not reach across the picture in all of them
   static constexpr double kPart = 0.25;  // of the region's texture: less does not drag the tracker along
@@ -48,6 +53,7 @@ class RepeatWatch {
   void take(const cv::Mat& image, Prints& prints) const;
   // Of the picture `back` before the newest, 0 to known_.
   const Prints& printsOf(int back) const;
+  int loopRepeats();
   bool repeats(const cv::Rect& tiles) const;
   bool hasBeenLive(const cv::Rect& tiles) const;
   bool bandRepeats(const cv::Rect& tiles) const;
@@ -61,7 +67,10 @@ class RepeatWatch {
   cv::Size tiles_;
   std::array<Prints, kMemory + 1> ring_;  // of this picture and those before
   int newest_ = 0;
-  int known_ = 0;  // pictures before the newest
+  std::deque<Print> wholes_;  // of whole pictures, up to kLoop of them
+  std::size_t loop_ = 0;      // pictures, after which they come again; 0: they do not
+  int in_loop_ = 0;           // pictures in a row
+  int known_ = 0;             // pictures before the newest
   Repeats counts_;
   // Of a tile, whatever the others do.
   struct History {

@@ -43,6 +43,7 @@ void TrackerSession::passGate(const Processed& processed, double& period) {
   if (passed.step_back > 0.0) {
     time_offset_ = time_ + passed.period - stamp.toSec();
     believed_stamp_.reset();
+    repeats_.clear();  // a film that begins anew shows the same pictures
   }
   time_ = stamp.toSec() + time_offset_;
   if (passed.loop) recall_.end("time jumped back");

@@ -43,8 +43,8 @@ constexpr double kLeastReach = 0.5;
 
 struct EffectGuard::Track {
   EffectExplanation explanation;
-  Features moved = Features::Zero();     // by the scope, since the start
-  Features place = Features::Zero();     // of the tissue
+  Features moved = Features::Zero();     // by the scope
+  Features place = Features::Zero();     // of the tissue, if the scope had not moved
   Features velocity = Features::Zero();  // 1/s
   double log_likelihood = 0.0;
 
@@ -116,9 +116,9 @@ void EffectGuard::start(const EffectObservation& image, bool other) {
   last_ = image;
   if (other) budget_.interrupt();
   for (Track& track : tracks_) {
-    track.moved.setZero();
+    if (!track.moved.allFinite()) track.moved.setZero();
     track.velocity.setZero();
-    track.place = track.seen(image.error);
+    track.place = track.seen(image.error) - track.moved;
   }
   for (int k = 0; k < 4; ++k) covariance_[k] = Eigen::Vector2d(noise_[k], tissue_[k] * tissue_[k]).asDiagonal();
 }
@@ -154,6 +154,7 @@ Effect EffectGuard::observe(const EffectObservation& image, const CommandHistory
     if (!in_vain && reports(first.time) && last_report_ < first.time) break;
     waiting_.pop_front();
     if (in_vain) {
+      scatter_.restart();
       start(first, isOther(first));
     } else {
       judge(first, commands, delay);
@@ -178,19 +179,27 @@ bool EffectGuard::isOther(const EffectObservation& image) const {
 void EffectGuard::judge(const EffectObservation& image, const CommandHistory& commands, double delay) {
   const double dt = image.time - last_.time;
   if (isOther(image)) {
+    scatter_.restart();
     start(image, true);
     return;
   }
   // Those that come equally late stand beside each other.
   double late = std::numeric_limits<double>::quiet_NaN();
   Eigen::Vector4d displacement;
+  Features fastest = Features::Zero();
   for (Track& track : tracks_) {
     if (track.explanation.late != late) displacement = executed(image.time, track.explanation.late, commands, delay);
     late = track.explanation.late;
-    track.moved += predicted(track.explanation, displacement);
+    const Features step = predicted(track.explanation, displacement);
+    track.moved += step;
+    if (track.explanation.reach == 1.0) fastest = fastest.cwiseMax(step.cwiseAbs());
   }
   advance(dt);
-  const double off = compare(image, commands.displacement(image.time, image.time + kSpan, delay));
+  double quality = kWorst;  // also where the corner error is NaN
+  if (image.corner_error < kWorst * kCornerError) quality = std::max(1.0, image.corner_error / kCornerError);
+  const Features noise = quality * quality * noise_;
+  measureScatter(image, noise, fastest / dt);
+  const double off = compare(image, noise, commands.displacement(image.time, image.time + kSpan, delay));
   if (!(off < kJump)) {
     start(image, !(off < kOther));
     return;
@@ -199,13 +208,19 @@ void EffectGuard::judge(const EffectObservation& image, const CommandHistory& co
   judge();
 }
 
+void EffectGuard::measureScatter(const EffectObservation& image, const Features& noise, const Features& expected) {
+  std::vector<Features> left;
+  for (const Track& track : tracks_) left.push_back(track.seen(image.error) - track.moved);
+  const Features seen(image.error.x, image.error.y, image.error.log_depth, image.error.alpha);
+  scatter_.take(image.time, seen, left, noise, expected);
+}
+
 // How far the image is from the nearest of what was expected, square over variance.
-double EffectGuard::compare(const EffectObservation& image, const Eigen::Vector4d& pending) {
-  double quality = kWorst;  // also where the corner error is NaN
-  if (image.corner_error < kWorst * kCornerError) quality = std::max(1.0, image.corner_error / kCornerError);
+double EffectGuard::compare(const EffectObservation& image, const Features& noise, const Eigen::Vector4d& pending) {
+  const Features scattered = scatter_.seconds() * scatter_.speed();
   Features variance, place_gain, velocity_gain;
   for (int k = 0; k < 4; ++k) {
-    variance[k] = covariance_[k](0, 0) + quality * quality * noise_[k];
+    variance[k] = covariance_[k](0, 0) + noise[k] + scattered[k] * scattered[k];
     const Eigen::Vector2d gain = covariance_[k].col(0) / variance[k];
     place_gain[k] = gain[0];
     velocity_gain[k] = gain[1];

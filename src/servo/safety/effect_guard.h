@@ -29,6 +29,7 @@
 #include "servo/safety/effect.h"
 #include "servo/safety/effect_budget.h"
 #include "servo/safety/reported_motion.h"
+#include "servo/safety/stamp_scatter.h"
 
 namespace laparoscope_servo::servo {
 
@@ -88,7 +89,8 @@ class EffectGuard {
   void advance(double dt);
   Eigen::Vector4d executed(double end, double late, const CommandHistory& commands, double delay) const;
   Features predicted(const EffectExplanation& explanation, const Eigen::Vector4d& displacement) const;
-  double compare(const EffectObservation& image, const Eigen::Vector4d& pending);
+  void measureScatter(const EffectObservation& image, const Features& noise, const Features& expected);
+  double compare(const EffectObservation& image, const Features& noise, const Eigen::Vector4d& pending);
   void calm(double dt, const std::vector<Features>& innovations, const Features& variance);
   void begin(Track& fault, const Track& good) const;
   void judge();
@@ -106,7 +108,8 @@ class EffectGuard {
   EffectObservation last_;
   std::deque<EffectObservation> waiting_;
   std::array<Eigen::Matrix2d, 4> covariance_;  // of place and velocity, the same for each explanation
-  Features unrest_ = Features::Ones();         // over the variance that is expected
+  StampScatter scatter_;
+  Features unrest_ = Features::Ones();  // over the variance that is expected
   double evidence_ = 0.0;
   Effect effect_ = Effect::kAsCommanded;
   std::string words_;

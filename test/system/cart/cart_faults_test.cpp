@@ -116,6 +116,14 @@ bool goesOn(const FaultRow& row, Situation situation, const Reaction& r) {
   return row.outcome == Outcome::kEither && r.nearer > 0.0;
 }
 
+// On a busy machine images come late, and the scope is held for as long. That is not the fault's doing, and it goes on.
+void awaitServo(FaultCart& cart, Reaction& r) {
+  if (r.state != "HOLD") return;
+  cart.bench.waitFor([&] { return !cart.stateIs("HOLD"); }, kWatched);
+  r.state = cart.state();
+  r.reason = cart.reason();
+}
+
 class CartFaults : public testing::TestWithParam<Case> {};
 
 TEST_P(CartFaults, LeaveTheArmWhereItIsOrToItsTask) {
@@ -126,7 +134,8 @@ TEST_P(CartFaults, LeaveTheArmWhereItIsOrToItsTask) {
   ASSERT_EQ(cart.bringTo(situation), "");
   cart.mark();
   trial.begin();
-  const Reaction reaction = cart.watch(row.outcome == Outcome::kStands ? kWatched : kGoingOn, kCalm);
+  Reaction reaction = cart.watch(row.outcome == Outcome::kStands ? kWatched : kGoingOn, kCalm);
+  if (row.outcome == Outcome::kGoesOn && situation == Situation::kServo) awaitServo(cart, reaction);
   print(row.name, situation, reaction);
   if (goesOn(row, situation, reaction)) return;
   EXPECT_FALSE(row.outcome == Outcome::kGoesOn && situation == Situation::kServo)

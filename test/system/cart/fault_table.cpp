@@ -24,6 +24,13 @@ FaultRow image(const std::string& name, unsigned usually, Outcome outcome, const
   return row;
 }
 
+// The last pictures, over and over.
+FaultRow inTurn(const std::string& name, std::size_t count) {
+  FaultRow row = image(name + " in turn", kServo, Outcome::kStands, "HOLD LOST FAULT", {});
+  row.begin = [count](FaultCart& cart) { cart.relay->begin(image_faults::inTurn(cart.relay->last(count))); };
+  return row;
+}
+
 FaultRow other(
     const std::string& name, unsigned usually, unsigned otherwise, Outcome outcome, const std::string& states,
     const Begin& begin, const Begin& end = [](FaultCart&) {}) {
@@ -56,17 +63,30 @@ std::vector<FaultRow> ofImages() {
       image("frozen", kServo | kHold, Outcome::kStands, doubted, frozen),
       image("frozen where the region is", kServo, Outcome::kStands, doubted, frozenInside),
       image("half of the last", kServo, Outcome::kStands, doubted, half),
-      image("two in turn", kServo, Outcome::kStands, doubted, twoInTurn),
+      inTurn("two", 2),
+      inTurn("twelve", 12),
       image("swapped in pairs", kServo, Outcome::kEither, lost, swapped),
       image("mirrored left to right", kServo, Outcome::kStands, doubted, [] { return flipped(1); }),
       image("mirrored upside down", 0, Outcome::kStands, doubted, [] { return flipped(0); }),
       image("rolled by 180 degrees", kServo, Outcome::kStands, doubted, [] { return flipped(-1); }),
+      image("mirrored and rolled by 90 degrees", 0, Outcome::kStands, doubted, flippedAndTurned),
+      image("shifted by 40 px", 0, Outcome::kEither, doubted,
+            [] {
+              return warped({1.0, 0.0, 40.0, 0.0, 1.0, 0.0});
+            }),
+      image("enlarged by a quarter", 0, Outcome::kEither, doubted,
+            [] {
+              return warped({1.25, 0.0, -80.0, 0.0, 1.25, -60.0});
+            }),
       image("of another size", kServo, Outcome::kStands, lost, [] { return resized(320, 240); }),
       image("of one pixel", kServo, Outcome::kStands, lost, [] { return resized(1, 1); }),
       image("late by 0.5 s", kServo, Outcome::kStands, lost, [] { return late(0.5); }),
       image("1 in 5 stamped 30 ms early", kServo, Outcome::kEither, lost, [] { return stamped(-0.03, 5); }),
       image("1 in 5 stamped 1 s ahead", kServo, Outcome::kEither, lost, [] { return stamped(1.0, 5); }),
       image("stamped 1 s ahead", kServo, Outcome::kStands, lost, [] { return stamped(1.0); }),
+      image("stamped unevenly, 0 to 0.1 s later", kServo, Outcome::kGoesOn, "", [] { return unevenlyStamped(0.1); }),
+      image("all of one stamp", kServo, Outcome::kStands, lost, [] { return slowlyStamped(0.0); }),
+      image("stamps that go half as fast", 0, Outcome::kStands, lost, [] { return slowlyStamped(0.5); }),
       image("without stamps", kServo, Outcome::kStands, lost, unstamped),
       image("flickering", kServo, Outcome::kEither, lost, flickering),
       image("black", kServo, Outcome::kStands, lost, black),
@@ -109,6 +129,8 @@ std::vector<FaultRow> ofInputs() {
                [](FaultCart& cart) { cart.relay->begin(image_faults::silent()); }),
       stranger("measured velocity: another's", 0, kServo, Outcome::kEither, "HOLD LOST FAULT", "aesop/measured_cv",
                "measured", 50.0),
+      stranger("camera_info: another's, of twice the focal length", 0, kServo, Outcome::kGoesOn, "", "camera_info",
+               "intrinsics", 25.0),
       stranger("images: another's", kServo, kServo | kHold, Outcome::kEither, "HOLD LOST FAULT", "relayed/image_raw",
                "grey", 25.0),
   };
@@ -170,6 +192,9 @@ FaultRow process(const std::string& name, std::unique_ptr<ChildProcess> FaultCar
 
 std::vector<FaultRow> ofProcesses() {
   std::vector<FaultRow> rows{
+      process(
+          "controller: killed, started again", &FaultCart::controller, SIGKILL,
+          [](FaultCart& cart) { cart.startController(); }, ""),
       process("tracker: hangs", &FaultCart::tracker, SIGSTOP, {}, "HOLD LOST"),
       process("controller: hangs", &FaultCart::controller, SIGSTOP, {}, ""),
       other(
@@ -177,7 +202,9 @@ std::vector<FaultRow> ofProcesses() {
           [](FaultCart& cart) { cart.bench.node().kill(SIGSTOP); },
           [](FaultCart& cart) { cart.bench.node().kill(SIGCONT); }),
   };
-  rows[0].otherwise = kServo | kHold;
+  for (FaultRow& row : rows) {
+    if (row.name == "tracker: hangs") row.otherwise = kServo | kHold;
+  }
   return rows;
 }
 

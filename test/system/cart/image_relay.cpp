@@ -1,5 +1,6 @@
 #include "image_relay.h"
 
+#include <algorithm>
 #include <cmath>
 #include <deque>
 #include <memory>
@@ -38,8 +39,15 @@ void ImageRelay::end() {
   covered_ = false;
 }
 
+std::vector<sensor_msgs::ImageConstPtr> ImageRelay::last(std::size_t count) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return {kept_.end() - static_cast<std::ptrdiff_t>(std::min(count, kept_.size())), kept_.end()};
+}
+
 void ImageRelay::onImage(const sensor_msgs::ImageConstPtr& image) {
   const std::lock_guard<std::mutex> lock(mutex_);
+  kept_.push_back(image);
+  if (kept_.size() > kKept) kept_.pop_front();
   pass(*image, 0);
 }
 
@@ -100,13 +108,13 @@ ImageRelay::Fault frozenInside() {
   });
 }
 
-ImageRelay::Fault twoInTurn() {
-  const auto pictures = std::make_shared<std::vector<cv::Mat>>();
-  const auto count = std::make_shared<std::size_t>(0);
-  return changed([=](cv::Mat& mat) {
-    if (pictures->size() < 2) pictures->push_back(mat.clone());
-    (*pictures)[(*count)++ % pictures->size()].copyTo(mat);
-  });
+ImageRelay::Fault inTurn(const std::vector<sensor_msgs::ImageConstPtr>& pictures) {
+  const auto next = std::make_shared<std::size_t>(0);
+  return [=](const Image& image, const Publish& publish) {
+    Image out = *pictures[(*next)++ % pictures.size()];
+    out.header = image.header;
+    publish(out);
+  };
 }
 
 ImageRelay::Fault swapped() {
@@ -124,6 +132,19 @@ ImageRelay::Fault swapped() {
 
 ImageRelay::Fault flipped(int code) {
   return changed([code](cv::Mat& mat) { cv::flip(mat.clone(), mat, code); });
+}
+
+ImageRelay::Fault warped(const cv::Matx23d& to) {
+  return changed([to](cv::Mat& mat) { cv::warpAffine(mat.clone(), mat, to, mat.size()); });
+}
+
+ImageRelay::Fault flippedAndTurned() {
+  return changed([](cv::Mat& mat) {
+    cv::Mat flipped;
+    cv::flip(mat, flipped, 1);
+    const cv::Point2f middle(0.5F * static_cast<float>(mat.cols - 1), 0.5F * static_cast<float>(mat.rows - 1));
+    cv::warpAffine(flipped, mat, cv::getRotationMatrix2D(middle, 90.0, 1.0), mat.size());
+  });
 }
 
 ImageRelay::Fault half() {
@@ -173,6 +194,25 @@ ImageRelay::Fault unstamped() {
   return [](const Image& image, const Publish& publish) {
     Image out = image;
     out.header.stamp = ros::Time();
+    publish(out);
+  };
+}
+
+ImageRelay::Fault unevenlyStamped(double most) {
+  const auto random = std::make_shared<cv::RNG>(7);
+  return [=](const Image& image, const Publish& publish) {
+    Image out = image;
+    out.header.stamp += ros::Duration(random->uniform(0.0, most));
+    publish(out);
+  };
+}
+
+ImageRelay::Fault slowlyStamped(double rate) {
+  const auto first = std::make_shared<std::optional<ros::Time>>();
+  return [=](const Image& image, const Publish& publish) {
+    if (!*first) *first = image.header.stamp;
+    Image out = image;
+    out.header.stamp = **first + (image.header.stamp - **first) * rate;
     publish(out);
   };
 }

@@ -5,6 +5,7 @@
 #include <ros/ros.h>
 #include <sensor_msgs/Image.h>
 
+#include <deque>
 #include <functional>
 #include <mutex>
 #include <string>
@@ -27,14 +28,19 @@ class ImageRelay {
   // After those that have begun before.
   void begin(const Fault& fault);
   void end();
+  // The last `count` pictures that came, at most kKept, the oldest first.
+  std::vector<sensor_msgs::ImageConstPtr> last(std::size_t count);
 
  private:
+  static constexpr std::size_t kKept = 12;
+
   void onImage(const sensor_msgs::ImageConstPtr& image);
   void pass(const sensor_msgs::Image& image, std::size_t fault);
 
   std::mutex mutex_;
   std::vector<Fault> faults_;
   bool covered_ = false;
+  std::deque<sensor_msgs::ImageConstPtr> kept_;
   ros::CallbackQueue queue_;
   ros::NodeHandle node_;
   ros::Publisher publisher_;
@@ -48,12 +54,14 @@ namespace image_faults {
 ImageRelay::Fault frozen();
 // Only what lies in the middle, where the region is.
 ImageRelay::Fault frozenInside();
-// The last two pictures in turn.
-ImageRelay::Fault twoInTurn();
+// Those pictures over and over, with the stamps of the true ones.
+ImageRelay::Fault inTurn(const std::vector<sensor_msgs::ImageConstPtr>& pictures);
 // Each picture after its successor.
 ImageRelay::Fault swapped();
 // cv::flip's code: 0 upside down, 1 left to right, -1 both, which is a roll by 180 degrees.
 ImageRelay::Fault flipped(int code);
+// Mirrored left to right, and turned by 90 degrees about its middle.
+ImageRelay::Fault flippedAndTurned();
 // The lower half is what was there before, as of a JPEG that broke off.
 ImageRelay::Fault half();
 ImageRelay::Fault resized(int width, int height);
@@ -62,6 +70,12 @@ ImageRelay::Fault late(double seconds);
 // Every `period`-th stamp is off by `offset` [s]; 1: all.
 ImageRelay::Fault stamped(double offset, int period = 1);
 ImageRelay::Fault unstamped();
+// Each by another time, 0 to `most` [s], later.
+ImageRelay::Fault unevenlyStamped(double most);
+// The stamps go on at `rate` of the clock; 0: they all are that of the first.
+ImageRelay::Fault slowlyStamped(double rate);
+// By a matrix of 2 x 3, pixels to pixels: as a grabber that turns, shifts or enlarges the picture.
+ImageRelay::Fault warped(const cv::Matx23d& to);
 ImageRelay::Fault flickering();
 ImageRelay::Fault black();
 ImageRelay::Fault silent();

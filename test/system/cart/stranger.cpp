@@ -1,6 +1,7 @@
 #include "stranger.h"
 
 #include <geometry_msgs/TwistStamped.h>
+#include <sensor_msgs/CameraInfo.h>
 #include <sensor_msgs/Image.h>
 #include <std_msgs/Bool.h>
 #include <tf2_msgs/TFMessage.h>
@@ -67,6 +68,17 @@ sensor_msgs::Image grey() {
   image.data.resize(static_cast<std::size_t>(image.step) * image.height);
   for (std::size_t k = 0; k < image.data.size(); ++k) image.data[k] = static_cast<std::uint8_t>(k * k / 977);
   return image;
+}
+
+sensor_msgs::CameraInfo intrinsics() {
+  sensor_msgs::CameraInfo info;
+  info.header.stamp = ros::Time::now();
+  info.header.frame_id = "laparoscope_optical";
+  info.width = 640;
+  info.height = 480;
+  info.K = {800.0, 0.0, 319.5, 0.0, 800.0, 239.5, 0.0, 0.0, 1.0};
+  info.P = {800.0, 0.0, 319.5, 0.0, 0.0, 800.0, 239.5, 0.0, 0.0, 0.0, 1.0, 0.0};
+  return info;
 }
 
 geometry_msgs::TransformStamped transform(const std::string& parent, const std::string& child, double z) {
@@ -155,6 +167,7 @@ int runStranger(int argc, char** argv) {
              ready);
        }},
       {"grey", [&] { return publish<sensor_msgs::Image>(topic, rate, grey, ready); }},
+      {"intrinsics", [&] { return publish<sensor_msgs::CameraInfo>(topic, rate, intrinsics, ready); }},
       {"tip_off",
        [&] {
          return publish<tf2_msgs::TFMessage>(

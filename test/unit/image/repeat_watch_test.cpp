@@ -68,6 +68,32 @@ TEST_F(RepeatWatchTest, FindsOldPicturesThatComeInTurn) {
   }
 }
 
+// A loop of many old pictures: each shows motion and noise, but has been there before.
+TEST_F(RepeatWatchTest, FindsALoopOfManyPictures) {
+  std::vector<cv::Mat> pictures;
+  for (int k = 0; k < 40; ++k) pictures.push_back(noise(CV_8UC1));
+  for (const cv::Mat& picture : pictures) EXPECT_EQ(watch_.see(picture, kRegion).whole, 0);
+  EXPECT_EQ(watch_.see(pictures[0], kRegion).whole, 0) << "one is none";
+  for (int k = 1; k < 60; ++k) {
+    EXPECT_EQ(watch_.see(pictures[static_cast<std::size_t>(k % 40)], kRegion).whole, k + 1);
+  }
+  EXPECT_EQ(watch_.see(noise(CV_8UC1), kRegion).whole, 0);
+  watch_.clear();
+  for (int k = 20; k < 40; ++k) {
+    EXPECT_EQ(watch_.see(pictures[static_cast<std::size_t>(k)], kRegion).whole, 0) << "a film that began anew";
+  }
+}
+
+// Forwards and back, as films for tests are made: what is seen again is no loop.
+TEST_F(RepeatWatchTest, AFilmThatRunsBackwardsIsNoLoop) {
+  std::vector<cv::Mat> pictures;
+  for (int k = 0; k < 40; ++k) pictures.push_back(noise(CV_8UC1));
+  for (const cv::Mat& picture : pictures) watch_.see(picture, kRegion);
+  for (int k = 40 - RepeatWatch::kMemory; k-- > 0;) {
+    EXPECT_EQ(watch_.see(pictures[static_cast<std::size_t>(k)], kRegion).whole, 0);
+  }
+}
+
 TEST_F(RepeatWatchTest, FindsARegionThatRepeatsInALivePicture) {
   cv::Mat image = noise();
   watch_.see(image, kRegion);

@@ -36,9 +36,17 @@ class Scene {
       for (; !reports_.empty() && reports_.front().first <= time + kStep - report_late; reports_.pop_front()) {
         if (++reported_ % report_every == 0) guard.report(reports_.front().first, reports_.front().second);
       }
-      guard.observe(image(time + kStep), commands, kDelay);
+      take(image(time + kStep));
       strongest = std::max(strongest, guard.evidence());
     }
+  }
+
+  // An image whose stamp is off is later than it says; one that comes out of order is dropped.
+  void take(EffectObservation image) {
+    image.time += stamps_off * off_(random_);
+    if (!(image.time > last_stamp_)) return;
+    last_stamp_ = image.time;
+    guard.observe(image, commands, kDelay);
   }
 
   EffectObservation image(double at) {
@@ -67,6 +75,7 @@ class Scene {
   double corner_error = 0.1;  // px
   bool report = false;
   double report_late = 0.0;  // s
+  double stamps_off = 0.0;   // s, each by another time up to this
   int report_every = 1;      // of its reports so many are one that comes
   bool breath_known = false;
   double strongest = -100.0;
@@ -76,9 +85,11 @@ class Scene {
   CommandHistory told_{5.0, 0.2};
   std::deque<std::pair<double, scope::Velocity>> reports_;
   int reported_ = 0;
+  double last_stamp_ = -1.0;
   TaskError error_;
   std::mt19937 random_{1};
   std::normal_distribution<double> noise_{0.0, 0.0003};
+  std::uniform_real_distribution<double> off_{0.0, 1.0};
 };
 
 const scope::Velocity kRest;
@@ -128,6 +139,38 @@ TEST(EffectGuard, BelievesItThroughReportsThatAreLateOrFew) {
       EXPECT_LT(most_spent, 1.0) << late << " " << every;
     }
   }
+}
+
+// A grabber that stamps what it delivers, unevenly.
+TEST(EffectGuard, BelievesItThroughStampsThatAreOff) {
+  for (const double off : {0.04, 0.1}) {
+    for (const bool report : {false, true}) {
+      Scene scene;
+      scene.report = report;
+      scene.stamps_off = off;
+      scene.run(kRest, 1.0);
+      double speed = 0.0;
+      for (const double sign : {1.0, -1.0, 1.0}) {
+        for (int k = 0; k < 25; ++k) {
+          speed = std::clamp(speed + 0.5 * sign, -1.0, 1.0);
+          scene.run(scope::Velocity::fromVector(speed * kMotion.vector()), kStep);
+        }
+      }
+      EXPECT_EQ(scene.guard.effect(), Effect::kAsCommanded) << off << " " << scene.guard.words();
+      EXPECT_TRUE(scene.guard.confirmed()) << off;
+      EXPECT_LT(scene.strongest, 5.0) << off;
+    }
+  }
+}
+
+// Nor do such stamps hide a fault.
+TEST(EffectGuard, FindsAMirroredPictureThroughStampsThatAreOff) {
+  Scene scene;
+  scene.stamps_off = 0.1;
+  scene.run(kRest, 1.0);
+  scene.picture(0, 0) = -1.0;
+  for (int k = 0; k < 25 && scene.guard.effect() == Effect::kAsCommanded; ++k) scene.run(kMotion, kStep);
+  EXPECT_EQ(scene.guard.effect(), Effect::kDoubted) << scene.guard.evidence();
 }
 
 struct Fault {
