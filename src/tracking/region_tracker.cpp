@@ -152,7 +152,7 @@ TrackResult RegionTracker::Implementation::select(const cv::Mat& image, double s
   Attempt attempt;
   attempt.evidence.roi = roi;
   attempt.evidence.esm.status = EsmStatus::kConverged;
-  attempt.evidence.corner_error = error;
+  attempt.evidence.esm.corner_error = attempt.evidence.corner_error = error;
   attempt.evidence.centre_error = error;  // it is not known worse than the worst corner
   attempt.evidence.visible_fraction = cv::sum(aligner_.weights())[0] / roi.width / roi.height;
   attempt.evidence.zncc = 1.0;
@@ -316,6 +316,7 @@ const TrackResult& RegionTracker::Implementation::report(const Attempt& attempt)
   result.iterations = attempt.evidence.esm.iterations;
   result.corner_error = attempt.evidence.corner_error;
   result.centre_error = attempt.evidence.centre_error;
+  result.corner_scatter = attempt.evidence.esm.corner_error;
   result.sigma = attempt.evidence.esm.sigma;
   result.motion_used = carried_ && attempt.doubt.empty();
   result.gain = attempt.evidence.esm.state.gain;

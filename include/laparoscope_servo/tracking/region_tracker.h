@@ -44,10 +44,12 @@ struct TrackResult {
   int iterations = 0;                               // of ESM, all levels
   double corner_error = 0.0;  // px, standard deviation expected of the worst corner, by residuals and motion
   double centre_error = 0.0;  // px, the same of the ROI's centre, which may be known where the corners are not
-  double sigma = 0.0;         // grey levels, robust standard deviation of the residual
-  double gain = 1.0;          // gain * image + bias has the light of the reference
-  double bias = 0.0;          // grey levels
-  bool colour_used = false;   // false: the image has no colour, the colour gate stands aside
+  double corner_scatter =
+      0.0;             // px, of corner_error, what changes from image to image: without what the tissue deforms by
+  double sigma = 0.0;  // grey levels, robust standard deviation of the residual
+  double gain = 1.0;   // gain * image + bias has the light of the reference
+  double bias = 0.0;   // grey levels
+  bool colour_used = false;  // false: the image has no colour, the colour gate stands aside
   AreaReport areas;
   bool selected_now = false;  // this image is the reference
   bool motion_used = false;   // the motion that was given led to this estimate

@@ -95,7 +95,7 @@ TaskError taskErrorMessage(const Processed& processed) {
   message.desired_log_depth = error.desired_log_depth;
   message.desired_alpha = error.desired_alpha;
   message.visible_fraction = result.visible_fraction;
-  message.corner_error = result.corner_error;
+  message.corner_error = result.corner_scatter;
   return message;
 }
 

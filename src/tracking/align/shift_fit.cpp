@@ -24,6 +24,8 @@ constexpr double kShift = 0.08, kAffine = 0.04, kPerspective = 0.024;
 // films with noise of 1 and 3 grey levels and without then differ by 0.2 to 1.1 times what is claimed, in single images
 // by up to 4.5; with 36 pieces by 0.25 to 1.2 and 5.1; where nothing of this is claimed by 1.3 and 6.7 on one film.
 constexpr double kPieces = 9.0;
+// Fewer blocks, beside an instrument, tell nothing of the rest of the region.
+constexpr int kTelling = 8;
 
 Matrix8d knownBefore() {
   geometry::Vector8d spread;
@@ -58,7 +60,7 @@ double medianShift(const std::vector<BlockShift>& shifts, const Eigen::Matrix3d&
 Matrix8d deformationCovariance(const std::vector<BlockShift>& shifts, double median, const geometry::Rectangle& roi) {
   const double deviation = median / robust::kRayleighMedian;  // in each direction
   const int count = confidentShifts(shifts);
-  if (!(deviation > kPlace) || count < static_cast<int>(kFew)) return Matrix8d::Zero();
+  if (!(deviation > kPlace) || count < kTelling) return Matrix8d::Zero();
   const double variance = (deviation * deviation - kPlace * kPlace) / std::pow(halfSize(roi), 2);
   const double alike = std::max(1.0, static_cast<double>(shifts.size()) / kPieces);  // blocks of one piece
   const Eigen::Matrix3d n = templateFromPixels(roi);

@@ -23,7 +23,7 @@ struct ShiftFit {
 std::optional<ShiftFit> fitShifts(const std::vector<BlockShift>& shifts, const geometry::Rectangle& roi, double side);
 
 // Covariance of x, as above, that comes of tissue which is no plane, or deforms: of the confident shifts' `median`
-// [px], what is more than measuring a block errs by. Zero where the shifts are as small, or fewer than five.
+// [px], what is more than measuring a block errs by. Zero where the shifts are as small, or fewer than eight.
 Matrix8d deformationCovariance(const std::vector<BlockShift>& shifts, double median, const geometry::Rectangle& roi);
 
 // px of the image that `g` leads to, the median of the confident shifts; NaN when there is none.
