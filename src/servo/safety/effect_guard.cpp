@@ -30,6 +30,8 @@ constexpr double kBound = 16.0;
 constexpr double kJump = 100.0;  // the same: where no explanation is nearer, the tracker slipped or the tissue was torn
 // And here another picture may have taken the place: tissue that is pulled by 20 mm in half a second stays below.
 constexpr double kOther = 400.0;
+// Standard deviations of what stamps make: evenly spread ones are never further from each other.
+constexpr double kScattered = 3.5;
 // Log of how much less likely it is that a fault begins in an image than that there is none. Chosen, not varied since:
 // less lets faults that explain nothing lie nearer to the doubt, more makes those that begin later be found later.
 constexpr double kOnset = 3.0;
@@ -218,9 +220,11 @@ void EffectGuard::measureScatter(const EffectObservation& image, const Features&
 // How far the image is from the nearest of what was expected, square over variance.
 double EffectGuard::compare(const EffectObservation& image, const Features& noise, const Eigen::Vector4d& pending) {
   const Features scattered = scatter_.seconds() * scatter_.speed();
-  Features variance, place_gain, velocity_gain;
+  const Features measured = std::max(0.0, scatter_.seconds() - StampScatter::kBefore) * scatter_.speed();
+  Features quiet, variance, place_gain, velocity_gain;
   for (int k = 0; k < 4; ++k) {
-    variance[k] = covariance_[k](0, 0) + noise[k] + scattered[k] * scattered[k];
+    quiet[k] = covariance_[k](0, 0) + noise[k];
+    variance[k] = quiet[k] + scattered[k] * scattered[k];
     const Eigen::Vector2d gain = covariance_[k].col(0) / variance[k];
     place_gain[k] = gain[0];
     velocity_gain[k] = gain[1];
@@ -234,7 +238,9 @@ double EffectGuard::compare(const EffectObservation& image, const Features& nois
     // An explanation by which the picture is nowhere would stay without a likelihood, and the best of all with it.
     if (!innovation.allFinite()) return std::numeric_limits<double>::infinity();
     innovations.push_back(innovation);
-    nearest = std::min(nearest, innovation.cwiseAbs2().cwiseQuotient(variance).maxCoeff());
+    // A jump is not to pass for scatter that is only taken for granted.
+    const Features beyond = (innovation.cwiseAbs() - kScattered * measured).cwiseMax(0.0);
+    nearest = std::min(nearest, beyond.cwiseAbs2().cwiseQuotient(quiet).maxCoeff());
   }
   if (!(nearest < kJump)) return nearest;
   calm(image.time - last_.time, innovations, variance);

@@ -21,12 +21,7 @@ constexpr double kNoise = 2.0;
 // s: an image counts in half by which the picture moves by the noise within it. With 0.005 one of 200 starts with the
 // spin reversed turned 3.6 degrees away, with this 2.5; else the two are equal.
 constexpr double kResolved = 0.0015;
-// Until it has moved, stamps are taken to be off by so many seconds, which is worth so many images. Measured in
-// simulated time, starts of a healthy scope that are held, of 100, where pictures are older than their stamps by 0 to
-// 0.1 s, each by another time: 7; with 0.015 s 5, without it 25. Where pictures come up to 0.15 s late and two of five
-// are lost, 11; with 0.015 s 18: what is taken for scatter is no evidence.
-constexpr double kBefore = 0.01;
-constexpr double kWorth = 3.0;
+constexpr double kWorth = 3.0;  // images, that kBefore is worth
 
 StampScatter::Features change(const StampScatter::Features& from, const StampScatter::Features& to) {
   StampScatter::Features difference = to - from;
