@@ -3,14 +3,22 @@
 // cause). Each has a form of its own, not only a colour, and a line in the legend.
 #pragma once
 
+#include <QColor>
 #include <QPainter>
+#include <QPolygonF>
 
 #include "screen/facts.h"
 #include "screen/letterbox.h"
 
 namespace laparoscope_servo::screen {
 
+const QColor kPresentColour(0xff, 0xe0, 0x30);
+const QColor kTargetColour(0x40, 0xe0, 0xff);
+
 void drawOverlay(QPainter& painter, const Facts& facts, const Letterbox& letterbox);
+
+// One area, hatched by what hides it; nothing when it is visible. Without a pen.
+void drawHiddenArea(QPainter& painter, const QPolygonF& shape, const Areas& areas, std::size_t area);
 
 // At the bottom left of `canvas`.
 void drawLegend(QPainter& painter, const QRectF& canvas);
