@@ -12,6 +12,7 @@ namespace laparoscope_servo::screen {
 
 namespace {
 
+const QColor kRecorded(0xff, 0x80, 0xff);
 const QColor kCasing(0, 0, 0, 200);  // about every line, so that it is seen over anything
 constexpr double kFarAway = 1e5;     // px: further out nothing is drawn
 
@@ -101,6 +102,16 @@ void drawAreas(QPainter& painter, const Areas& areas, const Result& result, cons
   }
 }
 
+// Dashes and dots, with a cross at each corner.
+void drawRecorded(QPainter& painter, const QPolygonF& polygon) {
+  drawOutline(painter, polygon, kRecorded, Qt::DashDotLine, 2.0);
+  painter.setPen(QPen(kRecorded, 2));
+  for (const QPointF& corner : polygon) {
+    painter.drawLine(corner - QPointF(5, 5), corner + QPointF(5, 5));
+    painter.drawLine(corner - QPointF(5, -5), corner + QPointF(5, -5));
+  }
+}
+
 bool hasPresent(const Facts& facts) {
   return facts.result && (facts.result->state == Homography::TRACKING || facts.result->state == Homography::SEARCHING);
 }
@@ -126,13 +137,16 @@ void drawOverlay(QPainter& painter, const Facts& facts, const Letterbox& letterb
     const bool sure = result.state == Homography::TRACKING;
     drawOutline(painter, polygonOf(result.corners, letterbox), kPresentColour, sure ? Qt::SolidLine : Qt::DotLine, 3.0);
   }
+  if (facts.recorded && facts.recorded->state == Homography::TRACKING)
+    drawRecorded(painter, polygonOf(facts.recorded->corners, letterbox));
   painter.restore();
 }
 
-void drawLegend(QPainter& painter, const QRectF& canvas) {
+void drawLegend(QPainter& painter, const QRectF& canvas, bool recorded) {
   constexpr double kLine = 16.0, kSample = 34.0, kWidth = 220.0;
   constexpr int kLines = 3 + static_cast<int>(std::size(kCauses));
-  const QRectF box(canvas.left() + 6, canvas.bottom() - kLines * kLine - 12, kWidth, kLines * kLine + 8);
+  const int lines = kLines + (recorded ? 1 : 0);
+  const QRectF box(canvas.left() + 6, canvas.bottom() - lines * kLine - 12, kWidth, lines * kLine + 8);
   painter.save();
   painter.setRenderHint(QPainter::Antialiasing);
   painter.fillRect(box, QColor(0, 0, 0, 170));
@@ -163,6 +177,10 @@ void drawLegend(QPainter& painter, const QRectF& canvas) {
     painter.setPen(Qt::NoPen);
     fill(painter, QPolygonF(place(line).adjusted(0, 2, 0, -2)), cause);
     words(line, cause.words);
+  }
+  if (recorded) {
+    sample(kLines, kRecorded, Qt::DashDotLine, 2.0);
+    words(kLines, "where it was when recorded");
   }
   painter.restore();
 }

@@ -163,8 +163,8 @@ void SpaceDisplay::showRegion(const Facts& facts, double now) {
   scene_->target.show(outlineOf(*target));
   const bool sure = facts.result->state == Homography::TRACKING;
   const QString view = QString::fromStdString(facts.tracker.view);
-  const QString text = (view.isEmpty() ? "region" : "view " + view) + (sure ? ": " : ", SEARCHING: ") +
-                       millimetres((*corners)[0].z()) + " away, believed";
+  const QString text = (view.isEmpty() ? "region" : "view " + view) + (sure ? ": about " : ", SEARCHING: about ") +
+                       millimetres((*corners)[0].z());
   // Beside its right edge, a tenth of its width away.
   const Eigen::Vector3d right = ((*corners)[1] + (*corners)[2]) / 2.0, left = ((*corners)[0] + (*corners)[3]) / 2.0;
   scene_->region_label.show(text, right + 0.1 * (right - left));
