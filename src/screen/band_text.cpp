@@ -1,7 +1,11 @@
 #include "screen/band_text.h"
 
-#include <cmath>
+#include <laparoscope_servo/Homography.h>
 
+#include <cmath>
+#include <cstdio>
+
+#include "ros/playback/corners_apart.h"
 #include "ros/reasons/reason_table.h"
 
 namespace laparoscope_servo::screen {
@@ -32,6 +36,18 @@ void explainTo(BandText& band, Speaker speaker, const std::string& reason) {
   const ReasonRow* row = explain(speaker, reason);
   band.sentence = row != nullptr ? row->sentence : reason;
   band.cure = row != nullptr ? row->cure : reason.empty() ? "" : "See doc/troubleshooting.md.";
+}
+
+// How far what is computed now is from what was recorded.
+std::string besideRecorded(const Facts& facts) {
+  if (!facts.result || !facts.recorded) return "";
+  const bool tracks = facts.result->state == Homography::TRACKING;
+  const bool tracked = facts.recorded->state == Homography::TRACKING;
+  if (!tracks || !tracked) return tracks ? "Recorded: not tracked." : tracked ? "Recorded: tracked." : "";
+  char text[64];
+  std::snprintf(text, sizeof text, "Recorded: %.2f px away.",
+                cornersApart(facts.result->corners, facts.recorded->corners));
+  return text;
 }
 
 std::string percent(double share) {
@@ -68,6 +84,8 @@ BandText trackerBand(const Facts& facts, double now) {
     if (facts.result) band.sentence += " " + percent(facts.result->visible_fraction) + " of it is visible.";
     band.cure.clear();
   }
+  if (const std::string beside = besideRecorded(facts); !beside.empty())
+    band.cure += (band.cure.empty() ? "" : " ") + beside;
   if (!tracker.view.empty()) band.cure += (band.cure.empty() ? "" : " ") + ("View: " + tracker.view + ".");
   return band;
 }

@@ -17,6 +17,17 @@ std::int64_t nanoseconds(const ros::Time& time) {
   return static_cast<std::int64_t>(time.toNSec());
 }
 
+Result resultOf(const Homography& homography) {
+  Result result;
+  result.stamp = nanoseconds(homography.header.stamp);
+  result.reference_stamp = nanoseconds(homography.reference_stamp);
+  result.state = homography.state;
+  std::copy(homography.g.begin(), homography.g.end(), result.g.begin());
+  std::copy(homography.corners.begin(), homography.corners.end(), result.corners.begin());
+  result.visible_fraction = homography.visible_fraction;
+  return result;
+}
+
 bool samePicture(const QImage& a, const QImage& b) {
   if (a.size() != b.size()) return false;
   for (int row = 0; row < a.height(); ++row) {
@@ -55,14 +66,15 @@ void FactKeeper::take(const sensor_msgs::Image& preview, double age, double now)
   match();
 }
 
+void FactKeeper::takeRecorded(const Homography& homography) {
+  const Result result = resultOf(homography);
+  const std::lock_guard<std::mutex> lock(mutex_);
+  keep(recorded_, result);
+  if (result.stamp == facts_.picture.stamp) match();
+}
+
 void FactKeeper::take(const Homography& homography, double delay, double now) {
-  Result result;
-  result.stamp = nanoseconds(homography.header.stamp);
-  result.reference_stamp = nanoseconds(homography.reference_stamp);
-  result.state = homography.state;
-  std::copy(homography.g.begin(), homography.g.end(), result.g.begin());
-  std::copy(homography.corners.begin(), homography.corners.end(), result.corners.begin());
-  result.visible_fraction = homography.visible_fraction;
+  const Result result = resultOf(homography);
   const std::lock_guard<std::mutex> lock(mutex_);
   const bool region = homography.state != Homography::IDLE;
   const auto ofRegion = [region](double value) { return region ? value : std::numeric_limits<double>::quiet_NaN(); };
@@ -89,6 +101,7 @@ void FactKeeper::take(const AreaSelection& message) {
 void FactKeeper::match() {
   facts_.result = at(results_, facts_.picture.stamp);
   facts_.areas = at(areas_, facts_.picture.stamp);
+  facts_.recorded = at(recorded_, facts_.picture.stamp);
 }
 
 void FactKeeper::take(const TrackerState& state, double now) {

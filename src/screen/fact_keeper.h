@@ -24,6 +24,8 @@ class FactKeeper {
   void take(const sensor_msgs::Image& preview, double age, double now);
   // `delay`: s, from the image's stamp; NaN where the clocks do not tell.
   void take(const Homography& homography, double delay, double now);
+  // Of the replay of a recorded case: what was said then.
+  void takeRecorded(const Homography& homography);
   void take(const AreaSelection& areas);
   void take(const TrackerState& state, double now);
   void take(const ControllerState& state);
@@ -42,6 +44,7 @@ class FactKeeper {
   Facts facts_;
   MinuteHistory history_;
   std::deque<Result> results_;
+  std::deque<Result> recorded_;
   std::deque<Areas> areas_;
 };
 

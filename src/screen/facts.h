@@ -134,11 +134,12 @@ struct Facts {
   ControllerFacts controller;
   RobotFacts robot;
   Picture picture;
-  std::optional<Result> result;  // of the picture's image
-  std::optional<Areas> areas;    // the same
-  Answer answer;                 // the newest
-  bool dead_man_wanted = false;  // somebody listens to the dead-man switch
-  std::optional<Limits> limits;  // pan, tilt, spin, insertion
+  std::optional<Result> result;    // of the picture's image
+  std::optional<Areas> areas;      // the same
+  std::optional<Result> recorded;  // what a tracker had said of it when it was recorded
+  Answer answer;                   // the newest
+  bool dead_man_wanted = false;    // somebody listens to the dead-man switch
+  std::optional<Limits> limits;    // pan, tilt, spin, insertion
   PlaybackFacts playback;
   std::optional<Verdict> verdict;
   std::optional<Frozen> frozen;

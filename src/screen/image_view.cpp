@@ -49,6 +49,7 @@ void ImageView::show(const Facts& facts, double now) {
   const bool same =
       facts.picture.arrived_at == facts_.picture.arrived_at && facts.result.has_value() == facts_.result.has_value() &&
       facts.areas.has_value() == facts_.areas.has_value() &&
+      facts.recorded.has_value() == facts_.recorded.has_value() &&
       facts.tracker.reference_stamp == facts_.tracker.reference_stamp && facts.tracker.width == facts_.tracker.width &&
       facts.tracker.height == facts_.tracker.height && words.words == words_.words && words.detail == words_.detail &&
       facts.frozen.has_value() == facts_.frozen.has_value() &&
@@ -91,7 +92,7 @@ void ImageView::tellChange() {
 }
 
 void ImageView::give(const QRect& pixels) {
-  cancelDrag();
+  if (!keeps_drafts_) cancelDrag();
   if (!pixels.isEmpty()) drawn_(pixels);
 }
 
@@ -148,7 +149,7 @@ void ImageView::paintEvent(QPaintEvent*) {
   } else {
     if (box.isValid()) drawPicture(painter, area);
     if (words_.live) drawOverlay(painter, facts_, box);
-    drawLegend(painter, rect());
+    if (facts_.master) drawLegend(painter, rect(), facts_.recorded.has_value());
   }
   if (const std::optional<QRect> pixels = shown()) {
     const std::int64_t stamp = facts_.frozen ? facts_.frozen->stamp : 0;
@@ -190,7 +191,12 @@ void ImageView::mouseReleaseEvent(QMouseEvent* event) {
   if (event->button() != Qt::LeftButton || !drag_.isActive()) return;
   const std::optional<QRectF> region = drag_.release(event->localPos());
   update();
-  if (region) give(letterbox().pixelsOf(*region));
+  if (!region) return;
+  if (!keeps_drafts_) return give(letterbox().pixelsOf(*region));
+  const QRect pixels = letterbox().pixelsOf(*region);
+  if (pixels.isEmpty()) return;
+  draft_ = pixels;
+  tellChange();
 }
 
 // Arrows move the region by one pixel, with Shift by ten; Return gives it to the tracker.

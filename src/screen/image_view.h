@@ -20,6 +20,8 @@ class ImageView : public QWidget {
 
   void show(const Facts& facts, double now);
   void cancelDrag();
+  // What was drawn stays, to be moved, until Return gives it.
+  void keepDrafts() { keeps_drafts_ = true; }
   QSize sizeHint() const override { return {640, 480}; }
   QSize minimumSizeHint() const override { return {240, 180}; }
 
@@ -47,6 +49,7 @@ class ImageView : public QWidget {
   PictureWords words_;
   RegionDrag drag_;
   std::optional<QRect> draft_;  // moved by keys, not given yet
+  bool keeps_drafts_ = false;
   QRect asked_;
 };
 

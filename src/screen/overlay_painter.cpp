@@ -12,8 +12,7 @@ namespace laparoscope_servo::screen {
 
 namespace {
 
-const QColor kPresent(0xff, 0xe0, 0x30);
-const QColor kTarget(0x40, 0xe0, 0xff);
+const QColor kRecorded(0xff, 0x80, 0xff);
 const QColor kCasing(0, 0, 0, 200);  // about every line, so that it is seen over anything
 constexpr double kFarAway = 1e5;     // px: further out nothing is drawn
 
@@ -40,9 +39,9 @@ void drawOutline(QPainter& painter, const QPolygonF& polygon, const QColor& colo
 }
 
 void drawTarget(QPainter& painter, const QPolygonF& polygon) {
-  drawOutline(painter, polygon, kTarget, Qt::CustomDashLine, 2.0);
+  drawOutline(painter, polygon, kTargetColour, Qt::CustomDashLine, 2.0);
   painter.setPen(QPen(kCasing, 1));
-  painter.setBrush(kTarget);
+  painter.setBrush(kTargetColour);
   for (const QPointF& corner : polygon) painter.drawRect(QRectF(corner - QPointF(4, 4), QSizeF(8, 8)));
 }
 
@@ -87,8 +86,8 @@ void drawAreas(QPainter& painter, const Areas& areas, const Result& result, cons
   painter.setPen(Qt::NoPen);
   for (int row = 0; row < areas.rows; ++row) {
     for (int column = 0; column < areas.columns; ++column) {
-      const Cause* cause = causeOf(areas, static_cast<std::size_t>(row) * areas.columns + column);
-      if (cause == nullptr) continue;
+      const std::size_t area = static_cast<std::size_t>(row) * areas.columns + column;
+      if (causeOf(areas, area) == nullptr) continue;
       QPolygonF cell;
       for (const auto& [u, v] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}}) {
         const double x = left + (column + u) * width;
@@ -98,8 +97,18 @@ void drawAreas(QPainter& painter, const Areas& areas, const Result& result, cons
                         (result.g[3] * x + result.g[4] * y + result.g[5]) / w);
         if (std::abs(p.x()) < kFarAway && std::abs(p.y()) < kFarAway) cell << letterbox.fromCentre(p);
       }
-      if (cell.size() == 4) fill(painter, cell, *cause);
+      if (cell.size() == 4) drawHiddenArea(painter, cell, areas, area);
     }
+  }
+}
+
+// Dashes and dots, with a cross at each corner.
+void drawRecorded(QPainter& painter, const QPolygonF& polygon) {
+  drawOutline(painter, polygon, kRecorded, Qt::DashDotLine, 2.0);
+  painter.setPen(QPen(kRecorded, 2));
+  for (const QPointF& corner : polygon) {
+    painter.drawLine(corner - QPointF(5, 5), corner + QPointF(5, 5));
+    painter.drawLine(corner - QPointF(5, -5), corner + QPointF(5, -5));
   }
 }
 
@@ -108,6 +117,10 @@ bool hasPresent(const Facts& facts) {
 }
 
 }  // namespace
+
+void drawHiddenArea(QPainter& painter, const QPolygonF& shape, const Areas& areas, std::size_t area) {
+  if (const Cause* cause = causeOf(areas, area)) fill(painter, shape, *cause);
+}
 
 void drawOverlay(QPainter& painter, const Facts& facts, const Letterbox& letterbox) {
   if (!facts.result || !letterbox.isValid()) return;
@@ -122,15 +135,18 @@ void drawOverlay(QPainter& painter, const Facts& facts, const Letterbox& letterb
   if (known) drawTarget(painter, polygonOf(facts.tracker.region, letterbox));
   if (hasPresent(facts)) {
     const bool sure = result.state == Homography::TRACKING;
-    drawOutline(painter, polygonOf(result.corners, letterbox), kPresent, sure ? Qt::SolidLine : Qt::DotLine, 3.0);
+    drawOutline(painter, polygonOf(result.corners, letterbox), kPresentColour, sure ? Qt::SolidLine : Qt::DotLine, 3.0);
   }
+  if (facts.recorded && facts.recorded->state == Homography::TRACKING)
+    drawRecorded(painter, polygonOf(facts.recorded->corners, letterbox));
   painter.restore();
 }
 
-void drawLegend(QPainter& painter, const QRectF& canvas) {
+void drawLegend(QPainter& painter, const QRectF& canvas, bool recorded) {
   constexpr double kLine = 16.0, kSample = 34.0, kWidth = 220.0;
   constexpr int kLines = 3 + static_cast<int>(std::size(kCauses));
-  const QRectF box(canvas.left() + 6, canvas.bottom() - kLines * kLine - 12, kWidth, kLines * kLine + 8);
+  const int lines = kLines + (recorded ? 1 : 0);
+  const QRectF box(canvas.left() + 6, canvas.bottom() - lines * kLine - 12, kWidth, lines * kLine + 8);
   painter.save();
   painter.setRenderHint(QPainter::Antialiasing);
   painter.fillRect(box, QColor(0, 0, 0, 170));
@@ -148,12 +164,12 @@ void drawLegend(QPainter& painter, const QRectF& canvas) {
     drawOutline(painter, QPolygonF(QVector<QPointF>{{at.left(), at.center().y()}, {at.right(), at.center().y()}}),
                 colour, style, width);
   };
-  sample(0, kPresent, Qt::SolidLine, 3.0);
+  sample(0, kPresentColour, Qt::SolidLine, 3.0);
   words(0, "where the region is");
-  sample(1, kPresent, Qt::DotLine, 3.0);
+  sample(1, kPresentColour, Qt::DotLine, 3.0);
   words(1, "where it is looked for");
-  sample(2, kTarget, Qt::CustomDashLine, 2.0);
-  painter.setBrush(kTarget);
+  sample(2, kTargetColour, Qt::CustomDashLine, 2.0);
+  painter.setBrush(kTargetColour);
   painter.drawRect(QRectF(place(2).left() - 3, place(2).center().y() - 4, 8, 8));
   words(2, "where it shall be");
   for (int line = 3; line < kLines; ++line) {
@@ -161,6 +177,10 @@ void drawLegend(QPainter& painter, const QRectF& canvas) {
     painter.setPen(Qt::NoPen);
     fill(painter, QPolygonF(place(line).adjusted(0, 2, 0, -2)), cause);
     words(line, cause.words);
+  }
+  if (recorded) {
+    sample(kLines, kRecorded, Qt::DashDotLine, 2.0);
+    words(kLines, "where it was when recorded");
   }
   painter.restore();
 }

@@ -1,19 +1,28 @@
 // Draws over the picture what the tracker has said of that very image: where the region is (a solid outline), where it
-// shall be (a dashed one with marked corners), and which of its areas are hidden, and by what (hatched, a form for each
-// cause). Each has a form of its own, not only a colour, and a line in the legend.
+// shall be (a dashed one with marked corners), where it was said to be when it was recorded, and which of its areas are
+// hidden, and by what (hatched, a form for each cause). Each has a form of its own, not only a colour, and a line in
+// the legend.
 #pragma once
 
+#include <QColor>
 #include <QPainter>
+#include <QPolygonF>
 
 #include "screen/facts.h"
 #include "screen/letterbox.h"
 
 namespace laparoscope_servo::screen {
 
+const QColor kPresentColour(0xff, 0xe0, 0x30);
+const QColor kTargetColour(0x40, 0xe0, 0xff);
+
 void drawOverlay(QPainter& painter, const Facts& facts, const Letterbox& letterbox);
 
-// At the bottom left of `canvas`.
-void drawLegend(QPainter& painter, const QRectF& canvas);
+// One area, hatched by what hides it; nothing when it is visible. Without a pen.
+void drawHiddenArea(QPainter& painter, const QPolygonF& shape, const Areas& areas, std::size_t area);
+
+// At the bottom left of `canvas`. `recorded`: with the line for what was said when it was recorded.
+void drawLegend(QPainter& painter, const QRectF& canvas, bool recorded);
 
 // The box about the region where it is now, in the widget; empty when it is not known.
 std::optional<QRectF> presentRegion(const Facts& facts, const Letterbox& letterbox);

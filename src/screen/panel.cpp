@@ -6,6 +6,8 @@
 #include <QLabel>
 #include <pluginlib/class_list_macros.hpp>
 
+#include "screen/space/frame_rate.h"
+
 namespace laparoscope_servo::screen {
 
 Panel::Panel(QWidget* parent) : rviz::Panel(parent) {
@@ -24,6 +26,10 @@ Panel::Panel(QWidget* parent) : rviz::Panel(parent) {
     Q_EMIT configChanged();
   });
   follow("");
+}
+
+void Panel::onInitialize() {
+  FrameRate::guard(*vis_manager_);
 }
 
 // What is no name leaves the panel where it was.

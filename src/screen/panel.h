@@ -19,6 +19,9 @@ class Panel : public rviz::Panel {
   void load(const rviz::Config& config) override;
   void save(rviz::Config config) const override;
 
+ protected:
+  void onInitialize() override;
+
  private:
   void follow(const QString& space);
 

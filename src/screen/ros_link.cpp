@@ -134,6 +134,8 @@ std::unique_ptr<RosLink::Connection> RosLink::connect() {
   made->homography = listen<Homography>(node, "tracker/homography", 100, [this](const Homography& message) {
     keeper_.take(message, delayOf(message.header.stamp), steadyNow());
   });
+  made->recorded = listen<Homography>(node, "recorded/tracker/homography", 100,
+                                      [this](const Homography& message) { keeper_.takeRecorded(message); });
   made->areas = listen<AreaSelection>(node, "tracker/areas", 100,
                                       [this](const AreaSelection& message) { keeper_.take(message); });
   made->tracker_state = listen<TrackerState>(

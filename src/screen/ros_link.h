@@ -68,7 +68,8 @@ class RosLink {
     ros::NodeHandle node;
     std::unique_ptr<HoldSender> sender;
     ros::Publisher robot_stop, controller_stop;
-    ros::Subscriber preview, homography, areas, tracker_state, controller_state, command, operating_state, playback;
+    ros::Subscriber preview, homography, recorded, areas, tracker_state, controller_state, command, operating_state,
+        playback;
     bool limits_wanted = true;
     unsigned turns = 0;
   };

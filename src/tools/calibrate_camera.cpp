@@ -14,9 +14,9 @@
 
 #include "ros/camera/board_calibration.h"
 #include "ros/camera/camera_config.h"
+#include "ros/common/run_tool.h"
 #include "ros/playback/image_source.h"
 #include "ros/tracker/image_conversion.h"
-#include "tools/run_tool.h"
 
 namespace {
 

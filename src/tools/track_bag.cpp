@@ -1,8 +1,8 @@
 // Tracks through a bag, a video or a folder of images without a master: see --help.
-#include <ros/package.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <boost/process.hpp>
 #include <boost/program_options.hpp>
 #include <chrono>
 #include <csignal>
@@ -17,9 +17,9 @@
 
 #include "laparoscope_servo/robust/median.h"
 #include "laparoscope_servo/tracking/region_tracker.h"
-#include "ros/common/parameters.h"
+#include "ros/common/run_tool.h"
+#include "ros/playback/offline_options.h"
 #include "ros/playback/tracker_offline.h"
-#include "tools/run_tool.h"
 
 namespace {
 
@@ -28,21 +28,14 @@ using namespace laparoscope_servo;
 
 constexpr int kSignalled = 128;  // as shells count: and the signal's number
 
-options::options_description describeOptions(OfflineOptions& offline, std::string& roi, std::string& parameters) {
+options::options_description describeOptions(OfflineOptions& offline, std::string& roi, bool& select,
+                                             std::string& parameters) {
   options::options_description description("Options");
   auto add = description.add_options();
   add("help", "print this and end");
-  add("input", options::value(&offline.inputs)->composing(),
-      "bag, video, or folder of images (in the order of their names and numbers); several: bags of one recording");
   add("roi", options::value(&roi), "x,y,width,height: region in the first image, px");
-  add("image-topic", options::value(&offline.source.image_topic), "of a bag with several topics of images");
-  add("camera-info-topic", options::value(&offline.source.camera_info_topic),
-      "of a bag, when it is not camera_info beside the images");
-  add("start", options::value(&offline.source.start), "skip so many seconds of the input");
-  add("rate", options::value(&offline.source.folder_rate), "images per second of a folder (default 25)");
-  add("camera-info", options::value(&offline.camera_info),
-      "calibration file (YAML, INI), instead of the bag's camera_info; needed for rectify: true where there is none");
-  add("params", options::value(&parameters), "YAML file laid over the package's config/tracker.yaml");
+  add("select", options::bool_switch(&select), "the region is drawn in a window that shows the first image");
+  describeInput(description, offline, parameters);
   add("csv", options::value(&offline.csv), "table to write, a line per image");
   add("output", options::value(&offline.bag), "bag to write: homography, task_error, areas, roi under /tracker");
   add("overlay", options::value(&offline.overlay),
@@ -50,17 +43,20 @@ options::options_description describeOptions(OfflineOptions& offline, std::strin
   return description;
 }
 
-// The package's parameters, as the launch files load them, then the user's.
-TrackerParameters readParameters(const std::string& file) {
-  const std::string share = ros::package::getPath("laparoscope_servo");
-  XmlRpc::XmlRpcValue tree;
-  const std::string defaults = share + "/config/tracker.yaml";
-  if (!share.empty() && std::filesystem::exists(defaults)) tree = parametersFromYaml(defaults);
-  if (!file.empty()) tree = mergeParameters(tree, parametersFromYaml(file));
-  std::vector<std::string> errors;
-  const auto parameters = readTrackerParameters(tree, file.empty() ? defaults : file, errors);
-  if (!errors.empty()) throw std::runtime_error(errorReport(errors));
-  return parameters;
+// By the program that has a window: this one needs no display, nor its libraries.
+std::string drawnRegion(const OfflineOptions& offline, const std::string& parameters) {
+  namespace process = boost::process;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "select_region";
+  if (!std::filesystem::exists(program)) throw std::runtime_error("'" + program.string() + "' is not there");
+  process::ipstream output;
+  process::child window(program.string(), process::args(inputArguments(offline, parameters)),
+                        process::std_out > output);
+  std::string region;
+  std::getline(output, region);
+  window.wait();
+  if (region.empty() || window.exit_code() != EXIT_SUCCESS) throw std::runtime_error("--select gave no region");
+  std::cerr << "region: --roi " << region << '\n';
+  return region;
 }
 
 // Place, rate, time left and state: on a terminal in a line that changes, in a log a line of its own now and then.
@@ -111,6 +107,20 @@ void printSummary(const OfflineSummary& summary) {
                1e3 * laparoscope_servo::robust::nearestRank(times, 0.99));
 }
 
+// Beside what the tracker had said when the bag was recorded.
+void printRecorded(const OfflineSummary& summary) {
+  if (summary.apart.empty() && summary.other_state == 0) return;
+  std::vector<double> apart = summary.apart;
+  std::fprintf(stderr, "recorded results: in %zu images both tracked, in %zu only one did", apart.size(),
+               summary.other_state);
+  if (!apart.empty()) {
+    const double median = robust::median(apart);
+    std::fprintf(stderr, "; the worst corner is %.2f px apart (median), 99 %% below %.2f px, the most %.2f px", median,
+                 robust::nearestRank(apart, 0.99), *std::max_element(apart.begin(), apart.end()));
+  }
+  std::fputc('\n', stderr);
+}
+
 volatile std::sig_atomic_t stop_signal = 0;
 
 void onSignal(int signal) {
@@ -149,6 +159,7 @@ int run(OfflineOptions& offline) {
   line.end();
   for (const std::string& note : summary.notes) std::cerr << "note: " << note << '\n';
   if (summary.images > 0) printSummary(summary);
+  printRecorded(summary);
   return exitStatus(summary);
 }
 
@@ -157,10 +168,11 @@ int run(OfflineOptions& offline) {
 int main(int argc, char** argv) {
   OfflineOptions offline;
   std::string roi;
+  bool select = false;
   std::string parameters;
-  const options::options_description description = describeOptions(offline, roi, parameters);
+  const options::options_description description = describeOptions(offline, roi, select, parameters);
   const std::string usage =
-      "track_bag INPUT... --roi x,y,w,h [options]: tracks a region through recorded images.\n"
+      "track_bag INPUT... --roi x,y,w,h|--select [options]: tracks a region through recorded images.\n"
       "Ends with status 0 when every image was processed, whatever the tracker found; with 1 when images\n"
       "are lost or damaged (each is named) or an output cannot be written. Outputs appear under their\n"
       "names when they are whole. A signal ends the work as the input's end would, with status 128 and its\n"
@@ -168,9 +180,12 @@ int main(int argc, char** argv) {
   return runTool(argc, argv, "track_bag", usage, description, "input", [&] {
     if (offline.inputs.empty())
       throw std::invalid_argument("no input is given, expected a bag, a video or a folder of images");
-    offline.parameters = readParameters(parameters);
+    offline.parameters = readOfflineParameters(parameters);
+    if (select && !roi.empty()) throw std::invalid_argument("both --select and --roi are given, expected one of them");
+    if (select) roi = drawnRegion(offline, parameters);
     if (!roi.empty()) offline.parameters.roi = parseRoi(roi);
-    if (!offline.parameters.roi) throw std::invalid_argument("no ROI is given, expected --roi x,y,width,height in px");
+    if (!offline.parameters.roi)
+      throw std::invalid_argument("no ROI is given, expected --roi x,y,width,height in px, or --select");
     return run(offline);
   });
 }

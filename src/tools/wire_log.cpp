@@ -13,7 +13,7 @@
 #include "laparoscope_servo/aesop/wire_printer.h"
 #include "laparoscope_servo/aesop/wire_replay.h"
 #include "ros/aesop/aesop_parameters.h"
-#include "tools/run_tool.h"
+#include "ros/common/run_tool.h"
 
 namespace {
 

@@ -5,7 +5,10 @@
 #include <optional>
 #include <stdexcept>
 
+#include "ros/playback/corners_apart.h"
 #include "ros/playback/offline_outputs.h"
+#include "ros/playback/recorded_results.h"
+#include "ros/tracker/result_messages.h"
 #include "ros/tracker/tracker_session.h"
 
 namespace laparoscope_servo {
@@ -72,6 +75,7 @@ class OfflineRun {
     own_camera_info_ = !options.camera_info.empty();
     if (own_camera_info_) session_.setCameraInfo(readCameraInfo(options.camera_info));
     source_ = openImageSource(options.inputs, options.source);
+    recorded_ = std::make_unique<RecordedResults>(options.inputs, options.source.image_topic);
     refuseToOverwriteInput(options);
     outputs_.emplace(options, source_->rate());
     summary_.by_state.assign(4, 0);
@@ -123,9 +127,20 @@ class OfflineRun {
     ++summary_.images;
     ++summary_.by_state[static_cast<std::size_t>(processed.result.state)];
     summary_.times.push_back(processed.processing_time);
+    compare(image, processed);
     camera_note_ = cameraNote(session_, processed);
     outputs_->write(image, processed);
     progress_(summary_, source_->size());
+  }
+
+  void compare(const SourceImage& image, const Processed& processed) {
+    const HomographyConstPtr recorded = recorded_->at(image.header.stamp, image.record_time);
+    if (!recorded) return;
+    const bool tracks = processed.result.state == tracking::State::kTracking;
+    const bool tracked = recorded->state == Homography::TRACKING;
+    summary_.other_state += tracks != tracked;
+    if (!tracks || !tracked) return;
+    summary_.apart.push_back(cornersApart(recorded->corners, homographyMessage(processed).corners));
   }
 
   const OfflineOptions& options_;
@@ -134,6 +149,7 @@ class OfflineRun {
   TrackerSession session_;
   bool own_camera_info_ = false;
   std::unique_ptr<ImageSource> source_;
+  std::unique_ptr<RecordedResults> recorded_;
   std::optional<Outputs> outputs_;
   std::string camera_note_;  // what the results lack for the camera's sake
   OfflineSummary summary_;

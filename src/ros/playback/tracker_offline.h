@@ -34,6 +34,8 @@ struct OfflineSummary {
   std::vector<std::string> notes;     // of the source, and what the results lack for the camera's sake
   std::vector<std::size_t> by_state;  // images in each state, indexed by tracking::State
   std::vector<double> times;          // s, of the tracker, per image
+  std::vector<double> apart;          // px, worst corner, where the tracker tracks now and had when it was recorded
+  std::size_t other_state = 0;        // images in which one of the two tracked, and the other did not
 };
 
 // Of the images so far.

@@ -59,6 +59,8 @@ VideoPlayer::VideoPlayer(ros::NodeHandle node, const VideoPlayerConfig& config)
   source_ = openImageSource(inputsOf(config.video), options_);
   if (!source_->hasRecordedStamps()) offset_ = ros::Duration(config.first_stamp);
   if (!config.camera_info.empty()) camera_info_ = readCameraInfo(config.camera_info);
+  recorded_ = std::make_unique<RecordedResults>(inputsOf(config.video), config.image_topic);
+  if (recorded_->any()) recorded_publisher_ = node.advertise<Homography>("recorded_homography", 50);
   if (config.clock) clock_publisher_ = node.advertise<rosgraph_msgs::Clock>("/clock", 10);
   if (config.lockstep || config.hold) {
     homography_subscriber_ = node.subscribe<Homography>("homography", 10, [this](const HomographyConstPtr& result) {
@@ -265,7 +267,17 @@ void VideoPlayer::publishClock(const ros::Time& time) {
   clock_publisher_.publish(message);
 }
 
+// With the image's stamp as it is played.
+void VideoPlayer::publishRecorded(const SourceImage& image) {
+  const HomographyConstPtr recorded = recorded_->at(image.header.stamp, image.record_time);
+  if (!recorded) return;
+  Homography result = *recorded;
+  result.header.stamp += offset_;
+  recorded_publisher_.publish(result);
+}
+
 void VideoPlayer::publish(const SourceImage& image) {
+  publishRecorded(image);
   std_msgs::Header header = image.header;
   header.stamp += offset_;
   if (!source_->hasRecordedStamps()) header.frame_id = config_.frame_id;

@@ -3,10 +3,11 @@
 //
 // Subscribes: homography (laparoscope_servo/Homography), in lockstep only. Publishes: image_raw (sensor_msgs/Image),
 // camera_info (sensor_msgs/CameraInfo; all zero when no calibration is known, so that nobody takes it for one), and
-// /clock. A bag's images keep their headers, but for stamps that are 0 or repeated: a result is known by its image's
+// /clock; of a bag with results of a tracker also recorded_homography, just before the image they belong to. A bag's
+// images keep their headers, but for stamps that are 0 or repeated: a result is known by its image's
 // stamp. Stamps of a video are first_stamp + time of presentation, whatever the speed at which it is played. Everything
-// is paced by a steady clock. At a loop, time jumps back as with a looped bag. Of a bag, only images and their
-// camera_info are played: nothing that was recorded can move an arm.
+// is paced by a steady clock. At a loop, time jumps back as with a looped bag. Of a bag, only images, their
+// camera_info and those results are played: nothing that was recorded can move an arm.
 //
 // Service ~control (ControlPlayback): pause, step, seek, again. Topic ~state (PlaybackState), latched. While it holds
 // at an image and nothing is tracked, that image comes again and again, each a microsecond later than the one before,
@@ -28,6 +29,7 @@
 #include "laparoscope_servo/parameters/table.h"
 #include "ros/playback/image_source.h"
 #include "ros/playback/playback_control.h"
+#include "ros/playback/recorded_results.h"
 
 namespace laparoscope_servo {
 
@@ -80,6 +82,7 @@ class VideoPlayer {
   void waitUntil(const ros::Time& time);
   Clock::time_point dueTime(const ros::Time& time) const;
   void publish(const SourceImage& image);
+  void publishRecorded(const SourceImage& image);
   void publishClock(const ros::Time& time);
   void waitForResult(const ros::Time& time);
   void tellNotes() const;
@@ -89,12 +92,14 @@ class VideoPlayer {
   VideoPlayerConfig config_;
   SourceOptions options_;
   std::unique_ptr<ImageSource> source_;
+  std::unique_ptr<RecordedResults> recorded_;
   sensor_msgs::CameraInfo camera_info_;
   image_transport::ImageTransport transport_;
   // Not a CameraPublisher, which cannot tell whether it is the images that somebody listens to.
   image_transport::Publisher image_publisher_;
   ros::Publisher camera_info_publisher_;
   ros::Publisher clock_publisher_;
+  ros::Publisher recorded_publisher_;
   ros::Subscriber homography_subscriber_;
   PlaybackControl control_;
   ros::CallbackQueue control_queue_;

@@ -10,9 +10,9 @@ namespace {
 using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
-constexpr double kPeriod = 0.1;          // s
-constexpr double kLinkRadius = 0.014;    // m
-constexpr double kTrocarRadius = 0.009;  // m
+constexpr double kPeriod = 0.1;         // s
+constexpr double kLinkRadius = 0.014;   // m
+constexpr double kPointRadius = 0.002;  // m: the display in space draws how well it is known about it
 const char* const kBase = "aesop_base";
 const char* const kEndEffector = "end_effector";
 const std::vector<std::string> kLinks{kBase, "link_1", "link_2", "link_3", "link_4", "link_5", "link_6", kEndEffector};
@@ -85,7 +85,7 @@ void ScopeMarkers::addScope(MarkerArray& array) const {
 void ScopeMarkers::addInsertionPoint(MarkerArray& array) const {
   if (!origin(config_.insertion_point)) return;
   Marker sphere = marker(config_.frame_prefix + config_.insertion_point, "insertion_point", 0, Marker::SPHERE);
-  sphere.scale.x = sphere.scale.y = sphere.scale.z = 2.0 * kTrocarRadius;
+  sphere.scale.x = sphere.scale.y = sphere.scale.z = 2.0 * kPointRadius;
   setColour(sphere, 1.0, 0.75, 0.1, 0.9);
   array.markers.push_back(sphere);
 }

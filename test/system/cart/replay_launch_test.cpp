@@ -1,5 +1,7 @@
 // replay.launch as a user runs it, once and again on the same master.
+#include <cv_bridge/cv_bridge.h>
 #include <gtest/gtest.h>
+#include <rosbag/bag.h>
 #include <sensor_msgs/Image.h>
 
 #include <csignal>
@@ -10,6 +12,7 @@
 
 #include "laparoscope_servo/Homography.h"
 #include "node/sim/node_bench.h"
+#include "ros/playback/corners_apart.h"
 
 namespace laparoscope_servo::test {
 namespace {
@@ -19,19 +22,41 @@ constexpr double kLongest = 40.0;  // s: roslaunch takes a few to start and to e
 
 class ReplayLaunch : public testing::Test {
  protected:
-  std::string folder() {
+  static std::vector<cv::Mat> pictures() {
     cv::Mat picture(240, 320, CV_8UC3);
     cv::RNG(3).fill(picture, cv::RNG::UNIFORM, 0, 255);
     cv::GaussianBlur(picture, picture, {}, 3.0);
     cv::normalize(picture, picture, 0, 255, cv::NORM_MINMAX);
-    std::filesystem::create_directory(folder_.file("images"));
+    std::vector<cv::Mat> pictures;
     cv::RNG random(4);
     for (int k = 0; k < kImages; ++k) {
       cv::Mat noise(picture.size(), CV_8UC3);  // a picture that repeats is a frozen one
       random.fill(noise, cv::RNG::UNIFORM, 0, 4);
-      cv::imwrite(folder_.file("images/" + std::to_string(k) + ".png"), picture + noise);
+      pictures.emplace_back(picture + noise);
     }
+    return pictures;
+  }
+  std::string folder() {
+    std::filesystem::create_directory(folder_.file("images"));
+    int k = 0;
+    for (const cv::Mat& picture : pictures())
+      cv::imwrite(folder_.file("images/" + std::to_string(k++) + ".png"), picture);
     return folder_.file("images");
+  }
+  void writeCase() {
+    rosbag::Bag bag(folder_.file("case.bag"), rosbag::bagmode::Write);
+    ros::Time time(100.0);
+    for (const cv::Mat& picture : pictures()) {
+      std_msgs::Header header;
+      header.stamp = time;
+      Homography result;
+      result.header = header;
+      result.state = Homography::TRACKING;
+      result.corners = {103, 60, 202, 60, 202, 159, 103, 159};
+      bag.write("/camera/image_raw", time, *cv_bridge::CvImage(header, "bgr8", picture).toImageMsg());
+      bag.write("/tracker/homography", time + ros::Duration(0.02), result);
+      time += ros::Duration(0.04);
+    }
   }
   // Plays when the tracker and this test receive the images, and this test the results: none is lost then.
   void play(const std::string& arguments) {
@@ -78,6 +103,21 @@ TEST_F(ReplayLaunch, StaysAtTheEndOfTheRecordingUntilItIsEnded) {
   EXPECT_TRUE(launch_->isRunning());
   EXPECT_TRUE(results_->connected()) << "the tracker is there";
   end();
+}
+
+// The bag of a case, in which the tracker had said something else: the region 3 px further to the right.
+TEST_F(ReplayLaunch, PlaysWhatWasRecordedBesideWhatIsComputedNow) {
+  writeCase();
+  Recorder<Homography> recorded(node_, "/recorded/tracker/homography");
+  play("stay:=false roi:=100,60,100,100 bag:=" + folder_.file("case.bag"));
+  ASSERT_TRUE(ends()) << contents(log());
+  ASSERT_EQ(results_->all.size(), static_cast<std::size_t>(kImages)) << contents(log());
+  ASSERT_EQ(recorded.all.size(), static_cast<std::size_t>(kImages)) << contents(log());
+  for (std::size_t k = 0; k < kImages; ++k) {
+    EXPECT_EQ(recorded.all[k]->header.stamp, results_->all[k]->header.stamp);
+    EXPECT_EQ(results_->all[k]->state, Homography::TRACKING);
+    EXPECT_NEAR(cornersApart(recorded.all[k]->corners, results_->all[k]->corners), 3.0, 0.5);
+  }
 }
 
 // Parameters outlive their nodes in a master: a region that nobody asked for would be tracked, and a key that was taken

@@ -33,6 +33,20 @@ TEST(BandText, AllIsWell) {
   EXPECT_EQ(robotBand(all, kNow).level, Level::kGood);
 }
 
+TEST(BandText, AReplayTellsHowFarItIsFromWhatWasRecorded) {
+  Facts all = facts();
+  all.result = Result();
+  all.result->state = 1;  // TRACKING
+  all.recorded = all.result;
+  EXPECT_EQ(trackerBand(all, kNow).cure, "Recorded: 0.00 px away.");
+  all.recorded->corners[5] = 1.25;
+  EXPECT_EQ(trackerBand(all, kNow).cure, "Recorded: 1.25 px away.");
+  all.recorded->state = 2;  // SEARCHING
+  EXPECT_EQ(trackerBand(all, kNow).cure, "Recorded: not tracked.");
+  all.recorded.reset();
+  EXPECT_EQ(trackerBand(all, kNow).cure, "");
+}
+
 TEST(BandText, EachStateHasItsWordReasonAndCure) {
   Facts all = facts();
   all.tracker.state = "NO_IMAGE";

@@ -57,6 +57,21 @@ TEST(FactKeeper, AResultMayComeLaterThanItsPicture) {
   EXPECT_EQ(keeper.facts().result->corners[0], 10.1);
 }
 
+TEST(FactKeeper, WhatWasRecordedStandsBesideWhatIsComputedNow) {
+  FactKeeper keeper;
+  keeper.take(homography(10.1), 0.01, 1.0);
+  Homography recorded = homography(10.1);
+  recorded.corners[0] = 3.0;
+  keeper.takeRecorded(homography(10.0));
+  keeper.takeRecorded(recorded);
+  keeper.take(preview(10.1, 7), 0.0, 1.0);
+  ASSERT_TRUE(keeper.facts().recorded);
+  EXPECT_EQ(keeper.facts().recorded->corners[0], 3.0);
+  EXPECT_EQ(keeper.facts().result->corners[0], 10.1);
+  keeper.take(preview(10.2, 8), 0.0, 1.0);
+  EXPECT_FALSE(keeper.facts().recorded);
+}
+
 TEST(FactKeeper, TellsPicturesThatRepeat) {
   FactKeeper keeper;
   keeper.take(preview(10.0, 7), 0.0, 1.0);

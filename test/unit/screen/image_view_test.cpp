@@ -124,6 +124,32 @@ TEST_F(ImageViewTest, EachCauseHasAFormOfItsOwn) {
   EXPECT_EQ(near(drawn(none), 600, 370, QColor(180, 70, 60)), 49);
 }
 
+TEST_F(ImageViewTest, DrawsWhereItWasWhenItWasRecordedInAFormOfItsOwn) {
+  view_.resize(1280, 720);
+  Facts facts = tracked();
+  const QImage before = drawn(facts);
+  facts.recorded = facts.result;
+  facts.recorded->corners = {800, 300, 999, 300, 999, 449, 800, 449};
+  const QImage after = drawn(facts);
+  const QColor recorded(0xff, 0x80, 0xff);
+  for (const double v : {300.0, 449.0}) {
+    EXPECT_GT(near(after, 800, v, recorded), 5) << "a cross at each corner";
+    EXPECT_GT(near(after, 999, v, recorded), 5);
+  }
+  EXPECT_EQ(near(after, 900, 370, recorded), 0) << "inside";
+  int drawn_pixels = 0;
+  for (int u = 820; u < 980; ++u) {
+    const QColor c = after.pixelColor(u, 300);
+    drawn_pixels += c.red() > 200 && c.blue() > 200 ? 1 : 0;
+  }
+  EXPECT_GT(drawn_pixels, 60);
+  EXPECT_LT(drawn_pixels, 130) << "its line has gaps";
+  const QRect legend(0, 720 - 160, 240, 160);
+  EXPECT_NE(before.copy(legend), after.copy(legend)) << "the legend has a line for it";
+  facts.recorded->state = Homography::SEARCHING;
+  EXPECT_EQ(near(drawn(facts), 800, 300, recorded), 0);
+}
+
 TEST_F(ImageViewTest, DrawsNoResultOfAnotherImageOrRegion) {
   view_.resize(1280, 720);
   Facts other = tracked();

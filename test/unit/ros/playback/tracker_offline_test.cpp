@@ -99,6 +99,32 @@ class TrackerOfflineTest : public testing::Test {
   std::string reports_;
 };
 
+// Beside the results that a case was recorded with: those of a first run, with two of them changed.
+TEST_F(TrackerOfflineTest, TellsHowFarItIsFromWhatWasRecorded) {
+  writeBag();
+  options_.bag = out_.file("results.bag");
+  EXPECT_TRUE(run().apart.empty()) << "nothing was recorded";
+  {
+    rosbag::Bag results(options_.bag, rosbag::bagmode::Read);
+    rosbag::Bag bag(options_.inputs.front(), rosbag::bagmode::Append);
+    int k = 0;
+    for (const rosbag::MessageInstance& instance : rosbag::View(results, rosbag::TopicQuery("/tracker/homography"))) {
+      Homography result = *instance.instantiate<Homography>();
+      if (k == 2) result.corners[4] += 3.0;
+      if (k == 3) result.state = Homography::SEARCHING;
+      ++k;
+      bag.write("/tracker/homography", instance.getTime(), result);
+    }
+    ASSERT_EQ(k, kImages);
+  }
+  options_.bag.clear();
+  const OfflineSummary summary = run();
+  EXPECT_EQ(summary.images, static_cast<std::size_t>(kImages));
+  ASSERT_EQ(summary.apart.size(), static_cast<std::size_t>(kImages) - 1u);
+  for (std::size_t k = 0; k < summary.apart.size(); ++k) EXPECT_NEAR(summary.apart[k], k == 2 ? 3.0 : 0.0, 1e-9) << k;
+  EXPECT_EQ(summary.other_state, 1u);
+}
+
 TEST_F(TrackerOfflineTest, WritesALineForEveryImage) {
   writeFolder();
   const OfflineSummary summary = run();

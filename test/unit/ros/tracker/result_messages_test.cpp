@@ -31,6 +31,7 @@ Processed tracked() {
   processed.result.visible_fraction = 0.5;
   processed.result.zncc = 0.9;
   processed.result.corner_error = 0.25;
+  processed.result.corner_scatter = 0.2;
   processed.result.centre_error = 0.125;
   processed.result.iterations = 12;
   using Cause = tracking::AreaCause;
@@ -121,7 +122,7 @@ TEST(TaskErrorMessage, IsZeroInTheReference) {
   EXPECT_NEAR(message.m_star.y, (189.5 - 240.0) / 410.0, 1e-12);
   EXPECT_EQ(message.m_star.z, 1.0);
   EXPECT_EQ(message.visible_fraction, 0.5);
-  EXPECT_EQ(message.corner_error, 0.25);
+  EXPECT_EQ(message.corner_error, 0.2);
 }
 
 TEST(TaskErrorMessage, SeesAShiftToTheRight) {

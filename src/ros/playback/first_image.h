@@ -1,0 +1,33 @@
+// The image in which the offline tracker selects its region, for somebody who draws one.
+#pragma once
+
+#include <cstddef>
+#include <opencv2/core.hpp>
+#include <string>
+
+#include "laparoscope_servo/geometry/homography.h"
+#include "ros/playback/tracker_offline.h"
+#include "ros/tracker/view_recall.h"
+
+namespace laparoscope_servo {
+
+class FirstImage {
+ public:
+  // Throws as trackOffline does where the first image cannot be used.
+  explicit FirstImage(const OfflineOptions& options);
+
+  // 8UC1 or 8UC3, rectified where the tracker rectifies; at most `side` px wide and high.
+  cv::Mat picture(int side) const;
+  cv::Size size() const { return snapshot_.image.size(); }  // px, of the image itself
+  std::size_t frame() const { return frame_; }              // of the input, from 0
+
+  // Why the tracker would not take this region, in px of the image; empty: it would.
+  std::string refusal(const geometry::Rectangle& roi) const;
+
+ private:
+  TrackerParameters parameters_;
+  Snapshot snapshot_;
+  std::size_t frame_ = 0;
+};
+
+}  // namespace laparoscope_servo

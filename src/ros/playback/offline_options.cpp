@@ -1,0 +1,63 @@
+#include "ros/playback/offline_options.h"
+
+#include <ros/package.h>
+
+#include <boost/program_options.hpp>
+#include <filesystem>
+#include <sstream>
+#include <stdexcept>
+
+#include "ros/common/parameters.h"
+
+namespace laparoscope_servo {
+
+namespace options = boost::program_options;
+
+void describeInput(options::options_description& description, OfflineOptions& offline, std::string& parameters) {
+  auto add = description.add_options();
+  add("input", options::value(&offline.inputs)->composing(),
+      "bag, video, or folder of images (in the order of their names and numbers); several: bags of one recording");
+  add("image-topic", options::value(&offline.source.image_topic), "of a bag with several topics of images");
+  add("camera-info-topic", options::value(&offline.source.camera_info_topic),
+      "of a bag, when it is not camera_info beside the images");
+  add("start", options::value(&offline.source.start), "skip so many seconds of the input");
+  add("rate", options::value(&offline.source.folder_rate), "images per second of a folder (default 25)");
+  add("camera-info", options::value(&offline.camera_info),
+      "calibration file (YAML, INI), instead of the bag's camera_info; needed for rectify: true where there is none");
+  add("params", options::value(&parameters), "YAML file laid over the package's config/tracker.yaml");
+}
+
+std::vector<std::string> inputArguments(const OfflineOptions& offline, const std::string& parameters) {
+  std::vector<std::string> arguments;
+  const auto add = [&](const char* name, const std::string& value) {
+    if (!value.empty()) arguments.push_back(std::string("--") + name + '=' + value);
+  };
+  const auto exact = [](double value) {
+    std::ostringstream text;
+    text.precision(17);
+    text << value;
+    return text.str();
+  };
+  for (const std::string& input : offline.inputs) add("input", input);
+  add("image-topic", offline.source.image_topic);
+  add("camera-info-topic", offline.source.camera_info_topic);
+  add("start", exact(offline.source.start));
+  add("rate", exact(offline.source.folder_rate));
+  add("camera-info", offline.camera_info);
+  add("params", parameters);
+  return arguments;
+}
+
+TrackerParameters readOfflineParameters(const std::string& file) {
+  const std::string share = ros::package::getPath("laparoscope_servo");
+  XmlRpc::XmlRpcValue tree;
+  const std::string defaults = share + "/config/tracker.yaml";
+  if (!share.empty() && std::filesystem::exists(defaults)) tree = parametersFromYaml(defaults);
+  if (!file.empty()) tree = mergeParameters(tree, parametersFromYaml(file));
+  std::vector<std::string> errors;
+  const auto parameters = readTrackerParameters(tree, file.empty() ? defaults : file, errors);
+  if (!errors.empty()) throw std::runtime_error(errorReport(errors));
+  return parameters;
+}
+
+}  // namespace laparoscope_servo
