@@ -12,7 +12,7 @@ namespace {
 using parameters::Range;
 using parameters::Table;
 
-// `angular` bounds pan, tilt and spin, `linear` bounds insertion; `per` is what stands below the line of the units.
+// `angular` is the range of pan, tilt and spin, `linear` that of insertion; `per` is the denominator of the units.
 void describeVelocity(Table& table, scope::Velocity& v, const Range& angular, const Range& linear,
                       const std::string& per) {
   table.number("pan", v.pan, angular, "rad/" + per, "about the insertion point, sideways");
@@ -53,7 +53,7 @@ void describePredictor(Table& table, PredictorConfig& c) {
                "for which the robot does what it was told last: command/timeout of the node aesop");
 }
 
-// The noises are not zero: without one of its own a filter stops listening.
+// The noises are not zero: a filter without process noise ignores its measurements after a while.
 void describeTarget(Table& table, TargetMotionConfig& c) {
   table.number("centre_noise", c.centre_noise, {1e-6, 1}, "px over the focal length",
                "standard deviation of the region's centre in one image");
@@ -139,7 +139,7 @@ bool isZero(const std::vector<double>& v) {
   return std::all_of(v.begin(), v.end(), [](double component) { return component == 0.0; });
 }
 
-// What no single row says.
+// Conditions on several parameters together.
 void checkTogether(const ControllerConfig& c, std::vector<std::string>& errors) {
   if (c.breathing.rate != 0.0 &&
       !Range(c.breathing.filter.min_frequency, c.breathing.filter.max_frequency).contains(c.breathing.rate)) {
@@ -183,7 +183,8 @@ void describe(Table& table, ControllerConfig& c) {
       "the four components of a motion are scaled together, so that its direction is kept; spin and insertion are "
       "slowed down for themselves while the guard of effect has not seen enough";
   table.group("limits", limits, [&] {
-    // Not zero: since the components are scaled together, it would stop the others too. A gain of zero keeps one still.
+    // Not zero: the components are scaled together, so a zero limit would stop all of them. A gain of zero stops a
+    // single one.
     table.group("velocity", "above dead_zone/width where its inverse is used", [&] {
       describeVelocity(table, c.limits.velocity, {1e-6, 1}, {1e-6, 0.1}, "s");
     });

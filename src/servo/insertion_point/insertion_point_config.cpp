@@ -20,7 +20,7 @@ void describe(parameters::Table& table, InsertionPointConfig& c) {
 std::vector<std::string> validate(const InsertionPointConfig& config) {
   validation::RangeChecker check;
   for (const std::string& error : parameters::errorsOf(config)) check.add(error);
-  // Not zero: a pose without any noise would weigh infinitely.
+  // Not zero: a pose without noise would have an infinite weight.
   check.range("position_noise", config.position_noise, 1e-6, 0.05, "m");
   check.range("direction_noise", config.direction_noise, 0.0, 0.1, "rad");
   check.range("drift", config.drift, 0.0, 0.01, "m/sqrt(s)");

@@ -26,12 +26,12 @@ InsertionPointConfig estimatorConfig(const InsertionPointFitConfig& fit) {
   config.direction_noise = fit.direction_noise;
   config.wobble = fit.wobble;
   config.drift = 0.0;
-  // What is kept differs in direction already.
+  // The poses kept differ in direction already.
   config.same_direction = 0.0;
   config.samples_per_direction = 1000;
   config.max_samples = std::max(10, fit.max_poses);
   config.min_samples = 5;
-  // Earlier, the point would be anywhere along the shaft.
+  // With a smaller eigenvalue the place along the shaft would be undetermined.
   config.min_eigenvalue = 0.25 * std::pow(std::sin(fit.min_cone), 2);
   return config;
 }
@@ -77,7 +77,7 @@ InsertionPointFitter::InsertionPointFitter(const InsertionPointFitConfig& config
 bool InsertionPointFitter::add(const Shaft& shaft) {
   if (!insert(shaft, taken_)) return false;
   ++taken_;
-  // However long somebody stays near one direction, there is room for the others.
+  // Keeps room for other directions, however long the shaft stays near one.
   while (shafts_.size() >= static_cast<std::size_t>(config_.max_poses)) thinOut();
   measure();
   return true;
@@ -94,7 +94,7 @@ bool InsertionPointFitter::insert(const Shaft& shaft, std::size_t number) {
 }
 
 void InsertionPointFitter::thinOut() {
-  spacing_ *= 1.4;  // the root of 2: of directions that fill a cone, half are left
+  spacing_ *= 1.4;  // root of 2: halves the number of directions that fill a cone
   estimator_.reset();
   const std::vector<Shaft> shafts = std::move(shafts_);
   const std::vector<std::size_t> numbers = std::move(kept_);
