@@ -11,9 +11,9 @@ namespace laparoscope_servo::aesop {
 
 namespace {
 
-constexpr int kCorners = 12;           // of the way round the cone
+constexpr int kCorners = 12;           // number of directions round the cone
 constexpr double kReached = 0.015;     // rad
-constexpr double kProgress = 0.002;    // rad, nearer than before counts as progress
+constexpr double kProgress = 0.002;    // rad, by which the shaft must come nearer to count as progress
 constexpr double kMargin = 0.05;       // rad, beyond the cone
 constexpr double kDepthGain = 1.0;     // 1/s
 constexpr double kDepthSpeed = 0.005;  // m/s, at most

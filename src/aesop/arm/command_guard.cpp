@@ -49,7 +49,7 @@ std::string CommandGuard::describe(Refusal refusal) const {
 }
 
 std::string CommandGuard::accept(const scope::Velocity& velocity, double stamp, double stamp_now, double now) {
-  if (stamp_now < last_stamp_now_) reset(stamp_now);  // the clock was set back: old stamps compare with nothing
+  if (stamp_now < last_stamp_now_) reset(stamp_now);  // the clock was set back: old stamps cannot be compared any more
   last_stamp_now_ = stamp_now;
   if (const std::optional<Refusal> refusal = judge(velocity, stamp, stamp_now)) {
     if (*refusal == Refusal::kNotFinite) forget();
@@ -58,7 +58,7 @@ std::string CommandGuard::accept(const scope::Velocity& velocity, double stamp, 
   }
   last_ = clamp(velocity);
   accepted_at_ = now;
-  // A zero may bear any stamp: one from the future would keep out all that follows.
+  // A zero may have any stamp; one from the future must not refuse all later commands.
   if (stamp > last_stamp_ && stamp <= stamp_now + config_.max_stamp_lead) last_stamp_ = stamp;
   ++accepted_;
   return "";

@@ -16,9 +16,9 @@ using parameters::Value;
 
 constexpr double kDegree = 3.14159265358979323846 / 180.0;
 
-constexpr double kFar = 100.0;  // m or rad: beyond it a number is a typing error
+constexpr double kFar = 100.0;  // m or rad: larger numbers are typing errors
 
-// A list of the numbers, 1 to 7, of the joints of which `holds` says so.
+// A list of the numbers, 1 to 7, of the joints for which `holds` is true.
 void describeJoints(Table& table, const std::string& name, KinematicsConfig& c,
                     const std::function<bool(const DhJoint&)>& holds, const std::function<void(DhJoint&, bool)>& set,
                     const std::string& meaning) {
@@ -39,8 +39,8 @@ void describeJoints(Table& table, const std::string& name, KinematicsConfig& c,
   row.unit = "joint numbers";
 }
 
-// Both lists together say what every joint is, in whichever order they are read: either one alone starts from the
-// other's default.
+// Both lists together define the role of every joint, in whichever order they are read; if one is missing, its default
+// holds.
 void describeRole(Table& table, const std::string& name, KinematicsConfig& c, JointRole role, JointRole other,
                   const std::string& meaning) {
   const auto holds = [role](const DhJoint& joint) { return joint.role == role || joint.role == JointRole::kBoth; };

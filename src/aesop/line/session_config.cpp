@@ -20,7 +20,7 @@ void describeCodec(parameters::Table& table, CodecFactory& codec) {
   const std::vector<std::string> names = codecNames();
   table.choice(
       "codec", names,
-      [names, &codec] {  // one that is on no list, of who links the driver, is none of a file's either
+      [names, &codec] {  // a codec of a program that links the driver is on no list and has no name in files
         const auto found = std::find_if(names.begin(), names.end(), [&codec](const std::string& name) {
           return codec && codecNamed(name)()->name() == codec()->name();
         });
