@@ -37,7 +37,7 @@ std::string unreadable(const StopLineConfig& config, const std::string& why) {
          ", cannot be read: " + why;
 }
 
-// Opened anew each time: a file that was replaced, or has gone, is noticed.
+// Opened anew each time, so that a replaced or deleted file is noticed.
 std::string readFile(const StopLineConfig& config) {
   const int file = ::open(config.path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
   if (file < 0) return unreadable(config, std::strerror(errno));
@@ -83,7 +83,7 @@ std::string readStopLine(const StopLineConfig& config, int& file) {
 
 struct StopLine::Shared {
   std::atomic<bool> ending{false};
-  std::mutex mutex;  // never held while something is read
+  std::mutex mutex;  // never held during a reading
   std::string obstacle;
   std::string last_stop;
   std::uint64_t stops = 0;

@@ -4,7 +4,7 @@ namespace laparoscope_servo {
 
 namespace {
 
-// What replays a case, and tells of it: results, commands, states, tf, what the log said.
+// Topics for replaying and analysing a case: results, commands, states, tf, the log.
 const std::vector<std::string> kTopics{"tracker/homography",
                                        "tracker/task_error",
                                        "tracker/areas",

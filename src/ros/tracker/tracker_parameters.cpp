@@ -54,7 +54,7 @@ bool isRoiOrNothing(const std::string& text) {
   }
 }
 
-// A region told as a group of four numbers, in the words that the table knows.
+// Converts a region given as a group of four numbers to the text form of the table.
 void groupToText(XmlRpc::XmlRpcValue& roi, const std::string& name, std::vector<std::string>& errors) {
   if (roi.getType() != XmlRpc::XmlRpcValue::TypeStruct) return;
   geometry::Rectangle rectangle;
