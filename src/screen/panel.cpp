@@ -26,7 +26,7 @@ Panel::Panel(QWidget* parent) : rviz::Panel(parent) {
   follow("");
 }
 
-// What is no name leaves the panel where it was.
+// Ignores a text that is no valid name.
 void Panel::follow(const QString& space) {
   std::string error;
   if (!space.isEmpty() && !ros::names::validate(space.toStdString(), error)) {

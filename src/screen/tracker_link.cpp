@@ -36,7 +36,7 @@ CheckRoi questionOf(const QRect& pixels, const std::optional<Frozen>& frozen) {
   return question;
 }
 
-// Of what anybody may have sent.
+// Bounds a side from a message, which may hold any value.
 int side(std::uint32_t pixels) {
   constexpr std::uint32_t kLargest = 1u << 20;
   return static_cast<int>(std::min(pixels, kLargest));
@@ -121,7 +121,7 @@ void TrackerLink::thaw() {
   keeper_.change([](Facts& facts) { facts.frozen.reset(); });
 }
 
-// The pictures are fetched when something has changed.
+// Fetches the pictures only if the list has changed.
 void TrackerLink::listViews() {
   const std::string name = resolved_("tracker/list_views");
   if (name.empty()) return;
