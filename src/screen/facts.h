@@ -134,7 +134,7 @@ struct Facts {
   RobotFacts robot;
   Picture picture;
   std::optional<Result> result;  // result for the image of the picture
-  std::optional<Areas> areas;    // the same
+  std::optional<Areas> areas;    // its areas
   Answer answer;                 // the newest service call
   bool dead_man_wanted = false;  // a node subscribes to the dead-man switch
   std::optional<Limits> limits;  // pan, tilt, spin, insertion
@@ -142,7 +142,7 @@ struct Facts {
   std::optional<Verdict> verdict;
   std::optional<Frozen> frozen;
   std::shared_ptr<const std::vector<StoredView>> views;          // null: not known
-  std::shared_ptr<const std::vector<LiveParameter>> parameters;  // the same
+  std::shared_ptr<const std::vector<LiveParameter>> parameters;  // null: not known
   double max_image_age = kNever;  // s, above which the controller stops; negative: not known
 };
 

@@ -17,7 +17,7 @@ namespace laparoscope_servo::sim {
 struct BreathingConfig {
   double frequency = 0.25;                    // Hz
   double second_harmonic = 0.0;               // amplitude relative to the first harmonic
-  double third_harmonic = 0.0;                // the same
+  double third_harmonic = 0.0;                // amplitude relative to the first harmonic
   double start = 0.0;                         // s: no breathing before
   double end = 1e9;                           // s: the breath is held from then on
   std::vector<double> tissue{0.0, 0.0, 0.0};  // m, amplitude of the first harmonic along each axis

@@ -59,11 +59,11 @@ struct DemoSummary {
   int tracked_frames = 0;          // of these, in the state TRACKING
   double start_error_px = 0.0;     // when the loop was closed ...
   double start_scale_error = 0.0;  // relative
-  PoseError start_truth;           // ... by the emulator's word
+  PoseError start_truth;           // ... true pose error, by the emulator
   double settling_time = 0.0;      // s, from engaging until the error was inside the limits for good
   double final_error_px = 0.0;
   double final_scale_error = 0.0;          // relative
-  PoseError final_truth;                   // by the emulator's word
+  PoseError final_truth;                   // true pose error, by the emulator
   bool crossed = false;                    // the instrument crossed while the loop was closed
   double crossing_visible_fraction = 1.0;  // least visible fraction, 0 to 1
   double crossing_error_px = 0.0;          // largest error of the tracked images
