@@ -19,13 +19,15 @@ constexpr double kDifferentShare = 0.25;  // share of a displacement by which po
 
 void describe(parameters::Table& table, MonitorConfig& c) {
   table.number("response_time", c.response_time, {0.2, 10}, "s",
-               "joints are judged over so long; well above the arm's delay");
-  table.number("slowest_angle", c.slowest_angle, {1e-4, 1}, "rad/s", "slower commands may move nothing: friction");
-  table.number("slowest_distance", c.slowest_distance, {1e-4, 1}, "m/s", "slower commands may move nothing: friction");
+               "time over which motion and commands are compared; well above the arm's delay");
+  table.number("slowest_angle", c.slowest_angle, {1e-4, 1}, "rad/s",
+               "slower commands may cause no motion because of friction");
+  table.number("slowest_distance", c.slowest_distance, {1e-4, 1}, "m/s",
+               "slower commands may cause no motion because of friction");
   table.number("tolerance_angle", c.tolerance_angle, {1e-4, 1}, "rad",
-               "of motion that no command explains, and between positions and velocities");
+               "allowed motion without a command, and allowed difference between positions and integrated velocities");
   table.number("tolerance_distance", c.tolerance_distance, {1e-4, 1}, "m",
-               "of motion that no command explains, and between positions and velocities");
+               "allowed motion without a command, and allowed difference between positions and integrated velocities");
 }
 
 std::vector<std::string> validate(const MonitorConfig& config) {

@@ -57,7 +57,7 @@ Rows rowsOfEmulator() {
 
 Rows rowsOfSimulation() {
   return [config = std::make_shared<closed_loop::SimulationConfig>()](Table& table) {
-    table.group("simulation", "what the controller is tried on", [&] { describe(table, *config); });
+    table.group("simulation", "the simulated world", [&] { describe(table, *config); });
   };
 }
 

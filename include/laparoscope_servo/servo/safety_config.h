@@ -35,7 +35,7 @@ struct SafetyConfig {
   // s, a manual command other than zero that repeats for longer comes from a pad out of reach
   double max_manual_repeat = 5.0;
   double manual_neutral = 0.02;  // share of the limits on velocity up to which a stick counts as released
-  // allowed number of task errors that repeat to the last digit while the scope moves
+  // number of task errors in a row that repeat to the last digit while the scope moves, which stops the arm
   int max_repeated_errors = 3;
   double max_clock_difference = 0.1;  // s, by which the clocks of two machines may differ
 };

@@ -10,10 +10,10 @@
 namespace laparoscope_servo::aesop {
 
 void describe(parameters::Table& table, CommandConfig& c) {
-  table.number("timeout", c.timeout, {0.02, 2}, "s", "a command that no other follows counts no longer");
+  table.number("timeout", c.timeout, {0.02, 2}, "s", "without a new command the velocity is zero after this time");
   table.number("max_stamp_age", c.max_stamp_age, {0.02, 10}, "s", "a command whose stamp is older is refused");
   table.number("max_stamp_lead", c.max_stamp_lead, {0, 2}, "s",
-               "a command whose stamp is further ahead is refused: clocks of two machines differ");
+               "a command whose stamp is further ahead is refused; allows for clocks that differ");
   table.number("max_pan", c.max_pan, {1e-4, 1}, "rad/s", "beyond a limit all four components are scaled alike");
   table.number("max_tilt", c.max_tilt, {1e-4, 1}, "rad/s", "beyond a limit all four components are scaled alike");
   table.number("max_spin", c.max_spin, {1e-4, 1}, "rad/s", "beyond a limit all four components are scaled alike");

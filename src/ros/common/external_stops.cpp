@@ -14,9 +14,9 @@ namespace laparoscope_servo {
 using diagnostic_msgs::DiagnosticStatus;
 
 void describe(parameters::Table& table, ExternalStopsConfig& config) {
-  table.group("master", "of ROS: without it nobody can call a service, so the arm stops until it answers again",
+  table.group("master", "of ROS; services cannot be called without it, so the arm stops until it answers again",
               [&] { describe(table, config.master); });
-  table.group("stop_line", "beside ROS: an open contact, or a broken wire, stops the arm",
+  table.group("stop_line", "a contact outside of ROS; if it opens, or its wire breaks, the arm stops",
               [&] { describe(table, config.stop_line); });
 }
 

@@ -33,9 +33,11 @@ std::string text(XmlRpc::XmlRpcValue& value) {
 }  // namespace
 
 void describe(parameters::Table& table, MasterWatchConfig& c) {
-  table.number("period", c.period, {0.05, 5}, "s", "between two questions to it");
-  table.number("hold", c.hold, {0.05, 5}, "s", "while an answer takes longer, the arm is held");
-  table.number("patience", c.patience, {0.05, 60}, "s", "after so long without an answer it is taken for dead")
+  table.number("period", c.period, {0.05, 5}, "s", "between two requests to it");
+  table.number("hold", c.hold, {0.05, 5}, "s", "if an answer takes longer, the arm stops until it comes");
+  table
+      .number("patience", c.patience, {0.05, 60}, "s",
+              "time without an answer after which it counts as silent, and motion does not resume by itself")
       .atLeast("hold");
 }
 

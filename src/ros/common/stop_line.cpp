@@ -70,7 +70,7 @@ void describe(parameters::Table& table, StopLineConfig& c) {
                "of a serial port; empty: the file's first character, 0 or 1");
   table.number("release", c.release, {0, 1}, "level", "at which the arm may move; anything else stops it");
   table.number("rate", c.rate, {10, 1000}, "Hz", "at which it is read");
-  table.number("patience", c.patience, {0.05, 5}, "s", "without a reading for so long the arm stops");
+  table.number("patience", c.patience, {0.05, 5}, "s", "longest time without a reading; then the arm stops");
 }
 
 std::vector<std::string> validate(const StopLineConfig& config) {

@@ -8,7 +8,7 @@
 namespace laparoscope_servo::servo {
 
 void describe(parameters::Table& table, InsertionPointConfig& c) {
-  table.number("wobble", c.wobble, {0, 0.05}, "m", "what breathing moves the point by, standard deviation");
+  table.number("wobble", c.wobble, {0, 0.05}, "m", "standard deviation of the point's motion with breathing");
   table.number("warning_residual", c.warning_residual, {1e-4, 0.1}, "m",
                "distance of the shafts from the point that is a warning");
   table

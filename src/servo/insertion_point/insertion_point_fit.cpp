@@ -48,18 +48,18 @@ std::string problem(const char* what, double value, const char* expected, double
 
 void describe(parameters::Table& table, InsertionPointFitConfig& c) {
   table.number("spacing", c.spacing, {0.001, 0.2}, "rad",
-               "a pose is kept when its shaft's direction is as far from all others");
+               "a pose is kept if its shaft's direction differs by at least this from all others");
   table.number("min_poses", c.min_poses, {5, 500}, "poses", "fewer are refused; at most half of max_poses");
   table.number("max_poses", c.max_poses, {10, 1000}, "poses", "when there are more, a wider spacing thins them out");
   table.number("min_cone", c.min_cone, {0.01, 0.5}, "rad",
-               "as far has the shaft to turn, root mean square from its mean");
+               "least root mean square of the shaft's directions from their mean");
   table.number("max_residual", c.max_residual, {1e-4, 0.1}, "m",
                "root mean square distance of the shafts from the point");
   table.number("max_stddev", c.max_stddev, {1e-4, 0.1}, "m", "standard deviation of the point along its worst axis");
-  table.number("position_noise", c.position_noise, {1e-6, 0.05}, "m", "assumed of a pose, standard deviation per axis");
+  table.number("position_noise", c.position_noise, {1e-6, 0.05}, "m", "assumed standard deviation of a pose per axis");
   table.number("direction_noise", c.direction_noise, {0, 0.1}, "rad",
-               "assumed of a shaft's direction, standard deviation per axis");
-  table.number("wobble", c.wobble, {0, 0.05}, "m", "what breathing moves the point by, standard deviation");
+               "assumed standard deviation of a shaft's direction per axis");
+  table.number("wobble", c.wobble, {0, 0.05}, "m", "standard deviation of the point's motion with breathing");
 }
 
 std::vector<std::string> validate(const InsertionPointFitConfig& config) {

@@ -28,12 +28,12 @@ void describe(parameters::Table& table, ArmConfig& c) {
   table.numbers("start", c.start.data(), kJoints, {-100, 100}, "m or rad",
                 "joint positions at power-on; those of passive joints are a first guess");
   table.numbers("insertion_point", c.insertion_point.data(), 3, {-10, 10}, "m",
-                "where the trocar really is, in aesop_base");
+                "true position of the trocar in aesop_base");
   table.number("delay", c.delay, {0, 2}, "s", "from a command to its effect");
   table.numbers("dead_zone", c.dead_zone.data(), kJoints, {0, 1}, "m/s or rad/s",
                 "of the joints; about 0.4 mm/s and 4 mrad/s of the scope");
-  table.number("breakaway", c.breakaway, {1, 10}, "times", "its dead zone is what a joint at rest needs");
-  table.number("time_constant", c.time_constant, {0, 1}, "s", "of a joint following its speed");
+  table.number("breakaway", c.breakaway, {1, 10}, "times", "factor on the dead zone for a joint to start from rest");
+  table.number("time_constant", c.time_constant, {0, 1}, "s", "time constant with which a joint follows its speed");
 }
 
 std::vector<std::string> validate(const ArmConfig& config) {

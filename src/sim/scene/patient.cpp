@@ -34,7 +34,7 @@ void describe(parameters::Table& table, PatientConfig& c) {
     table.numbers("trocar", c.breathing.trocar, 3, {-0.05, 0.05}, "m",
                   "amplitude of the insertion point's first harmonic: x, y, z");
   });
-  table.group("pull", "somebody pulls at the tissue, each time to another place on a circle", [&] {
+  table.group("pull", "repeated pulls at the tissue, each to another place on a circle", [&] {
     table.number("distance", c.pull.distance, {0, 0.1}, "m",
                  "radius of the circle; nearer and further by a third of it");
     table.number("time", c.pull.time, {0.05, 60}, "s", "that a pull takes");
