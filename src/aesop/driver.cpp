@@ -165,7 +165,7 @@ void Driver::closed(const std::string& reason) {
 }
 
 Bytes Driver::transmit(double now) {
-  Bytes bytes = turn(now);
+  Bytes bytes = cycle(now);
   if (tap_ == nullptr) return bytes;
   record(WireEvent::kSent, now, bytes);
   Bytes state = payloadOf(this->state(now));
@@ -173,7 +173,7 @@ Bytes Driver::transmit(double now) {
   return bytes;
 }
 
-Bytes Driver::turn(double now) {
+Bytes Driver::cycle(double now) {
   std::array<double, kDrivenJoints> speed{};
   last_motion_ = JointMotion();
   if (session_.isEnabled()) {

@@ -67,7 +67,7 @@ class Driver {
 
  private:
   void watchMotion(double now);
-  Bytes turn(double now);
+  Bytes cycle(double now);
   void record(WireEvent event, Bytes payload = {});
   void record(WireEvent event, double now, Bytes payload = {});
 

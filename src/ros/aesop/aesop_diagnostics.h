@@ -13,7 +13,7 @@ namespace laparoscope_servo {
 
 // Facts of the node that the driver does not have.
 struct AesopReport {
-  const InputOwner& master;
+  const InputOwner& command_owner;
   std::uint32_t publishers = 0;  // number of connections on which commands may come
   double next_attempt = 0.0;     // s until the port is tried again, while it is closed
 };

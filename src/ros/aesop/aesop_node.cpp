@@ -39,7 +39,7 @@ AesopNode::AesopNode(const ros::NodeHandle& node, const ros::NodeHandle& private
       tip_R_optical_(scope::obliqueOptics(parameters.optics_angle, parameters.optics_roll).transpose()),
       driver_(parameters.driver),
       reconnect_(parameters.reconnect),
-      master_(node.resolveName(parameters.publisher, false), "commands", "command/publisher"),
+      command_owner_(node.resolveName(parameters.publisher, false), "commands", "command/publisher"),
       callers_(resolved(node, parameters.service_callers)),
       calibration_(private_node, parameters, callers_, service_errors_, driver_),
       reported_(parameters.port, aesop::lineWarning(parameters.driver.session, parameters.baud_rate)),
@@ -65,7 +65,7 @@ AesopNode::AesopNode(const ros::NodeHandle& node, const ros::NodeHandle& private
   diagnostics_.setHardwareID(parameters_.port);
   diagnostics_.add("AESOP", [this](diagnostic_updater::DiagnosticStatusWrapper& status) {
     const double now = steadyNow();
-    reported_.fill(now, driver_, {master_, command_subscriber_.getNumPublishers(), reconnect_.remaining(now)}, status);
+    reported_.fill(now, driver_, {command_owner_, command_subscriber_.getNumPublishers(), reconnect_.remaining(now)}, status);
     stops_.describe(now, status);
     calibration_.describe(status);
     if (recording_ && !recording_->problem().empty())
@@ -120,7 +120,7 @@ void AesopNode::step() {
   watchOutside(now);
   exchange(now);
   if (driver_.session().link().isUp()) reconnect_.up(now);
-  if (!driver_.session().isEnabled()) master_.release();
+  if (!driver_.session().isEnabled()) command_owner_.release();
   watchRecording();
   publishStatus();
   countEnables();
@@ -211,14 +211,14 @@ void AesopNode::shutDown(const std::function<void()>& step) {
 void AesopNode::onCommand(const ros::MessageEvent<ScopeVelocity const>& event) {
   const double now = steadyNow();
   const ScopeVelocity& message = *event.getConstMessage();
-  switch (master_.judge(event.getPublisherName(), event.getConnectionHeaderPtr(), now)) {
+  switch (command_owner_.judge(event.getPublisherName(), event.getConnectionHeaderPtr(), now)) {
     case InputOwner::Verdict::kStranger:
-      if (const auto line = stranger_lines_.take(master_.complaint(now), now)) ROS_WARN_STREAM(*line);
+      if (const auto line = stranger_lines_.take(command_owner_.complaint(now), now)) ROS_WARN_STREAM(*line);
       return;
     case InputOwner::Verdict::kNewConnection:
       // The publisher was restarted, replaced by another process of its name, or joined by one. An operator must
       // confirm, with the arm at rest, which process may command it.
-      driver_.pause(master_.name() + " has connected anew; resume when it may command the arm");
+      driver_.pause(command_owner_.name() + " has connected anew; resume when it may command the arm");
       return;
     case InputOwner::Verdict::kOwner:
       break;
@@ -249,7 +249,7 @@ void AesopNode::publishStatus() {
 
 aesop::OperatingState AesopNode::state(double now) const {
   aesop::OperatingState state = driver_.state(now);
-  const std::string complaint = master_.complaint(now);
+  const std::string complaint = command_owner_.complaint(now);
   if (state.mode == aesop::OperatingMode::kEnabled && stops_.masterIsLate(now))
     state.reason = "held until the ROS master answers";
   if (!complaint.empty()) state.reason += (state.reason.empty() ? "" : "; ") + complaint;

@@ -85,7 +85,7 @@ class AesopNode {
   bool recording_ended_ = false;                   // its end was reported
   aesop::Driver driver_;
   aesop::Reconnect reconnect_;
-  InputOwner master_;
+  InputOwner command_owner_;
   ServiceCallers callers_;
   ServiceErrors service_errors_;
   aesop::SerialTransport transport_;

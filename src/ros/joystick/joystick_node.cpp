@@ -95,7 +95,7 @@ void JoystickNode::close(const std::string& why) {
 }
 
 void JoystickNode::say(double now) {
-  const Stick::Words words = stick_.turn(now);
+  const Stick::Words words = stick_.cycle(now);
   for (const bool pressed : words.dead_man) {
     std_msgs::Bool message;
     message.data = static_cast<std::uint8_t>(pressed);

@@ -88,7 +88,7 @@ std::string Stick::judge(double now) {
   return ready_ ? "" : "held or deflected from the start: release everything once";
 }
 
-Stick::Words Stick::turn(double now) {
+Stick::Words Stick::cycle(double now) {
   problem_ = judge(now);
   const bool held = ready_ && pressed();
   const bool has_axes =

@@ -33,7 +33,7 @@ class Stick {
   // Call when the device is gone.
   void gone();
   // Call at least 20 times a second.
-  Words turn(double now);
+  Words cycle(double now);
 
   // Why nothing may be published; empty: it may.
   const std::string& problem() const { return problem_; }
