@@ -56,7 +56,7 @@ Processed TrackerSession::process(const cv::Mat& decoded, const std_msgs::Header
 }
 
 void TrackerSession::complete(Processed& processed, const std::optional<geometry::Rectangle>& request) {
-  passGate(processed, processed.period);
+  passGate(processed);
   const ros::Time stamp = processed.header.stamp;
   const bool had_roi = tracker_.hasRoi();
   bool new_reference = false;

@@ -107,7 +107,7 @@ class TrackerSession {
     ros::Time stamp;
   };
 
-  void passGate(const Processed& processed, double& period);
+  void passGate(Processed& processed);
   void lookForReference(const std::string& why);
   geometry::Quadrilateral onSensor(geometry::Quadrilateral corners) const;
   void watchPicture(Processed& processed);

@@ -33,11 +33,11 @@ double angleOf(const tracking::TrackResult& result) {
 }  // namespace
 
 // The tracker's time always goes on; after a jump of the stamps, this function starts a new search for the region.
-void TrackerSession::passGate(const Processed& processed, double& period) {
+void TrackerSession::passGate(Processed& processed) {
   const ros::Time& stamp = processed.header.stamp;
   const cv::Size size = processed.image.size();
   const ImageGate::Passed passed = gate_.judge(stamp, size, processed.image.channels());
-  period = passed.period;
+  processed.period = passed.period;
   if (passed.step_back > 0.0) {
     time_offset_ = time_ + passed.period - stamp.toSec();
     believed_stamp_.reset();
