@@ -98,7 +98,8 @@ std::string Driver::command(const scope::Velocity& velocity, double stamp, doubl
            payloadOf({velocity.pan, velocity.tilt, velocity.spin, velocity.insertion, stamp, stamp_now}));
   }
   refusal_ = guard_.accept(velocity, stamp, stamp_now, now);
-  if (!session_.isEnabled()) guard_.forget();  // nor when the enable is confirmed while it would still count
+  // so that it has no effect either if the enable is confirmed within its timeout
+  if (!session_.isEnabled()) guard_.forget();
   return refusal_;
 }
 
@@ -106,7 +107,7 @@ void Driver::receive(const std::uint8_t* data, std::size_t size, double now) {
   if (tap_ != nullptr && size > 0) record(WireEvent::kReceived, now, Bytes(data, data + size));
   session_.receive(data, size, now);
   const Link& link = session_.link();
-  // It may have been lost and found within this read.
+  // The link may have been lost and have come up again within this read.
   if (!link.isUp() || link.statistics().sessions != link_sessions_) {
     link_sessions_ = link.statistics().sessions;
     delay_.lost();
@@ -120,7 +121,7 @@ void Driver::receive(const std::uint8_t* data, std::size_t size, double now) {
 
 void Driver::watchMotion(double now) {
   const OperatingMode mode = session_.state().mode;
-  // In DISABLED a hand may move the arm as it likes.
+  // While DISABLED the arm may be moved by hand.
   if (mode != OperatingMode::kEnabled && mode != OperatingMode::kPaused) return monitor_.reset();
   const std::string reason = monitor_.take(*session_.link().status(), speed_, now);
   if (!reason.empty()) session_.giveUp(reason);
@@ -151,7 +152,7 @@ OperatingState Driver::state(double now) const {
 }
 
 void Driver::opened(double now) {
-  // A recording whose beginning is gone is replayed from here on.
+  // A recording whose beginning was deleted can be replayed from here on.
   const Eigen::Vector3d& point = insertion_point_;
   if (tap_ != nullptr) record(WireEvent::kInsertionPoint, now, payloadOf({point.x(), point.y(), point.z()}));
   record(WireEvent::kOpened, now);
@@ -164,7 +165,7 @@ void Driver::closed(const std::string& reason) {
 }
 
 Bytes Driver::transmit(double now) {
-  Bytes bytes = turn(now);
+  Bytes bytes = cycle(now);
   if (tap_ == nullptr) return bytes;
   record(WireEvent::kSent, now, bytes);
   Bytes state = payloadOf(this->state(now));
@@ -172,7 +173,7 @@ Bytes Driver::transmit(double now) {
   return bytes;
 }
 
-Bytes Driver::turn(double now) {
+Bytes Driver::cycle(double now) {
   std::array<double, kDrivenJoints> speed{};
   last_motion_ = JointMotion();
   if (session_.isEnabled()) {

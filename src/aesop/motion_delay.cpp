@@ -9,7 +9,7 @@ namespace laparoscope_servo::aesop {
 namespace {
 
 constexpr std::size_t kSamples = 15;
-constexpr double kConstant = 0.1;  // share by which a command may change and still be the same step
+constexpr double kConstant = 0.1;  // share by which a command may change and still counts as the same step
 
 }  // namespace
 
@@ -17,7 +17,7 @@ void MotionDelay::sent(const JointVector& velocity, double now) {
   const bool moved = !sent_.isZero(0.0);
   const bool moves = !velocity.isZero(0.0);
   if (moves && !moved) {
-    // Only from rest does what is seen belong to this command.
+    // Only when starting from rest does the motion belong to this command.
     const bool from_rest = still_ && phase_ == Phase::kNone;
     phase_ = Phase::kNone;
     if (from_rest) begin(Phase::kStarting, velocity, now);

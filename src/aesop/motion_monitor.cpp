@@ -10,22 +10,24 @@ namespace laparoscope_servo::aesop {
 
 namespace {
 
-constexpr double kLeastShare = 0.1;       // of a commanded way, or the joint stands
-constexpr double kLargestShare = 1.5;     // of a commanded way, or the joint runs away
-constexpr double kSettled = 1.8;          // response times without a command: the joint rests
-constexpr double kDifferentShare = 0.25;  // of a way, between positions and velocities
+constexpr double kLeastShare = 0.1;       // share of the commanded displacement, below which the joint does not move
+constexpr double kLargestShare = 1.5;     // share of the commanded displacement, above which the joint runs away
+constexpr double kSettled = 1.8;          // response times without a command after which the joint must be at rest
+constexpr double kDifferentShare = 0.25;  // share of a displacement by which positions and velocities may disagree
 
 }  // namespace
 
 void describe(parameters::Table& table, MonitorConfig& c) {
   table.number("response_time", c.response_time, {0.2, 10}, "s",
-               "joints are judged over so long; well above the arm's delay");
-  table.number("slowest_angle", c.slowest_angle, {1e-4, 1}, "rad/s", "slower commands may move nothing: friction");
-  table.number("slowest_distance", c.slowest_distance, {1e-4, 1}, "m/s", "slower commands may move nothing: friction");
+               "time over which motion and commands are compared; well above the arm's delay");
+  table.number("slowest_angle", c.slowest_angle, {1e-4, 1}, "rad/s",
+               "slower commands may cause no motion because of friction");
+  table.number("slowest_distance", c.slowest_distance, {1e-4, 1}, "m/s",
+               "slower commands may cause no motion because of friction");
   table.number("tolerance_angle", c.tolerance_angle, {1e-4, 1}, "rad",
-               "of motion that no command explains, and between positions and velocities");
+               "allowed motion without a command, and allowed difference between positions and integrated velocities");
   table.number("tolerance_distance", c.tolerance_distance, {1e-4, 1}, "m",
-               "of motion that no command explains, and between positions and velocities");
+               "allowed motion without a command, and allowed difference between positions and integrated velocities");
 }
 
 std::vector<std::string> validate(const MonitorConfig& config) {
@@ -42,7 +44,7 @@ std::string MotionMonitor::take(const Status& status, const std::array<double, k
   Sample sample{now, status.time, status.position, status.velocity, JointVector::Zero(), speed};
   if (!samples_.empty()) {
     const Sample& last = samples_.back();
-    // The controller's clock, so that statuses that come late together do not look like jumps.
+    // Uses the controller's clock, so that statuses that arrive late together do not look like jumps.
     sample.travelled = last.travelled + 0.5 * (status.time - last.controller_time) * (last.velocity + status.velocity);
   }
   samples_.push_back(sample);
@@ -55,7 +57,7 @@ std::string MotionMonitor::take(const Status& status, const std::array<double, k
   return "";
 }
 
-// What creeps is too slow for any window.
+// Detects creeping motion, which is too slow for the other checks.
 std::string MotionMonitor::judgeRest(std::size_t driven) {
   const Joint& joint = joints_[driven];
   const bool commanded =
@@ -90,14 +92,14 @@ std::string MotionMonitor::judge(std::size_t driven) const {
   const double moved = last.position[joint.index] - first.position[joint.index];
   const double travelled = last.travelled[joint.index] - first.travelled[joint.index];
 
-  double fastest = 0.0;  // also before the window: what was commanded then still moves the joint
+  double fastest = 0.0;  // includes commands before the window, which still move the joint
   for (const Sample& sample : samples_) fastest = std::max(fastest, std::abs(sample.speed[driven]));
   std::ostringstream text;
   if (!(std::abs(moved) <= kLargestShare * config_.response_time * fastest + tolerance)) {
     text << " has moved by " << moved << (joint.prismatic ? " m" : " rad") << ", which nobody has commanded";
     return text.str();
   }
-  if (begin == 0) return "";  // not watched for long enough yet
+  if (begin == 0) return "";  // not enough samples yet
   if (!(std::abs(moved - travelled) <= tolerance + kDifferentShare * std::max(std::abs(moved), std::abs(travelled)))) {
     text << " contradicts itself: moved by " << moved << (joint.prismatic ? " m" : " rad") << ", by its velocities "
          << travelled;

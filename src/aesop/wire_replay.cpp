@@ -3,7 +3,7 @@
 namespace laparoscope_servo::aesop {
 
 void WireReplay::feed(const WireRecord& record) {
-  if (record.event == WireEvent::kState) {  // of the turn before it
+  if (record.event == WireEvent::kState) {  // belongs to the cycle before it
     recorded_ = stateOf(record.payload);
     return;
   }

@@ -18,7 +18,7 @@ namespace {
 constexpr int kMaxDraws = 10000;
 constexpr double kDegree = M_PI / 180.0;
 
-// From when on a value keeps within its bound; NaN does not.
+// Finds the time from which a value stays within its bound; NaN is outside.
 class Settling {
  public:
   explicit Settling(double bound) : bound_(bound) {}
@@ -52,7 +52,7 @@ class Reversals {
   int count_ = 0;
 };
 
-// Where the scope goes, and what stops it.
+// Displacements of the scope, and what stops it.
 class Stopping {
  public:
   Stopping(double from, const Eigen::Vector4d& start) : from_(from), place_(start) {}
@@ -80,13 +80,13 @@ class Stopping {
 
  private:
   double from_;
-  Eigen::Vector4d place_;                          // where it starts, from where it should be
-  Eigen::Vector4d off_ = Eigen::Vector4d::Zero();  // where it is from there at from_
+  Eigen::Vector4d place_;                          // displacement of the start from the reference pose
+  Eigen::Vector4d off_ = Eigen::Vector4d::Zero();  // displacement from the reference pose at from_
   servo::ControllerState before_ = servo::ControllerState::kIdle;
   Eigen::Vector4d start_ = Eigen::Vector4d::Zero();
 };
 
-// What one run adds to the figures of rest; sums until they are divided.
+// Adds a sample to the figures of rest, which are sums until they are divided.
 void addRest(const SimulationSample& s, double offset, double scale, RunSummary& run) {
   run.centre_rms += offset * offset;
   run.scale_rms += scale * scale;
@@ -101,7 +101,7 @@ void divideRest(double count, RunSummary& run) {
   run.moving_share /= count;
 }
 
-// "median, 95 %, worst", the nearest rank; infinity stands for a time that never comes, NaN for what could not be seen.
+// Prints "median, 95 %, worst", by nearest rank; infinity means never, NaN not observable.
 void printSpread(const std::string& name, std::vector<double> values, const std::string& unit, std::ostream& stream) {
   std::replace_if(
       values.begin(), values.end(), [](double v) { return std::isnan(v); }, std::numeric_limits<double>::infinity());
@@ -128,7 +128,7 @@ DrawnStart drawStart(const SimulationConfig& config, unsigned seed) {
   drawn.start = config.start;
   const Eigen::Vector4d spread = config.start_spread.vector();
   if (spread == Eigen::Vector4d::Zero()) return drawn;
-  // Not the numbers of the noise, and none that the standard leaves open, see Noise in servo_simulation.cpp.
+  // Other random numbers than those of the noise, and defined by the standard, see Noise in servo_simulation.cpp.
   std::seed_seq sequence{seed, 1u};
   std::mt19937 random(sequence);
   const auto uniform = [&random] { return (static_cast<double>(random()) + 0.5) / 2147483648.0 - 1.0; };

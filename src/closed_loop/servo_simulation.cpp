@@ -16,8 +16,8 @@ namespace {
 
 constexpr double kStep = 0.001;  // s, of the integration
 
-// Normal noise by Box and Muller: the standard leaves open how std::normal_distribution draws its numbers, and the same
-// seed has to give the same run everywhere.
+// Normal noise by Box and Muller: the standard does not define the numbers of std::normal_distribution, and the same
+// seed must give the same run everywhere.
 class Noise {
  public:
   explicit Noise(unsigned seed) : random_(seed) {}
@@ -118,8 +118,8 @@ class Loop {
   }
 
  private:
-  // The tip in the frame of the insertion point as it is believed: off by the factor along the shaft at the reference,
-  // z out of the body.
+  // The tip in the frame of the assumed insertion point, which is wrong by the factor along the shaft at the reference;
+  // z points out of the body.
   Eigen::Isometry3d measuredPose() {
     Eigen::Isometry3d world_T_insertion_point = Eigen::Isometry3d::Identity();
     world_T_insertion_point.linear() = shaft_R_camera_.transpose() * geometry::so3Exp({M_PI, 0.0, 0.0});
@@ -154,7 +154,7 @@ class Loop {
                                config_.tissue_distance * normal.z());
   }
 
-  // Of the picture, which need not be what the scope's optics should show.
+  // The homography in the picture, with the configured faults of the picture.
   Eigen::Matrix3d seenHomography(double time) const {
     return picture_ * (frozen_ ? *frozen_ : trueHomography(time)) * picture_.transpose();
   }
@@ -163,7 +163,7 @@ class Loop {
     return geometry::apply(geometry::pixelsFromNormalised(seenHomography(time), config_.camera), config_.roi.corners());
   }
 
-  // 0 to 1: how far an instrument is over the region.
+  // 0 to 1: progress of an instrument over the region.
   double crossing(double time) const {
     const CrossingConfig& c = config_.crossing;
     if (!(c.period > 0.0)) return 0.0;
@@ -171,8 +171,8 @@ class Loop {
     return since < 0.0 || since > c.duration ? 0.0 : std::sin(M_PI * since / c.duration);
   }
 
-  // px from the corner that is nearest to the image's border; negative when one is outside, or when nothing is to be
-  // seen.
+  // Distance [px] of the corner nearest to the image's border from it; negative if a corner is outside, or if the
+  // region is not visible.
   double nearestToBorder(const geometry::Quadrilateral& corners) const {
     if (!geometry::isConvex(corners)) return -1.0;
     double nearest = std::numeric_limits<double>::infinity();
@@ -229,14 +229,14 @@ class Loop {
   Eigen::Vector3d insertion_point_;  // at rest, in the world
   sim::ScopeBody body_;
   Eigen::Vector4d executed_ = Eigen::Vector4d::Zero();  // at the last step of the controller
-  double reported_ = 0.0;                               // s, then
+  double reported_ = 0.0;                               // s, time of that step
   std::deque<std::pair<double, servo::TaskErrorInput>> images_;
   std::pair<double, servo::TaskErrorInput> latest_{0.0, servo::TaskErrorInput()};
   bool engaged_once_ = false;
-  Eigen::Matrix3d picture_;  // what it shows over what it should, normalised coordinates
+  Eigen::Matrix3d picture_;  // takes the correct picture to the one shown, normalised coordinates
   Eigen::Vector4d signs_;
-  std::optional<Eigen::Matrix3d> frozen_;            // what a frozen picture shows
-  Eigen::Vector4d moved_ = Eigen::Vector4d::Zero();  // by the scope
+  std::optional<Eigen::Matrix3d> frozen_;            // homography of a frozen picture
+  Eigen::Vector4d moved_ = Eigen::Vector4d::Zero();  // displacement of the scope
 };
 
 }  // namespace

@@ -32,7 +32,7 @@ Eigen::Isometry3d se3Exp(const Vector6d& twist) {
   const Eigen::Vector3d w = twist.tail<3>();
   const double angle2 = w.squaredNorm();
   const double angle = std::sqrt(angle2);
-  // The left Jacobian of SO(3); its series where the closed form divides zero by zero.
+  // The left Jacobian of SO(3); by its series where the closed form is 0 / 0.
   double b = 0.5 - angle2 / 24.0;
   double c = 1.0 / 6.0 - angle2 / 120.0;
   if (angle > 1e-4) {

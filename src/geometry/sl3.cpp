@@ -14,10 +14,10 @@ constexpr double kNearIdentity = 0.25;  // distance at which the logarithm's ser
 constexpr int kTerms = 9;
 constexpr int kMaxRoots = 40;
 constexpr int kMaxIterations = 60;
-constexpr double kQuadratic = 1e-8;  // relative; a step as small as this leaves an error as large as its square
+constexpr double kQuadratic = 1e-8;  // relative step size from which the error, its square, is negligible
 
-// The principal one, by Denman and Beavers' iteration, scaled by the determinant as Higham does; NaN where there is
-// none, which is where an eigenvalue is negative or 0.
+// The principal square root, by Denman and Beavers' iteration with Higham's scaling by the determinant; NaN if there is
+// none (an eigenvalue is negative or 0).
 Eigen::Matrix3d squareRoot(const Eigen::Matrix3d& a) {
   Eigen::Matrix3d y = a;
   Eigen::Matrix3d z = Eigen::Matrix3d::Identity();
@@ -54,7 +54,7 @@ Eigen::Matrix3d sl3Exp(const Vector8d& x) {
   return sl3Hat(x).exp();
 }
 
-// Eigen's logarithm asks for memory, and this is called for every image.
+// Not Eigen's logarithm, which allocates: this is called for every image.
 Vector8d sl3Log(const Eigen::Matrix3d& g) {
   const Eigen::Matrix3d identity = Eigen::Matrix3d::Identity();
   Eigen::Matrix3d root = g;

@@ -12,7 +12,7 @@ namespace laparoscope_servo::image {
 
 namespace {
 
-constexpr int kChunk = 256;  // pixels that a row is worked in
+constexpr int kChunk = 256;  // pixels of a row that are processed at once
 constexpr int kMaxGrow = kChunk / 4;
 
 using Row = ProjectiveRow;
@@ -51,7 +51,7 @@ void locate(const Row& row, ByteFrame frame, int first, int count, int* __restri
   }
 }
 
-// The same for points that are there already, see locateRaw.
+// pixelAt() for points computed by locateRaw.
 LAPAROSCOPE_SERVO_CLONES
 void place(const float* __restrict u, const float* __restrict v, ByteFrame frame, int count, int* __restrict offset,
            unsigned char* __restrict valid) {
@@ -83,7 +83,7 @@ void add(const unsigned char* __restrict from, int count, unsigned char* __restr
   for (int i = 0; i < count; ++i) to[i] = static_cast<unsigned char>(to[i] | from[i]);
 }
 
-// Marks what is bright and grows it along the row. False when nothing is.
+// Marks bright pixels and dilates them along the row. Returns false if there are none.
 bool markBrightRow(const unsigned char* b, const unsigned char* g, const unsigned char* r, int width,
                    const std::array<int, 3>& thresholds, int grow, unsigned char* mask) {
   unsigned char bright[kChunk];
@@ -105,7 +105,7 @@ bool markBrightRow(const unsigned char* b, const unsigned char* g, const unsigne
   return any;
 }
 
-// In place: first from what lies below and still is as it was, then from what lies above and has not grown down yet.
+// Dilates across rows, in place: first from the rows below, which are unchanged yet, then from the rows above.
 void growAcross(int grow, cv::Mat1b& mask) {
   for (int j = 0; j < mask.rows; ++j) {
     for (int k = 1; k <= std::min(grow, mask.rows - 1 - j); ++k) {

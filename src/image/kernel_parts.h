@@ -1,4 +1,5 @@
-// What kernels have in common, inlined into each of their versions: see multiversion.h. Private to the image part.
+// Functions shared by the kernels and inlined into each of their versions: see multiversion.h. Private to the image
+// part.
 #pragma once
 
 #include <algorithm>
@@ -9,10 +10,10 @@ namespace laparoscope_servo::image {
 
 struct RowPoint {
   float x, y;
-  float w;  // the map's denominator: the point is seen where that is positive
+  float w;  // the map's denominator: the point is visible if it is positive
 };
 
-// Where the row's pixel `t` is taken to.
+// The point to which the map takes the row's pixel `t`.
 [[gnu::always_inline]] inline RowPoint pointOf(const ProjectiveRow& row, float t) {
   const float w = row.w0 + row.w1 * t;
   const float per_w = 1.0f / w;
@@ -33,7 +34,7 @@ struct PixelFrame {
   int stride;
 };
 
-// Of the upper left one of a point's four neighbours, and the point's place between them.
+// The upper left of a point's four neighbours, and the point's place between them.
 struct Neighbours {
   int offset;
   float right_of, below;
@@ -41,7 +42,7 @@ struct Neighbours {
 };
 
 [[gnu::always_inline]] inline Neighbours neighboursOf(const PixelFrame& frame, float u, float v) {
-  // A NaN or an infinity ends at 0, and is not equal to what it came from.
+  // NaN and infinity become 0, which differs from the input, so the point counts as outside.
   float uc = u > 0.0f ? u : 0.0f;
   float vc = v > 0.0f ? v : 0.0f;
   uc = uc < frame.right ? uc : frame.right;

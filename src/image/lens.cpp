@@ -62,7 +62,7 @@ class Bounds {
 
 Lens::Lens(const LensParameters& parameters) : parameters_(parameters) {
   check(parameters);
-  // R is written with few digits in some files; its inverse undoes it whatever it is.
+  // Some files hold R with few digits; the inverse, unlike the transpose, undoes it exactly.
   rays_ = parameters.rotation.inverse() * parameters.rectified.inverseMatrix();
   rectified_from_rays_ = parameters.rectified.matrix() * parameters.rotation;
   field_ = findField();
@@ -70,7 +70,7 @@ Lens::Lens(const LensParameters& parameters) : parameters_(parameters) {
     throw std::invalid_argument("distortion model is not one to one on the axis, expected coefficients that are");
 }
 
-// The factor on the distance from the axis, whose square is q.
+// The factor by which a point at squared distance q from the axis is moved radially.
 double Lens::radial(double q) const {
   const std::array<double, 8>& c = parameters_.coefficients;
   if (parameters_.distortion == Distortion::kEquidistant) {
@@ -104,7 +104,7 @@ Eigen::Matrix2d Lens::derivative(const Eigen::Vector2d& point) const {
   return j;
 }
 
-// Outwards, until the map turns over in some direction, or has passed a pole.
+// Searches outwards until the map is no longer one to one in some direction, or has passed a pole.
 double Lens::findField() const {
   double field = 0.0;
   for (int step = 0; step <= kFieldSteps; ++step) {
@@ -130,7 +130,7 @@ std::optional<Eigen::Vector2d> Lens::toRaw(const Eigen::Vector2d& rectified) con
   return Eigen::Vector2d(raw.fx * moved.x() + raw.cx, raw.fy * moved.y() + raw.cy);
 }
 
-// Without the tangential terms. The field's radius when there is none in the field.
+// Inverse of the radial model, without the tangential terms. The field's radius if there is no solution in the field.
 double Lens::undistortedRadius(double distorted) const {
   double low = 0.0;
   double high = std::sqrt(field_);
@@ -190,7 +190,7 @@ bool operator==(const Lens& a, const Lens& b) {
 }
 
 cv::Rect rawBox(const Lens& lens, const geometry::Quadrilateral& rectified, double margin) {
-  // All over the quadrilateral, since the lens bends its edges, and the field may end within it.
+  // Samples the whole quadrilateral, since the lens bends its edges and the field may end within it.
   constexpr int kSteps = 8;
   Bounds bounds;
   for (int j = 0; j <= kSteps; ++j) {
@@ -236,7 +236,7 @@ cv::Mat2f rectifiedMap(const Lens& lens, const cv::Rect& box) {
       coarse(j, i) = p ? cv::Vec2f(static_cast<float>(p->x()), static_cast<float>(p->y())) : cv::Vec2f(NAN, NAN);
     }
   }
-  // Between the nodes linearly; a cell with a node that has no rectified pixel has none either.
+  // Interpolates linearly between the nodes; cells with a node without a rectified pixel have none either.
   cv::Mat2f map(box.size());
   for (int j = 0; j < box.height; ++j) {
     const float down = static_cast<float>(j % kMapStep) / kMapStep;

@@ -56,7 +56,7 @@ void locateEquidistant(const LensLoop& lens, const ProjectiveRow& row, int first
   for (int i = 0; i < count; ++i) {
     const auto [x, y, w] = pointOf(r, static_cast<float>(first + i));
     const float q = x * x + y * y;
-    // On the axis the angle over the distance is 1: it must not become 0 / 0.
+    // On the axis the ratio of angle to distance is 1; avoids 0 / 0.
     const float distance = std::sqrt(q > 1e-12f ? q : 1e-12f);
     const float per_distance = 1.0f / distance;
     const bool far = distance > 1.0f;

@@ -60,7 +60,7 @@ void halveAlong(const float* __restrict row, int count, float* __restrict to) {
   }
 }
 
-// The row that stands for row k beyond the first or the last: mirrored at it.
+// The row used for row k beyond the first or the last: mirrored there.
 int mirrored(int k, int size) {
   if (k < 0) k = -k;
   if (k >= size) k = 2 * size - 2 - k;
@@ -80,8 +80,8 @@ void RegionPyramid::Plane::resize(const cv::Size& size, const cv::Size& most) {
   view = cv::Mat1f(size.height, size.width, data.data());
 }
 
-// Rows are weighed and smoothed along, three at a time, and then across. Beyond the region they go on linearly, which
-// leaves its border as it is in that direction.
+// Rows are converted and smoothed along, three at a time, and then across. They are extrapolated linearly beyond the
+// region, so that its border is not smoothed in that direction.
 void RegionPyramid::smooth(const cv::Mat& image, const ChannelWeights& weights, cv::Mat1f& level) {
   const int width = level.cols;
   const int height = level.rows;

@@ -8,19 +8,20 @@ namespace laparoscope_servo::image {
 
 namespace {
 
-// Of every 8 rows one of each field: a quarter of the pixels, and no gap of 4 rows that begins at a multiple of 4.
+// One row of each field in every 8 rows: a quarter of the pixels, and every block of 4 rows that begins at a multiple
+// of 4 has one.
 constexpr int kPeriod = 8;
 constexpr int kFieldRow[2] = {0, 5};
 
-// Multiplication by an odd number loses nothing, and the shift brings its high bits down: two rows that differ
-// anywhere have the same fingerprint by a chance of 2^-64.
+// Multiplication by an odd number is invertible, and the shift mixes the high bits into the low ones: rows that differ
+// have equal fingerprints with a probability of 2^-64.
 std::uint64_t mixed(std::uint64_t hash, std::uint64_t word) {
   hash = (hash ^ word) * 0x9E3779B97F4A7C15ULL;
   return hash ^ (hash >> 29);
 }
 
 std::uint64_t mixedRow(std::uint64_t hash, const unsigned char* row, int bytes) {
-  // Four sums at once: the processor need not wait for one multiplication after the other.
+  // Four independent sums, so that the processor can overlap the multiplications.
   std::uint64_t lanes[4] = {hash, ~hash, hash + 1, hash + 2};
   int at = 0;
   for (; at + 32 <= bytes; at += 32) {
@@ -36,7 +37,7 @@ std::uint64_t mixedRow(std::uint64_t hash, const unsigned char* row, int bytes) 
   return mixed(lanes[0] + 3 * lanes[1], lanes[2] + 5 * lanes[3]);
 }
 
-// The tiles that lie in the region; those that touch it where it is too small to hold one.
+// The tiles within the region; if it is too small to hold one, those that touch it.
 cv::Rect tilesOf(const cv::Rect& region, const cv::Size& tiles) {
   constexpr int kTile = RepeatWatch::kTile;
   const auto up = [](int value) { return (value + kTile - 1) / kTile; };
@@ -47,9 +48,9 @@ cv::Rect tilesOf(const cv::Rect& region, const cv::Size& tiles) {
   return cv::Rect(cv::Point(region.x / kTile, region.y / kTile), cv::Point(up(region.br().x), up(region.br().y))) & all;
 }
 
-// How much there is to see in a tile: the sum of the differences between pixels two apart, along the rows and across.
+// Amount of texture in a tile: the sum of differences between pixels two apart, along rows and columns.
 double textureOf(const cv::Mat& image, const cv::Rect& tile) {
-  constexpr int kApart = 2;  // px: less is the noise of one pixel
+  constexpr int kApart = 2;  // px: differences of nearer pixels are mostly noise
   const int channels = image.channels();
   const int channel = channels / 2;  // the green one
   long sum = 0;
@@ -104,7 +105,7 @@ void RepeatWatch::take(const cv::Mat& image, Prints& prints) const {
   for (int block = 0; block < image.rows; block += kPeriod) {
     Print* const row_of_tiles = &prints[static_cast<std::size_t>(block / kTile) * tiles_.width];
     for (int field = 0; field < 2; ++field) {
-      // An image that ends within the block has its last row of that field looked at.
+      // If the image ends within the block, the last row of that field is used.
       int row = block + kFieldRow[field];
       while (row >= image.rows) row -= 2;
       if (row < block) continue;
@@ -140,7 +141,7 @@ const RepeatWatch::Prints& RepeatWatch::printsOf(int back) const {
   return ring_[static_cast<std::size_t>((newest_ - back + places) % places)];
 }
 
-// Black bars beside a picture repeat for ever.
+// Black bars beside a picture always repeat.
 bool RepeatWatch::hasBeenLive(const cv::Rect& tiles) const {
   for (int y = tiles.y; y < tiles.br().y; ++y) {
     for (int x = tiles.x; x < tiles.br().x; ++x) {
@@ -165,7 +166,7 @@ bool RepeatWatch::bandRepeats(const cv::Rect& tiles) const {
   return false;
 }
 
-// Where the region may be within some pictures: the tiles of large images need not all be counted.
+// Tiles that the region may reach within some pictures, so that not all tiles of large images are counted.
 cv::Rect RepeatWatch::nearby(const cv::Rect& tiles) const {
   const cv::Size margin(std::max(kMargin, tiles.width / 2), std::max(kMargin, tiles.height / 2));
   const cv::Rect grown(tiles.x - margin.width, tiles.y - margin.height, tiles.width + 2 * margin.width,
@@ -173,7 +174,7 @@ cv::Rect RepeatWatch::nearby(const cv::Rect& tiles) const {
   return grown & cv::Rect(cv::Point(0, 0), tiles_);
 }
 
-// A picture that repeats in whole says nothing about which tiles change.
+// A picture that repeats as a whole has no information on which tiles change.
 void RepeatWatch::countTiles(const cv::Rect& tiles) {
   if (tiles != watched_) forgetOutside(tiles);
   watched_ = tiles;
@@ -220,7 +221,7 @@ int RepeatWatch::partRepeats(const cv::Mat& image, const cv::Rect& tiles) const 
       any = any || repeats > 0;
     }
   }
-  if (!any) return 0;  // as most pictures are: nothing to be weighed
+  if (!any) return 0;  // the usual case: no tile repeats, so texture is not computed
   std::sort(live.begin(), live.end(), [](const Tile& a, const Tile& b) { return a.repeats > b.repeats; });
   std::vector<double> up_to;
   double sum = 0.0;

@@ -13,9 +13,10 @@ namespace {
 
 using Row = ProjectiveRow;
 
-constexpr int kChunk = 256;  // pixels that a row is worked in, so that what lies between the loops stays in the cache
+// pixels of a row that are processed at once, so that intermediate values stay in the cache
+constexpr int kChunk = 256;
 
-// Where each pixel comes from: see Neighbours. Returns how many pixels lie inside.
+// Computes the Neighbours of each pixel. Returns how many pixels lie inside.
 LAPAROSCOPE_SERVO_CLONES
 int locate(const Row& row, int stride, int width, int height, int first, int count, int* __restrict offset,
            float* __restrict right_of, float* __restrict below, float* __restrict valid) {
@@ -36,7 +37,7 @@ int locate(const Row& row, int stride, int width, int height, int first, int cou
   return inside_count;
 }
 
-// The same for points that are there already, see locateRaw.
+// locate() for points computed by locateRaw.
 LAPAROSCOPE_SERVO_CLONES
 int place(const float* __restrict u, const float* __restrict v, int stride, int width, int height, int count,
           int* __restrict offset, float* __restrict right_of, float* __restrict below, float* __restrict valid) {
@@ -100,7 +101,7 @@ Row rowOf(const Eigen::Matrix3d& g, int j) {
 template <typename PatchRow, typename ValidRow>
 bool warpRows(const cv::Mat1f& image, const Eigen::Matrix3d& g, const LensLoop* lens, int width, int height,
               PatchRow patch, ValidRow valid) {
-  // Pairs of neighbours are read; an image of one column is given a second one.
+  // Pairs of neighbours are read, so an image of one column gets a second one.
   cv::Mat1f widened;
   if (image.cols == 1) cv::hconcat(image, image, widened);
   const cv::Mat1f& source = image.cols == 1 ? widened : image;

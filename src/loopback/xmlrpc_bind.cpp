@@ -1,7 +1,7 @@
-// roscpp binds its XML-RPC server to every address of the machine, whatever ROS_IP says: everybody on the network could
-// end a node, or hand it another publisher. Found before the definition in libxmlrpcpp, this binds it as rospy does: to
-// the loopback address when ROS_IP or ROS_HOSTNAME name that one. It is a part of every program of this package; into
-// programs of others it is preloaded (LD_PRELOAD), so it needs no library but that of C.
+// roscpp binds its XML-RPC server to every address of the machine, whatever ROS_IP is: anybody on the network could end
+// a node, or give it another publisher. This definition replaces that in libxmlrpcpp and binds as rospy does: to the
+// loopback address if ROS_IP or ROS_HOSTNAME name it. It is linked into every program of this package and preloaded
+// (LD_PRELOAD) into other programs, so it needs no library but the C library.
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <xmlrpcpp/XmlRpcSocket.h>
@@ -16,7 +16,7 @@ bool isLoopback(const char* address) {
          std::strcmp(address, "::1") == 0;
 }
 
-// ROS_HOSTNAME is asked first, as everywhere in ROS.
+// ROS_HOSTNAME has precedence, as everywhere in ROS.
 bool onlyLoopback() {
   for (const char* variable : {"ROS_HOSTNAME", "ROS_IP"}) {
     const char* address = std::getenv(variable);

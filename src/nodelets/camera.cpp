@@ -9,7 +9,7 @@
 
 namespace laparoscope_servo::nodelets {
 
-// Nothing that is wrong here may take the manager, and the nodelets in it, along.
+// Exceptions must not leave onInit(): they would end the nodelet manager with all its nodelets.
 void Camera::onInit() {
   try {
     ParameterReader reader(parametersOf(getPrivateNodeHandle()), getPrivateNodeHandle().getNamespace());

@@ -20,16 +20,16 @@ namespace laparoscope_servo::nodelets {
 
 namespace {
 
-constexpr double kAhead = 1.0;        // s, of tf to this machine's clock
-constexpr double kStatePeriod = 0.2;  // s between two looks whether images come
-constexpr double kThrottle = 5.0;     // s between two lines of the log about the same kind of trouble
+constexpr double kAhead = 1.0;        // s, by which tf may be ahead of this machine's clock
+constexpr double kStatePeriod = 0.2;  // s between two checks for images
+constexpr double kThrottle = 5.0;     // s between two lines of the log about the same kind of error
 
 template <class Message>
 void publishIfHeard(const ros::Publisher& publisher, Message (*make)(const Processed&), const Processed& processed) {
   if (publisher.getNumSubscribers() > 0) publisher.publish(boost::make_shared<Message>(make(processed)));
 }
 
-// Whoever takes a request has to answer it, also when an exception passes.
+// Answers a request that was taken, also if an exception is thrown.
 class AnswerGuard {
  public:
   explicit AnswerGuard(TrackerRequest& request) : request_(request), question_(request.take()) {}
@@ -39,7 +39,7 @@ class AnswerGuard {
   AnswerGuard(const AnswerGuard&) = delete;
   AnswerGuard& operator=(const AnswerGuard&) = delete;
 
-  // Null when nothing of this kind is asked.
+  // The question if it is of this kind, or null.
   template <class Kind>
   const Kind* get() const {
     return question_ ? std::get_if<Kind>(&*question_) : nullptr;
@@ -55,7 +55,7 @@ class AnswerGuard {
 }  // namespace
 
 Tracker::~Tracker() {
-  // The services first: they may be waiting for an image that will not come any more.
+  // Ends the services first, which may be waiting for an image that will not come any more.
   request_.close();
   if (request_spinner_) request_spinner_->stop();
   if (view_spinner_) view_spinner_->stop();
@@ -67,13 +67,14 @@ Tracker::~Tracker() {
 }
 
 void Tracker::onInit() {
-  // Nothing that is wrong here may take the manager, and the camera driver in it, along.
+  // Exceptions must not leave onInit(); they would end the nodelet manager, with the camera driver in it.
   try {
     state_publisher_ = getPrivateNodeHandle().advertise<TrackerState>("state", 5, true);
     diagnostics_ = std::make_unique<diagnostic_updater::Updater>(getNodeHandle(), getPrivateNodeHandle(), getName());
     diagnostics_->setHardwareID("none");
     diagnostics_->add("tracking", this, &Tracker::diagnose);
-    // Forced, and by the wall clock: Updater::update() falls silent when the time of a looped bag jumps back.
+    // Uses force_update() and the wall clock: Updater::update() stops publishing when the time of a looped bag jumps
+    // back.
     diagnostics_timer_ = getNodeHandle().createWallTimer(
         ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) { diagnostics_->force_update(); });
     const std::string& name = getPrivateNodeHandle().getNamespace();
@@ -158,11 +159,12 @@ void Tracker::followRobot(const RobotMotionConfig& config) {
 }
 
 void Tracker::subscribeImages() {
-  // A queue of one: an image that waited is of no use to a control loop, the newest one is.
+  // A queue of one: the control loop needs the newest image only.
   constexpr std::uint32_t kQueue = 1;
   const ros::TransportHints no_delay = ros::TransportHints().tcpNoDelay();
   const image_transport::TransportHints hints("raw", no_delay, getPrivateNodeHandle());
-  if (hints.getTransport() == "raw") {  // the topic itself: here alone it is known who has sent an image
+  // subscribes to the topic itself, since only then the sender of an image is known
+  if (hints.getTransport() == "raw") {
     image_subscriber_ = getNodeHandle().subscribe("image", kQueue, &Tracker::rawImageCallback, this, no_delay);
     return;
   }
@@ -182,16 +184,16 @@ void Tracker::rawImageCallback(const ros::MessageEvent<const sensor_msgs::Image>
          Refusal::kSender);
 }
 
-// A bag that begins again sets the clock back, too.
+// A bag that begins again also sets the clock back.
 void Tracker::watchClock() {
-  constexpr double kJump = 0.05;  // s: an adjusted clock goes back by less
+  constexpr double kJump = 0.05;  // s: larger than corrections of the machine's clock
   const ros::Time now = ros::Time::now();
   if ((last_now_ - now).toSec() > kJump) session_->clockJumpedBack();
   last_now_ = now;
 }
 
 void Tracker::imageCallback(const sensor_msgs::ImageConstPtr& message) {
-  // cv::Exception is a std::exception. One odd image must not end the process that the camera driver may share.
+  // A bad image must not end the process, which the camera driver may share. (cv::Exception is a std::exception.)
   try {
     process(message);
   } catch (const ImageError& error) {
@@ -207,7 +209,7 @@ void Tracker::process(const sensor_msgs::ImageConstPtr& message) {
   try {
     watchClock();
     if (live_->take(changed_)) session_->retune(changed_);
-    // Simulated time comes over a topic of its own, later than the image or earlier.
+    // Simulated time comes on its own topic, before or after the image, so stamps are then not compared with it.
     const ros::Time now = ros::Time::isSimTime() ? ros::Time() : ros::Time::now();
     checkStamp(message->header.stamp, now, session_->parameters().input.max_ahead);
     const auto* roi = guard.get<geometry::Rectangle>();

@@ -42,21 +42,21 @@ class Tracker : public nodelet::Nodelet {
   void standAside(const std::string& why);
   void followRobot(const RobotMotionConfig& config);
 
-  // All in the nodelet's own single-threaded queue.
+  // The functions below run in the nodelet's own single-threaded queue.
   void subscribeImages();
   void imageCallback(const sensor_msgs::ImageConstPtr& message);
-  // Of the raw transport, which tells who has sent the image.
+  // For the raw transport, with which the sender of an image is known.
   void rawImageCallback(const ros::MessageEvent<const sensor_msgs::Image>& event);
   void cameraInfoCallback(const ros::MessageEvent<const sensor_msgs::CameraInfo>& event);
   void watchClock();
   bool reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
-  // In a queue and a thread of its own, because it waits for an image.
+  // In a separate queue and thread, because it waits for an image.
   bool selectRoi(SelectRoi::Request& request, SelectRoi::Response& response);
   bool checkRoi(CheckRoi::Request& request, CheckRoi::Response& response);
   bool freezeImage(FreezeImage::Request& request, FreezeImage::Response& response);
   bool selectFrozenRoi(CheckRoi::Request& request, CheckRoi::Response& response);
-  // In one of theirs, too: comparing views takes seconds, for which no selection should wait.
+  // In another queue and thread: comparing views takes seconds, for which no selection should wait.
   bool storeView(StoredView::Request& request, StoredView::Response& response);
   bool recallView(StoredView::Request& request, StoredView::Response& response);
   bool listViews(ListViews::Request& request, ListViews::Response& response);
@@ -67,9 +67,9 @@ class Tracker : public nodelet::Nodelet {
   void publishState(const std::optional<TrackerState>& state);
   void refuse(const std::string& error, Refusal cause = Refusal::kData);
 
-  std::unique_ptr<OwnedTransforms> transforms_;  // with robot_motion only
+  std::unique_ptr<OwnedTransforms> transforms_;  // only with robot_motion
   std::unique_ptr<TrackerSession> session_;
-  TrackerParameters changed_;  // by live_
+  TrackerParameters changed_;  // buffer for live_.take()
   std::unique_ptr<TrackerDiagnostics> statistics_;
   std::unique_ptr<diagnostic_updater::Updater> diagnostics_;
   std::string why_aside_;
@@ -77,19 +77,19 @@ class Tracker : public nodelet::Nodelet {
   Preview preview_;
 
   TrackerRequest request_;
-  std::unique_ptr<RegionDesk> desk_;  // of the requests' thread
+  std::unique_ptr<RegionDesk> desk_;  // used by the thread of the requests
   ros::CallbackQueue request_queue_;
   std::unique_ptr<ros::AsyncSpinner> request_spinner_;
-  std::unique_ptr<ViewLibrary> views_;  // of the views' thread
+  std::unique_ptr<ViewLibrary> views_;  // used by the thread of the views
   ros::CallbackQueue view_queue_;
   std::unique_ptr<ros::AsyncSpinner> view_spinner_;
 
   FeedOwner image_owner_;
   FeedOwner camera_info_owner_;
   ros::Time last_now_;
-  std::unique_ptr<image_transport::ImageTransport> transport_;  // other than raw
+  std::unique_ptr<image_transport::ImageTransport> transport_;  // for other transports than raw
   image_transport::Subscriber transport_subscriber_;
-  ros::Subscriber image_subscriber_;  // raw
+  ros::Subscriber image_subscriber_;  // for the raw transport
   ros::Subscriber camera_info_subscriber_;
   ros::Publisher homography_publisher_;
   ros::Publisher task_error_publisher_;

@@ -1,4 +1,4 @@
-// The services of the tracker that wait for an image: they run in threads of their own.
+// The services of the tracker that wait for an image; they run in separate threads.
 #include <memory>
 #include <sstream>
 #include <stdexcept>
@@ -113,7 +113,7 @@ bool Tracker::storeView(StoredView::Request& request, StoredView::Response& resp
   return true;
 }
 
-// The tracker goes on meanwhile: searching the image for all the views takes longer than an image.
+// Tracking goes on meanwhile: searching the image for all views takes longer than the period of the images.
 bool Tracker::recallView(StoredView::Request& request, StoredView::Response& response) {
   response.success = static_cast<std::uint8_t>(false);
   TrackerRequest::Answer answer = ask(TrackerRequest::WantSnapshot());

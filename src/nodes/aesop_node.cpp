@@ -29,7 +29,7 @@ int run() {
   int status = 0;
   try {
     aesop.run(stopRequested);
-  } catch (const std::exception&) {  // said by run()
+  } catch (const std::exception&) {  // logged by run()
     status = 1;
   }
   limitFarewell(status);

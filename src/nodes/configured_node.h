@@ -1,4 +1,4 @@
-// The main program of a node that needs its parameters, and no more to begin with.
+// The main program of a node that needs only its parameters to start.
 #pragma once
 
 #include <ros/ros.h>
@@ -11,8 +11,8 @@
 
 namespace laparoscope_servo {
 
-// Its exit status: 0 after run(node, private_node, config); 1 with a message when the parameters of the private
-// namespace are refused, or when `run` throws.
+// Returns the exit status: 0 after run(node, private_node, config); 1 with a message if the private parameters are
+// refused, or if `run` throws.
 template <class Config, class Run>
 int configuredNode(int argc, char** argv, const char* name, const Run& run) {
   const UnblockedOutput output;

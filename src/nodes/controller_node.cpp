@@ -27,7 +27,7 @@ int run() {
   ControllerNode controller(node, private_node, config);
   warnOfExposure();
   const int status = controller.run(stopRequested);
-  ros::WallDuration(0.05).sleep();  // publishing is asynchronous: the zeros have to leave before the connections close
+  ros::WallDuration(0.05).sleep();  // publishing is asynchronous: the zeros must be sent before the connections close
   limitFarewell(status);
   return status;
 }

@@ -9,8 +9,8 @@
 
 namespace laparoscope_servo {
 
-// Its exit status: that of `run`, or 1 with a message when it throws. No handler of ROS for signals: the arm has to be
-// stopped while there is still a node to do it.
+// Returns the exit status: that of `run`, or 1 with a message if it throws. Does not install ROS' signal handler, so
+// that the node can stop the arm before it ends.
 inline int robotNode(int argc, char** argv, const char* name, int (*run)()) {
   const UnblockedOutput output;
   ros::init(argc, argv, name, ros::init_options::NoSigintHandler);

@@ -1,4 +1,4 @@
-// The tracker as a node of its own: a manager with one nodelet in it.
+// The tracker as a separate node: a manager with one nodelet.
 #include <nodelet/loader.h>
 #include <ros/ros.h>
 
@@ -14,7 +14,8 @@ int main(int argc, char** argv) {
   const laparoscope_servo::UnblockedOutput output;
   ros::init(argc, argv, "tracker");
   {
-    // The nodelet would stand aside to spare its manager. A node of its own says so by its exit status.
+    // With wrong parameters the nodelet stays inactive to keep its manager running; a separate node ends with an exit
+    // status instead.
     const ros::NodeHandle node("~");
     std::vector<std::string> errors;
     laparoscope_servo::readTrackerParameters(laparoscope_servo::parametersOf(node), node.getNamespace(), errors);

@@ -8,7 +8,7 @@ int main(int argc, char** argv) {
   const auto run = [](ros::NodeHandle& node, ros::NodeHandle&, VideoPlayerConfig& config) {
     VideoPlayer player(node, config);
     player.run();
-    // Publishing is asynchronous: the last images have to leave before the connections close.
+    // Publishing is asynchronous: the last images must be sent before the connections close.
     ros::WallDuration(0.5).sleep();
   };
   return configuredNode<VideoPlayerConfig>(argc, argv, "video_player", run);

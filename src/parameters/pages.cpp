@@ -11,17 +11,17 @@ namespace {
 
 using validation::numberText;
 
-constexpr std::size_t kWidestEntry = 44;  // what is wider does not move the comments of its neighbours
+constexpr std::size_t kWidestEntry = 44;  // wider entries do not move the comments of their neighbours
 constexpr char kWhileRunning[] = " May change while it runs.";
 
-// With a point, without which YAML 1.1 takes 1e+09 for a text.
+// With a decimal point, without which YAML 1.1 reads 1e+09 as a text.
 std::string yamlNumber(double value) {
   std::string text = numberText(value);
   if (!std::isfinite(value) || text.find('.') != std::string::npos) return text;
   return text.insert(std::min(text.size(), text.find('e')), ".0");
 }
 
-// A word that YAML takes for nothing but a text may stand without quotes.
+// A word that YAML can only read as a text needs no quotes.
 std::string yamlString(const std::string& text) {
   static const char* const kOther[] = {"true", "false", "yes", "no", "on", "off", "null", "y", "n"};
   bool plain = !text.empty() && std::isalpha(static_cast<unsigned char>(text[0])) != 0;
@@ -55,7 +55,7 @@ std::string groupOf(const std::string& path) {
   return slash == std::string::npos ? "" : path.substr(0, slash);
 }
 
-// Bounds, choices or what a text has to be, and how it lies to others.
+// Bounds, choices or the expected text, and relations to other parameters.
 std::string rangeText(const Row& row, const std::string& quote) {
   std::string text;
   if (std::isfinite(row.range.low) || std::isfinite(row.range.high)) text = row.range.text();
@@ -85,7 +85,7 @@ std::string entry(const Row& row) {
   return name + "[" + joined(std::get<std::vector<double>>(value), numberText) + "]";
 }
 
-// The rows of a group lie side by side: a line for the group's name is due where the one before is in another.
+// The rows of a group are adjacent: prints a line for the group's name if the last row is in another group.
 void enterGroup(const Table& table, const std::string& before, const std::string& group, std::size_t column,
                 std::ostringstream& page) {
   if (group.empty() || (before + "/").rfind(group + "/", 0) == 0) return;
@@ -101,7 +101,7 @@ std::string topOf(const std::string& path) {
   return path.find('/') == std::string::npos ? "" : path.substr(0, path.find('/'));
 }
 
-// Where the comments of a group at the top begin.
+// Column of the comments of a top-level group.
 std::size_t columnOf(const Table& table, const std::string& top) {
   std::size_t widest = 0;
   for (const Row& row : table.rows()) {
@@ -162,7 +162,7 @@ std::string yamlPage(const Table& table, const std::string& heading) {
   std::istringstream lines(heading);
   for (std::string line; std::getline(lines, line);) page << "# " << line << '\n';
   std::string before;
-  std::string top = "/";  // no group's
+  std::string top = "/";  // matches no group
   std::size_t column = 0;
   for (const Row& row : table.rows()) {
     if (topOf(row.name) != top) {

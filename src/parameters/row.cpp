@@ -15,7 +15,7 @@ std::string joined(const std::vector<std::string>& names) {
   return text;
 }
 
-// `value` as a row of this kind holds it: a whole number is a number, too, and an empty list one of anything.
+// `value` converted to the kind of a row: an integer to a number, an empty list to any list.
 Value converted(const Value& value, Row::Kind kind) {
   if (kind == Row::Kind::kNumber && std::holds_alternative<int>(value))
     return static_cast<double>(std::get<int>(value));

@@ -134,7 +134,7 @@ std::vector<std::string> Table::errors() const {
   return errors;
 }
 
-// What is not in its own range is said of that one alone.
+// A value outside of its own range gives only that error.
 std::string Table::relationError(const Row& row) const {
   for (const Row::Relation& relation : row.relations) {
     const Row& other = *find(relation.other);

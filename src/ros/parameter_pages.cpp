@@ -27,7 +27,7 @@ constexpr char kEnd[] = "<!-- parameters: end -->";
 constexpr char kMade[] =
     "\nMade by scripts/generate_parameters. A file of yours, loaded after this one, may name only what differs.";
 
-using Rows = std::function<void(Table&)>;  // adds all that a file or page tells of
+using Rows = std::function<void(Table&)>;  // adds the rows of a file or page
 
 ParameterPage file(const std::string& name, const std::string& heading, const Rows& rows) {
   return {"config/" + name, [=] {
@@ -45,7 +45,7 @@ ParameterPage page(const std::string& name, const std::string& prefix, const Row
           }};
 }
 
-// Of the defaults, which live as long as the rows.
+// Rows of the default configuration, which lives as long as the rows.
 template <class Config>
 Rows rowsOf() {
   return [config = std::make_shared<Config>()](Table& table) { describe(table, *config); };
@@ -57,7 +57,7 @@ Rows rowsOfEmulator() {
 
 Rows rowsOfSimulation() {
   return [config = std::make_shared<closed_loop::SimulationConfig>()](Table& table) {
-    table.group("simulation", "what the controller is tried on", [&] { describe(table, *config); });
+    table.group("simulation", "the simulated world", [&] { describe(table, *config); });
   };
 }
 

@@ -12,12 +12,12 @@ namespace laparoscope_servo::screen {
 
 namespace {
 
-// s without a word after which a node that is connected is taken for hung. The tracker repeats its state once a second,
-// the others theirs, or their commands, ten times a second and more.
+// s without a message after which a connected node counts as hung. The tracker publishes its state once a second, the
+// others their states or commands at least ten times a second.
 constexpr double kTrackerSilence = 2.5;
 constexpr double kSilence = 1.0;
 
-// What stands before the node has been heard; empty when it speaks.
+// Text for a node from which no message has come yet, or that is silent; empty if it publishes.
 BandText absence(const Facts& facts, const std::string& who, bool connected, double heard_at, double patience,
                  double now) {
   if (!facts.master) return {"NO MASTER", "There is no ROS master.", "Start a launch file; the screen waits.", "", {}};

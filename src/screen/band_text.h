@@ -1,4 +1,4 @@
-// What the three bands say: of tracker, controller and robot, by the facts and the table of reasons.
+// Texts of the three bands of tracker, controller and robot, from the facts and the table of reasons.
 #pragma once
 
 #include <string>
@@ -8,18 +8,18 @@
 namespace laparoscope_servo::screen {
 
 enum class Level {
-  kUnknown,  // nobody says anything
-  kResting,  // as it should be, and nothing moves by it
-  kGood,     // tracks, moves, may move
-  kWaiting,  // something is missing for now
-  kBad,      // somebody has to do something
+  kUnknown,  // no messages
+  kResting,  // normal, without motion
+  kGood,     // tracking, moving, or ready to move
+  kWaiting,  // something is missing at present
+  kBad,      // an operator must act
 };
 
 struct BandText {
-  std::string word;      // a few letters that one reads from afar
+  std::string word;      // a short word, readable from afar
   std::string sentence;  // why
   std::string cure;      // what to do; empty: nothing
-  std::string detail;    // the node's own words
+  std::string detail;    // the node's own text
   Level level = Level::kUnknown;
 };
 

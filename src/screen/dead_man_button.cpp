@@ -26,14 +26,14 @@ QString DeadManButton::obstacle() const {
   return wanted_ ? HoldArea::obstacle() : "nobody listens";
 }
 
-// A key that stays down while the hold has ended does not begin it anew: key_ knows it as held.
+// A key that stays down after the hold has ended does not start a new one, since key_ still counts it as held.
 void DeadManButton::keyPressed() {
   if (key_.press()) take(By::kKey);
 }
 
 void DeadManButton::keyReleased() {
   key_.release(steadyNow());
-  // A millisecond later than the gap, for the timer may be early by one.
+  // A millisecond more than the gap, since the timer may be early by one.
   QTimer::singleShot(static_cast<int>(std::ceil(1e3 * kRepeatGap)) + 1, Qt::PreciseTimer, this, [this] {
     if (key_.released(steadyNow())) letGo();
   });

@@ -13,7 +13,7 @@ class DeadManButton : public HoldArea {
  public:
   DeadManButton(HeldControl& control, const std::function<void()>& changed, QWidget* parent);
 
-  // Somebody listens to it.
+  // Whether a node subscribes to the switch.
   void setWanted(bool wanted);
   void keyPressed();
   void keyReleased();

@@ -11,7 +11,7 @@ namespace laparoscope_servo::screen {
 
 namespace {
 
-constexpr std::size_t kKept = 64;  // results: a second of them at 60 Hz, longer than a preview waits on its way
+constexpr std::size_t kKept = 64;  // results: one second at 60 Hz, longer than the delay of a preview
 
 std::int64_t nanoseconds(const ros::Time& time) {
   return static_cast<std::int64_t>(time.toNSec());
@@ -55,7 +55,7 @@ std::optional<Value> at(const std::deque<Value>& values, std::int64_t stamp) {
 
 void FactKeeper::take(const sensor_msgs::Image& preview, double age, double now) {
   const QImage image = previewImage(preview);
-  if (image.isNull()) return;  // the picture before grows old on the screen
+  if (image.isNull()) return;  // the last picture stays, and its age grows
   const std::lock_guard<std::mutex> lock(mutex_);
   Picture& picture = facts_.picture;
   if (picture.image.isNull() || !samePicture(picture.image, image)) picture.changed_at = now;

@@ -1,4 +1,4 @@
-// Collects what the nodes say; thread-safe. Finds to each picture what the tracker has said of its image.
+// Collects the messages of the nodes; thread-safe. Matches tracker results to preview images by stamp.
 #pragma once
 
 #include <laparoscope_servo/AreaSelection.h>
@@ -20,9 +20,9 @@ namespace laparoscope_servo::screen {
 
 class FactKeeper {
  public:
-  // `age`: s, of the image by its stamp when it came; 0 where the clocks do not tell.
+  // `age`: s, of the image by its stamp on arrival; 0 if the clocks cannot be compared.
   void take(const sensor_msgs::Image& preview, double age, double now);
-  // `delay`: s, from the image's stamp; NaN where the clocks do not tell.
+  // `delay`: s, since the image's stamp; NaN if the clocks cannot be compared.
   void take(const Homography& homography, double delay, double now);
   // Of the replay of a recorded case: what was said then.
   void takeRecorded(const Homography& homography);

@@ -1,4 +1,4 @@
-// What the nodes have said, as the screen shows it. The screen knows nothing else. No ROS and no widgets here.
+// The content of the nodes' messages that the screen shows; the screen has no other state. Uses no ROS and no widgets.
 //
 // Times `…_at` are s of a steady clock; negative: never. Stamps are ns of ROS time.
 #pragma once
@@ -31,7 +31,7 @@ struct TrackerFacts {
 
 struct ControllerFacts {
   bool connected = false;
-  double heard_at = kNever;  // its newest command: it repeats them, but not its state
+  double heard_at = kNever;  // time of its newest command, since it publishes commands regularly, but not its state
   std::string state;         // of ControllerState
   std::string task;
   std::string reason;
@@ -46,7 +46,7 @@ struct RobotFacts {
   std::string reason;
 };
 
-// Of one image.
+// The tracker's result for one image.
 struct Result {
   std::int64_t stamp = 0;
   std::int64_t reference_stamp = 0;
@@ -61,27 +61,27 @@ struct Areas {
   int rows = 0;
   int columns = 0;
   std::vector<bool> covered;             // row by row
-  std::vector<std::uint8_t> cause = {};  // of AreaSelection, row by row; empty: it is not told
+  std::vector<std::uint8_t> cause = {};  // of AreaSelection, row by row; empty: not in the message
 };
 
 struct Picture {
-  QImage image;  // null: none has come
+  QImage image;  // null: no picture has come
   std::int64_t stamp = 0;
   double arrived_at = kNever;
-  double changed_at = kNever;   // when a picture came that differs from the one before
+  double changed_at = kNever;   // when a picture came that differs from the last one
   double age_at_arrival = 0.0;  // s, by its stamp
 };
 
-// What the tracker says of a region before it is selected.
+// The tracker's answer about a region before it is selected.
 struct Verdict {
   QRect region;            // px of the original image
-  std::int64_t stamp = 0;  // of the picture that is frozen; 0: the live one
-  bool taken = false;      // it would be
-  std::string why;         // not
-  QRect proposal;          // px: one that would be; empty where none is known
+  std::int64_t stamp = 0;  // stamp of the frozen picture; 0: the live one
+  bool taken = false;      // it would be accepted
+  std::string why;         // why not
+  QRect proposal;          // px, a region that would be accepted; empty if none is known
 };
 
-// A picture that the tracker keeps, to draw a region in.
+// A picture kept by the tracker, in which a region is drawn.
 struct Frozen {
   QImage image;
   std::int64_t stamp = 0;
@@ -89,7 +89,7 @@ struct Frozen {
   double at = kNever;  // when it came
 };
 
-// Of a recording.
+// State of the player of a recording.
 struct PlaybackFacts {
   bool connected = false;
   std::string state;      // of PlaybackState
@@ -106,10 +106,10 @@ struct StoredView {
   std::vector<std::string> leads_to;
 };
 
-// A parameter that may change while its node runs, as the node describes it.
+// A parameter that may change while its node runs, from the node's description.
 struct LiveParameter {
   std::string node;     // "tracker"
-  std::string name;     // as reconfigure has it: quality__min_zncc
+  std::string name;     // name in dynamic_reconfigure: quality__min_zncc
   std::string type;     // bool, int, double, str
   std::string meaning;  // with range and unit
   std::string value;
@@ -117,34 +117,34 @@ struct LiveParameter {
   double high = 0.0;
 };
 
-// Of a service.
+// State of a service call.
 struct Answer {
   std::string what;  // e.g. "Engage"
   std::string text;
   bool success = false;
-  bool waiting = false;  // asked, not answered yet
+  bool waiting = false;  // called, not answered yet
 };
 
-// rad/s, m/s: what a slider's end stands for.
+// rad/s, m/s: velocities at the ends of the sliders.
 using Limits = std::array<double, 4>;
 
 struct Facts {
-  bool master = false;  // there is one, or was when the screen connected
+  bool master = false;  // there is a master, or was when the screen connected
   TrackerFacts tracker;
   ControllerFacts controller;
   RobotFacts robot;
   Picture picture;
-  std::optional<Result> result;    // of the picture's image
-  std::optional<Areas> areas;      // the same
-  std::optional<Result> recorded;  // what a tracker had said of it when it was recorded
-  Answer answer;                   // the newest
-  bool dead_man_wanted = false;    // somebody listens to the dead-man switch
+  std::optional<Result> result;    // result for the image of the picture
+  std::optional<Areas> areas;      // its areas
+  std::optional<Result> recorded;  // the recorded result for this image
+  Answer answer;                   // the newest service call
+  bool dead_man_wanted = false;    // a node subscribes to the dead-man switch
   std::optional<Limits> limits;    // pan, tilt, spin, insertion
   PlaybackFacts playback;
   std::optional<Verdict> verdict;
   std::optional<Frozen> frozen;
   std::shared_ptr<const std::vector<StoredView>> views;          // null: not known
-  std::shared_ptr<const std::vector<LiveParameter>> parameters;  // the same
+  std::shared_ptr<const std::vector<LiveParameter>> parameters;  // null: not known
   double max_image_age = kNever;  // s, above which the controller stops; negative: not known
 };
 

@@ -15,7 +15,7 @@ void HeldControl::letGo() {
 
 void HeldControl::beat(double now) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  // A beat after too long a silence does not bring back what the silence has ended.
+  // A beat after too long a silence does not restore the hold that the silence has ended.
   if (held_ && !(now - beat_ <= kPatience)) held_ = false;
   beat_ = now;
 }

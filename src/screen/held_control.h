@@ -1,22 +1,22 @@
-// Something that moves the scope only while a hand holds it: the dead-man switch, a slider.
+// A control that moves the scope only while a hand holds it: the dead-man switch, a slider.
 //
-// The GUI's thread says when the hand takes and lets go, and that it is alive. The thread that sends asks whether it is
-// held: a GUI that hangs cannot say that the hand has let go, so that its silence ends the hold. What has ended has to
-// be taken anew. `now` is s of a steady clock. Thread-safe.
+// The GUI's thread reports presses and releases, and regular beats. The sending thread reads whether it is held. A hung
+// GUI cannot report a release, so its silence ends the hold. After that the control must be pressed again. `now` is s
+// of a steady clock. Thread-safe.
 #pragma once
 
 #include <mutex>
 
 namespace laparoscope_servo::screen {
 
-// s that the GUI may be silent: four of its beats. A busy machine delays one or two.
+// s, allowed silence of the GUI: four of its beats, since a busy machine may delay one or two.
 constexpr double kPatience = 0.2;
 
 class HeldControl {
  public:
   void take(double now);
   void letGo();
-  // The GUI has just seen that it is still held.
+  // Call when the GUI has found the control still held.
   void beat(double now);
   bool isHeld(double now);
 

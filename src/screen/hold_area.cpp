@@ -51,7 +51,7 @@ void HoldArea::beat() {
   if (!isHeld()) return;
   const double now = steadyNow();
   control_.beat(now);
-  // The GUI was silent for too long, and the thread that sends has ended the hold.
+  // The GUI was silent for too long, and the sending thread has ended the hold.
   if (!control_.isHeld(now)) letGo();
 }
 
@@ -75,7 +75,7 @@ void HoldArea::mouseReleaseEvent(QMouseEvent* event) {
   if (event->button() == Qt::LeftButton && by_ == By::kMouse) letGo();
 }
 
-// It moves nothing here, nor what lies below.
+// The wheel has no effect here, nor on widgets below.
 void HoldArea::wheelEvent(QWheelEvent* event) {
   event->accept();
 }

@@ -1,8 +1,8 @@
-// A widget that a hand holds: it is taken by the left mouse button, and by nothing else than what a subclass adds.
+// A widget that is held by the left mouse button, and by what a subclass adds.
 //
-// The hold ends with the button, and with everything that could swallow its release: the window loses the focus, is
-// minimised or hidden, a popup or a dialog opens, the widget is disabled. Another press is needed then. beat() looks
-// for all of it, too, for an event may be lost; who does not call it ends the hold as well (HeldControl).
+// The hold ends when the button is released, and on every event that could hide a release: the window loses the focus,
+// is minimised or hidden, a popup or a dialog opens, the widget is disabled. Another press is then needed. beat() also
+// checks for all of these, since an event may be lost; the hold also ends if beat() is not called (HeldControl).
 #pragma once
 
 #include <QWidget>
@@ -15,10 +15,10 @@ namespace laparoscope_servo::screen {
 class HoldArea : public QWidget {
   Q_OBJECT
  public:
-  // `changed` is called when the hold begins or ends. `control` outlives the widget.
+  // `changed` is called when the hold begins or ends. `control` must outlive the widget.
   HoldArea(HeldControl& control, const std::function<void()>& changed, QWidget* parent);
 
-  // 20 times a second, by the GUI's thread.
+  // Call 20 times a second in the GUI's thread.
   void beat();
   void letGo();
   bool isHeld() const { return by_ != By::kNobody; }
@@ -26,7 +26,7 @@ class HoldArea : public QWidget {
  protected:
   enum class By { kNobody, kMouse, kKey };
   bool take(By by);
-  // At (x, y) the mouse took it, was moved, let go.
+  // Called when the mouse pressed, moved and released at (x, y).
   virtual void taken(const QPoint&) {}
   virtual void moved(const QPoint&) {}
   virtual void ended() {}

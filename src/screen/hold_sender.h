@@ -1,5 +1,5 @@
-// Says on the topics, 20 times a second, what the dead-man switch and the sliders are held at. In a thread of its own,
-// which nothing else can keep from saying that they were let go.
+// Publishes the state of the dead-man switch and the sliders 20 times a second, in a separate thread, so that nothing
+// can delay the message of a release.
 #pragma once
 
 #include <ros/node_handle.h>
@@ -22,10 +22,10 @@ class HoldSender {
   HoldSender(const HoldSender&) = delete;
   HoldSender& operator=(const HoldSender&) = delete;
 
-  // -1 to 1 of the limits; counts while the slider is held.
+  // -1 to 1 of the limits; used while the slider is held.
   void setShares(const std::array<double, 4>& shares);
   void setLimits(const Limits& limits);
-  // Something was taken or let go: it is said at once.
+  // Call when a control was pressed or released: publishes at once.
   void wake();
   bool isDeadManWanted() const { return dead_man_publisher_.getNumSubscribers() > 0; }
 
@@ -42,7 +42,7 @@ class HoldSender {
   bool woken_ = false;
   bool ends_ = false;
   std::array<double, 4> shares_{};
-  Limits limits_{};  // zero until they are known: nothing moves
+  Limits limits_{};  // zero until they are known, so that nothing moves
 
   std::thread thread_;
 };

@@ -15,7 +15,7 @@ namespace {
 const QColor kAround(0x10, 0x12, 0x16);
 const QColor kFrozen(0xff, 0xb0, 0x20);
 
-// Text over anything: white, with a dark box about it.
+// Text readable on any background: white in a dark box.
 void drawWords(QPainter& painter, const QRectF& area, const QString& words, const QString& detail) {
   QFont font = painter.font();
   font.setPixelSize(56);
@@ -43,7 +43,7 @@ ImageView::ImageView(const Region& drawn, const Region& changed, QWidget* parent
   setAttribute(Qt::WA_OpaquePaintEvent);
 }
 
-// Painted is only what has changed: that is most of what the screen costs.
+// Repaints only if something has changed, since painting takes most of the screen's CPU time.
 void ImageView::show(const Facts& facts, double now) {
   const PictureWords words = pictureWords(facts.picture, now, facts.playback.connected ? facts.playback.state : "");
   const bool same =
@@ -68,7 +68,7 @@ void ImageView::cancelDrag() {
   update();
 }
 
-// What is drawn on a live picture that is none would be cut from an image that looks otherwise, or has another size.
+// On an outdated live picture no region can be drawn, since it would be cut from an image with another content or size.
 bool ImageView::canDraw() const {
   return letterbox().isValid() && (facts_.frozen || (words_.live && facts_.tracker.width > 0));
 }
@@ -96,7 +96,7 @@ void ImageView::give(const QRect& pixels) {
   if (!pixels.isEmpty()) drawn_(pixels);
 }
 
-// Of the original image, whose size the tracker tells; until then of the preview.
+// Letterbox of the original image, whose size the tracker publishes; until then of the preview.
 Letterbox ImageView::letterbox() const {
   if (facts_.frozen) return {facts_.frozen->size, QRectF(rect())};
   const bool known = facts_.tracker.width > 0 && facts_.tracker.height > 0;
@@ -113,7 +113,7 @@ void ImageView::drawPicture(QPainter& painter, const QRectF& area) {
   painter.fillRect(area, QColor(90, 90, 90, 110));
 }
 
-// The picture that is frozen, and small at the top right what is now: the arm may move meanwhile.
+// Draws the frozen picture, with the live one small at the top right, since the arm may move meanwhile.
 void ImageView::drawFrozen(QPainter& painter, const QRectF& area, double now) {
   const Frozen& frozen = *facts_.frozen;
   painter.setRenderHint(QPainter::SmoothPixmapTransform);
@@ -182,7 +182,7 @@ void ImageView::showCursor(const QPointF& at, bool anew) {
 
 void ImageView::mouseMoveEvent(QMouseEvent* event) {
   if (!drag_.isActive()) return showCursor(event->localPos(), (event->modifiers() & Qt::ShiftModifier) != 0);
-  if (!(event->buttons() & Qt::LeftButton)) return cancelDrag();  // its release went elsewhere
+  if (!(event->buttons() & Qt::LeftButton)) return cancelDrag();  // the release event was lost
   drag_.move(event->localPos());
   tellChange();
 }
@@ -199,7 +199,7 @@ void ImageView::mouseReleaseEvent(QMouseEvent* event) {
   tellChange();
 }
 
-// Arrows move the region by one pixel, with Shift by ten; Return gives it to the tracker.
+// Arrows move the region by one pixel, with Shift by ten; Return sends it to the tracker.
 void ImageView::keyPressEvent(QKeyEvent* event) {
   if ((event->key() == Qt::Key_Return || event->key() == Qt::Key_Enter) && draft_) return give(QRect(*draft_));
   const int step = (event->modifiers() & Qt::ShiftModifier) != 0 ? 10 : 1;

@@ -1,4 +1,4 @@
-// The picture, what the tracker says of it, and the region that is drawn by mouse.
+// Shows the picture with the tracker's results, and the region that is drawn by mouse.
 #pragma once
 
 #include <QWidget>
@@ -15,7 +15,8 @@ class ImageView : public QWidget {
   Q_OBJECT
  public:
   using Region = std::function<void(const QRect&)>;  // in whole pixels of the original image
-  // `drawn`: a region. A click draws none. `changed`: it is being drawn, and may be asked for.
+  // `drawn`: called when a region was drawn; a click draws none. `changed`: called while it is being drawn, to check
+  // it.
   ImageView(const Region& drawn, const Region& changed, QWidget* parent);
 
   void show(const Facts& facts, double now);
@@ -33,8 +34,8 @@ class ImageView : public QWidget {
   void keyPressEvent(QKeyEvent* event) override;
   void hideEvent(QHideEvent* event) override;
   bool canDraw() const;
-  std::optional<QRectF> present() const;  // what may be moved
-  std::optional<QRect> shown() const;     // what is being drawn, px of the original image
+  std::optional<QRectF> present() const;  // the region that can be moved
+  std::optional<QRect> shown() const;     // the region being drawn, px of the original image
   void tellChange();
   void give(const QRect& pixels);
   Letterbox letterbox() const;
@@ -48,7 +49,7 @@ class ImageView : public QWidget {
   double now_ = 0.0;
   PictureWords words_;
   RegionDrag drag_;
-  std::optional<QRect> draft_;  // moved by keys, not given yet
+  std::optional<QRect> draft_;  // region moved by keys, not sent yet
   bool keeps_drafts_ = false;
   QRect asked_;
 };

@@ -1,18 +1,18 @@
-// Whether a key is held, from the presses and releases that come while X11 repeats it: pairs of a release and a press,
-// of which Qt marks some as repeated and some not. A release counts when no press follows it for a moment.
+// Detects whether a key is held in spite of X11's key repeat: pairs of a release and a press, of which Qt marks only
+// some as repeated. A release counts if no press follows within a moment.
 #pragma once
 
 namespace laparoscope_servo::screen {
 
-// s. The two events of a pair are sent together; a hand that lets go and presses again takes longer.
+// s. The two events of a pair are sent together; a hand that releases and presses again takes longer.
 constexpr double kRepeatGap = 0.03;
 
 class KeyHold {
  public:
-  // `now`: s, steady. True: the key is newly held.
+  // `now`: s, steady. Returns true if the key was not held before.
   bool press();
   void release(double now);
-  // To be called kRepeatGap after a release. True: it was one.
+  // Call kRepeatGap after a release. Returns true if it was a real one.
   bool released(double now);
   void forget() { down_ = releasing_ = false; }
   bool isDown() const { return down_; }

@@ -1,4 +1,4 @@
-// The screen in a window of its own.
+// The program of the screen in its own window.
 #include <ros/init.h>
 
 #include <QApplication>
@@ -13,7 +13,7 @@
 
 namespace {
 
-// An exception that leaves an event's handler would end the program, and with it the only STOP in reach.
+// An exception from an event handler would end the program, and with it perhaps the only STOP button in reach.
 class SturdyApplication : public QApplication {
  public:
   using QApplication::QApplication;
@@ -27,7 +27,7 @@ class SturdyApplication : public QApplication {
   }
 };
 
-// Nothing else may be done within a signal; a timer looks at it.
+// Set by the signal handler, which may do nothing else; a timer reads it.
 volatile std::sig_atomic_t asked_to_end = 0;
 void askToEnd(int) {
   asked_to_end = 1;

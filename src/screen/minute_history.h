@@ -1,5 +1,5 @@
-// What the tracker has said in the last minute, in steps of half a second: of each value the least and the greatest. No
-// ROS and no widgets here.
+// The tracker's figures of the last minute: least and greatest value in steps of half a second. Uses no ROS and no
+// widgets.
 #pragma once
 
 #include <array>
@@ -24,12 +24,12 @@ class MinuteHistory {
   struct Step {
     std::array<Range, kQuantities> ranges;
     int images = 0;
-    bool tracked = true;  // in all images
+    bool tracked = true;  // TRACKING in all images
   };
 
-  // At `now` [s, steady] of an image: correlation, px, share, s. What is not finite is not known.
+  // Adds the figures of an image at `now` [s, steady]: correlation, px, share, s. Non-finite values are unknown.
   void add(double now, bool tracked, double confidence, double corner_error, double visible, double delay);
-  // The last minute until `now`, the oldest first; the last step is not over. Steps without an image have none.
+  // The last minute until `now`, the oldest first; the last step is incomplete. Steps without an image have no values.
   std::vector<Step> steps(double now) const;
 
  private:

@@ -1,4 +1,4 @@
-// The limits that decide, as the nodes have them now.
+// The nodes' present limits for these figures.
 #pragma once
 
 #include "screen/facts.h"

@@ -10,8 +10,8 @@ namespace {
 struct Plot {
   const char* name;
   const char* unit;
-  double scale;  // from SI to the unit
-  double top;    // of the axis, in the unit, at least
+  double scale;  // factor from SI to the unit
+  double top;    // least top of the axis, in the unit
   int decimals;
 };
 const Plot kPlots[kQuantities] = {{"confidence", "", 1.0, 1.0, 2},

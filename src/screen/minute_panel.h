@@ -1,4 +1,4 @@
-// Draws the last minute: confidence, corner error, visible share, rate, delay; with the limits that decide.
+// Draws the last minute: confidence, corner error, visible share, rate, delay; with the nodes' limits.
 #pragma once
 
 #include <QWidget>
@@ -12,10 +12,10 @@ namespace laparoscope_servo::screen {
 class MinutePanel : public QWidget {
   Q_OBJECT
  public:
-  // Negative: there is none, or it is not known.
+  // Negative: no limit, or unknown.
   struct Limit {
     double value = -1.0;
-    bool at_least = false;  // below it is bad; otherwise above
+    bool at_least = false;  // true: values below are bad; false: values above
   };
   using Limits = std::array<Limit, kQuantities>;
 

@@ -20,7 +20,7 @@ void NewestCall::ask(const Question& question) {
   try {
     std::thread([shared = shared_, question] { run(shared, question); }).detach();
     shared_->runs = true;
-  } catch (const std::exception&) {  // no thread is left: the next question tries again
+  } catch (const std::exception&) {  // no thread is available: the next question tries again
   }
 }
 

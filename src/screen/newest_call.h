@@ -1,5 +1,5 @@
-// Asks one thing again and again, in threads of its own: while an answer is awaited, the newest question waits, and
-// those between are dropped. One that hangs keeps nobody waiting but its like.
+// Repeats a call in separate threads: while one is unanswered, only the newest question waits, and those between are
+// dropped. A hung call blocks only calls of the same kind.
 #pragma once
 
 #include <functional>
@@ -10,11 +10,11 @@ namespace laparoscope_servo::screen {
 
 class NewestCall {
  public:
-  // Asks, and returns what is to be done with the answer.
+  // Does the call, and returns the action for its answer.
   using Question = std::function<std::function<void()>()>;
 
   NewestCall() = default;
-  // No answer is acted on any more; a call that hangs is left to itself.
+  // Later answers are ignored; a hung call keeps its thread.
   ~NewestCall();
   NewestCall(const NewestCall&) = delete;
   NewestCall& operator=(const NewestCall&) = delete;
@@ -30,7 +30,7 @@ class NewestCall {
   };
   static void run(const std::shared_ptr<Shared>& shared, Question question);
 
-  std::shared_ptr<Shared> shared_ = std::make_shared<Shared>();  // with the threads
+  std::shared_ptr<Shared> shared_ = std::make_shared<Shared>();  // shared with the threads
 };
 
 }  // namespace laparoscope_servo::screen

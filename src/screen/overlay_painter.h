@@ -1,7 +1,6 @@
-// Draws over the picture what the tracker has said of that very image: where the region is (a solid outline), where it
-// shall be (a dashed one with marked corners), where it was said to be when it was recorded, and which of its areas are
-// hidden, and by what (hatched, a form for each cause). Each has a form of its own, not only a colour, and a line in
-// the legend.
+// Draws the tracker's result for this very image over the picture: where the region is (a solid outline), where it
+// shall be (a dashed one with marked corners), where the recorded result has it, and which of its areas are hidden, and
+// by what (hatched, a form for each cause). Each has a form of its own, not only a colour, and a line in the legend.
 #pragma once
 
 #include <QColor>

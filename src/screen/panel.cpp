@@ -32,7 +32,7 @@ void Panel::onInitialize() {
   FrameRate::guard(*vis_manager_);
 }
 
-// What is no name leaves the panel where it was.
+// Ignores a text that is no valid name.
 void Panel::follow(const QString& space) {
   std::string error;
   if (!space.isEmpty() && !ros::names::validate(space.toStdString(), error)) {

@@ -1,5 +1,5 @@
-// The screen as a panel of rviz: laparoscope_servo/Laparoscope. Several may be there, each of a cart of its own: which
-// one, its field says, and rviz keeps it with the panel.
+// The screen as a panel of rviz: laparoscope_servo/Laparoscope. There may be several panels for different carts; each
+// has a field for its cart's namespace, which rviz saves with the panel.
 #pragma once
 
 #include <rviz/panel.h>

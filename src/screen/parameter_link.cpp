@@ -16,7 +16,7 @@ namespace laparoscope_servo::screen {
 namespace {
 
 const char* const kNodes[] = {"tracker", "controller"};
-constexpr int kLooks = 20;  // for the words of a refusal, which come by another connection
+constexpr int kLooks = 20;  // tries to find the reason of a refusal, which comes on another connection
 constexpr std::chrono::milliseconds kLookPause{10};
 
 template <class List, class Take>
@@ -148,7 +148,7 @@ void ParameterLink::set(const LiveParameter& parameter, const std::string& text)
   });
 }
 
-// What was there is gone then.
+// Takes and removes the refusal of a node.
 std::string ParameterLink::Refusals::take(const std::string& node) {
   const std::lock_guard<std::mutex> lock(mutex);
   std::string text;

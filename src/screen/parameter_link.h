@@ -1,5 +1,4 @@
-// What nodes say of the parameters that may change while they run, and how one is changed: by the protocol of
-// dynamic_reconfigure.
+// Reads and changes the nodes' parameters that may change while they run, by the protocol of dynamic_reconfigure.
 #pragma once
 
 #include <dynamic_reconfigure/Config.h>
@@ -21,16 +20,16 @@
 
 namespace laparoscope_servo::screen {
 
-// The rows of a node, with the values of `values`. A parameter of a type that is none is left out.
+// The rows of a node, with the values of `values`. Parameters of unknown types are omitted.
 std::vector<LiveParameter> rowsOf(const std::string& node, const dynamic_reconfigure::ConfigDescription& description,
                                   const dynamic_reconfigure::Config& values);
 
-// A request to set one; empty when the text is no value of its type.
+// A request to set a parameter; empty if the text is not of its type.
 std::optional<dynamic_reconfigure::Config> requestOf(const LiveParameter& parameter, const std::string& text);
 
 class ParameterLink {
  public:
-  // `told`: what became of a change. From the link's threads.
+  // `told`: called with the result of a change, from the link's threads.
   ParameterLink(FactKeeper& keeper, const std::function<void(const Answer&)>& told) : keeper_(keeper), told_(told) {}
 
   void connect(ros::NodeHandle& node);
@@ -43,7 +42,7 @@ class ParameterLink {
     dynamic_reconfigure::Config values;
     std::string service;
   };
-  // Of the last changes, by node; with the threads that wait for them.
+  // Refusals of the last changes, by node; shared with the threads that wait for them.
   struct Refusals {
     std::mutex mutex;
     std::map<std::string, std::string> words;

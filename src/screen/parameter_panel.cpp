@@ -64,7 +64,7 @@ void ParameterPanel::show(const Facts& facts) {
   fill();
 }
 
-// What is being typed stays, and what is chosen.
+// Keeps the text being typed and the selection.
 void ParameterPanel::fill() {
   const int rows = parameters_ ? static_cast<int>(parameters_->size()) : 0;
   if (table_->rowCount() != rows) {

@@ -1,4 +1,4 @@
-// The parameters that may change while the nodes run: which there are, what each means, what it is now; one is changed.
+// Shows the parameters that may change while the nodes run, with meaning and value, and changes them.
 #pragma once
 
 #include <QLabel>

@@ -19,7 +19,7 @@ PictureWords pictureWords(const Picture& picture, double now, const std::string&
   if (picture.image.isNull() || picture.arrived_at < 0.0)
     return {false, "NO PICTURE", "The tracker has sent none yet."};
   if (playback == "ENDED") return {false, "ENDED", "The recording has ended. This is its last picture."};
-  // It stands because somebody wants it to, and the bar below it says so.
+  // The player is paused on purpose, which the bar below shows.
   if (playback == "HOLDING" || playback == "PAUSED") return {true, "", ""};
   const double age = now - picture.arrived_at + std::max(0.0, picture.age_at_arrival);
   if (!(age <= kOldest)) return {false, "NOT LIVE", "This picture is " + seconds(age) + " old."};

@@ -1,4 +1,4 @@
-// Whether the picture shows what is now, and the words that say so when it does not.
+// Decides whether the picture is live, and makes the text if it is not.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace laparoscope_servo::screen {
 
-constexpr double kOldest = 0.25;  // s: what is older is no live picture. The controller holds then, too
+constexpr double kOldest = 0.25;  // s: an older picture is not live. The controller is in HOLD then too
 
 struct PictureWords {
   bool live = false;
@@ -15,7 +15,7 @@ struct PictureWords {
   std::string detail;  // below them
 };
 
-// `playback`: the state of the player of a recording; empty: there is none.
+// `playback`: state of the player of a recording; empty: there is none.
 PictureWords pictureWords(const Picture& picture, double now, const std::string& playback = "");
 
 }  // namespace laparoscope_servo::screen

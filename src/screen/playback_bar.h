@@ -1,4 +1,4 @@
-// The hand on a recording: play, pause, step, again, and the place in it. Not there where nothing is played.
+// Playback controls: play, pause, step, again, and the position. Hidden when no player runs.
 #pragma once
 
 #include <QLabel>

@@ -7,7 +7,7 @@
 namespace laparoscope_servo::screen {
 
 QImage previewImage(const sensor_msgs::Image& message) {
-  constexpr std::uint32_t kLargest = 8192;  // px of a side: no preview is so large
+  constexpr std::uint32_t kLargest = 8192;  // px of a side: larger than any preview
   const bool colour = message.encoding == sensor_msgs::image_encodings::BGR8;
   if (!colour && message.encoding != sensor_msgs::image_encodings::MONO8) return {};
   const std::uint32_t row = message.width * (colour ? 3u : 1u);
@@ -15,7 +15,7 @@ QImage previewImage(const sensor_msgs::Image& message) {
   if (message.step < row || message.data.size() / message.step < message.height) return {};
   const int width = static_cast<int>(message.width);
   const int height = static_cast<int>(message.height);
-  // OpenCV has no constant view; nothing writes to it.
+  // OpenCV has no const view of data; this one is not written to.
   const cv::Mat source(height, width, colour ? CV_8UC3 : CV_8UC1, const_cast<std::uint8_t*>(message.data.data()),
                        message.step);
   QImage image(width, height, QImage::Format_RGB32);

@@ -1,4 +1,4 @@
-// The tracker's preview as Qt draws it.
+// Converts the tracker's preview to a Qt image.
 #pragma once
 
 #include <sensor_msgs/Image.h>
@@ -7,7 +7,7 @@
 
 namespace laparoscope_servo::screen {
 
-// RGB32, a copy; null for a message that is not what the tracker sends: mono8 or bgr8, with all its data.
+// RGB32, a copy; null unless the message is a complete mono8 or bgr8 image, as the tracker publishes.
 QImage previewImage(const sensor_msgs::Image& message);
 
 }  // namespace laparoscope_servo::screen

@@ -7,8 +7,8 @@ namespace laparoscope_servo::screen {
 
 namespace {
 
-constexpr double kClick = 5.0;    // px: a hand that clicks moves the mouse by less
-constexpr double kCorner = 12.0;  // px: so near to a corner, it is taken
+constexpr double kClick = 5.0;    // px: a click moves the mouse by less
+constexpr double kCorner = 12.0;  // px: distance within which a corner is grabbed
 
 double distance(const QPointF& a, const QPointF& b) {
   return std::max(std::abs(a.x() - b.x()), std::abs(a.y() - b.y()));

@@ -1,4 +1,4 @@
-// Draws a region that is being drawn, and whether the tracker would take it: a tick or a cross, and why not, in words.
+// Draws the region that is being drawn, with a tick or a cross for whether the tracker would accept it, and the reason.
 #pragma once
 
 #include <QPainter>
@@ -9,11 +9,11 @@
 
 namespace laparoscope_servo::screen {
 
-// A sentence, and what to do.
+// The reason as a sentence, and what to do.
 QString wordsOf(const Verdict& verdict);
 
 // `outline` in the widget, `pixels` of the original image. `verdict`: null while the tracker has not answered.
-// `by_keys`: it is not given to the tracker yet. The words stay within `canvas`.
+// `by_keys`: moved by keys and not sent to the tracker yet. The text stays within `canvas`.
 void drawRegion(QPainter& painter, const QRectF& outline, const QRect& pixels, const Verdict* verdict, bool by_keys,
                 const QRectF& canvas);
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kPatience = 0.5;  // s
 
-// What the master answers: a code (1: done), a message, a value.
+// The master's answer: a code (1: done), a message, a value.
 bool isDone(XmlRpc::XmlRpcValue& answer) {
   return answer.getType() == XmlRpc::XmlRpcValue::TypeArray && answer.size() == 3 &&
          answer[0].getType() == XmlRpc::XmlRpcValue::TypeInt && static_cast<int>(answer[0]) == 1;
@@ -24,7 +24,7 @@ std::string here() {
   return ros::XMLRPCManager::instance()->getServerURI();
 }
 
-// As the master tells it when a publisher comes; roscpp gives no other way to it.
+// Calls the function that the master calls for a new publisher; roscpp has no other access to it.
 void tellPublishers(const std::string& topic, XmlRpc::XmlRpcValue& publishers) {
   std::string host;
   std::uint32_t port = 0;
@@ -53,7 +53,7 @@ bool Registration::renew(const std::atomic<bool>& ending) {
   return true;
 }
 
-// 0 when it does not answer.
+// Process id of the master; 0 if it does not answer.
 int Registration::process(const std::atomic<bool>& ending) {
   XmlRpc::XmlRpcValue answer;
   const auto outcome = client_.call("getPid", {ros::this_node::getName()}, kPatience, ending, answer);
@@ -61,7 +61,7 @@ int Registration::process(const std::atomic<bool>& ending) {
   return answer[2].getType() == XmlRpc::XmlRpcValue::TypeInt ? static_cast<int>(answer[2]) : 0;
 }
 
-// Another process has this name by now: then that one counts, and would be ended by the master otherwise.
+// Whether another process has taken this name; registering again would make the master end that one.
 bool Registration::isTaken(const std::atomic<bool>& ending) {
   XmlRpc::XmlRpcValue answer;
   const std::string& name = ros::this_node::getName();
@@ -90,7 +90,7 @@ void Registration::subscribers(const std::atomic<bool>& ending) {
     const auto outcome =
         client_.call("registerSubscriber", {ros::this_node::getName(), topic, "*", here()}, kPatience, ending, answer);
     if (outcome != MasterClient::Outcome::kAnswered || !isDone(answer)) continue;
-    // Those that go on as this process does stay connected until the master tells of others.
+    // Existing connections stay open until the master reports other publishers.
     if (answer[2].getType() == XmlRpc::XmlRpcValue::TypeArray && answer[2].size() > 0) tellPublishers(topic, answer[2]);
   }
 }

@@ -1,5 +1,5 @@
-// After a ROS master was started anew it knows nothing of the processes that go on. This tells it again what this one
-// publishes and listens to, all of it; connections that are open stay open.
+// A restarted ROS master does not know the running processes. Registers all publishers and subscribers of this process
+// again; open connections stay open.
 #pragma once
 
 #include <atomic>
@@ -11,11 +11,11 @@ namespace laparoscope_servo::screen {
 
 class Registration {
  public:
-  // After ros::start.
+  // Construct it after ros::start.
   Registration();
 
-  // Asks the master who it is, for half a second at most; another one than the last time is told. True when it was.
-  // The first call, before anything is published, only notes who it is. `ending`: gives up.
+  // Asks the master for its process id, for half a second at most, and registers again with a new master. Returns true
+  // if it did. The first call, before anything is published, only stores the id. `ending`: stops waiting.
   bool renew(const std::atomic<bool>& ending);
 
  private:

@@ -24,12 +24,12 @@ namespace laparoscope_servo::screen {
 
 namespace {
 
-constexpr std::chrono::milliseconds kMasterPause{300};  // between two looks for a master
-constexpr std::chrono::milliseconds kTurn{100};         // between two looks at the connections
-constexpr unsigned kMasterTurns = 10;                   // turns between two questions to the master
-constexpr unsigned kViewTurns = 30;                     // turns between two looks at the stored views
+constexpr std::chrono::milliseconds kMasterPause{300};  // between two checks for a master
+constexpr std::chrono::milliseconds kTurn{100};         // between two checks of the connections
+constexpr unsigned kMasterTurns = 10;                   // cycles between two questions to the master
+constexpr unsigned kViewTurns = 30;                     // cycles between two queries of the stored views
 
-// By its stamp; 0 where the clock is that of a recording, which may stand still.
+// Age by the stamp; 0 with the clock of a recording, which may stand still.
 double ageOf(const ros::Time& stamp) {
   return ros::Time::isSimTime() || stamp.isZero() ? 0.0 : (ros::Time::now() - stamp).toSec();
 }
@@ -38,7 +38,7 @@ double delayOf(const ros::Time& stamp) {
   return ros::Time::isSimTime() || stamp.isZero() ? std::numeric_limits<double>::quiet_NaN() : ageOf(stamp);
 }
 
-// Nothing that a topic carries may end the screen.
+// Catches exceptions, so that no message can end the screen.
 template <class Message, class Take>
 ros::Subscriber listen(ros::NodeHandle& node, const std::string& topic, std::uint32_t queue, const Take& take) {
   const auto callback = [take](const boost::shared_ptr<const Message>& message) {
@@ -51,7 +51,7 @@ ros::Subscriber listen(ros::NodeHandle& node, const std::string& topic, std::uin
   return node.subscribe<Message>(topic, queue, callback, ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay());
 }
 
-// What the sliders' ends stand for; empty where the controller has none.
+// Velocities at the ends of the sliders; empty if the controller has none.
 std::optional<Limits> limitsOf(const ros::NodeHandle& node) {
   static const char* const names[] = {"pan", "tilt", "spin", "insertion"};
   Limits limits{};
@@ -87,7 +87,7 @@ RosLink::~RosLink() {
   connection_.reset();
 }
 
-// A NodeHandle would wait for the master for ever.
+// Waits for the master here, since a NodeHandle would wait for it for ever.
 void RosLink::run() {
   while (!ends_ && !ros::master::check()) std::this_thread::sleep_for(kMasterPause);
   if (ends_) return;
@@ -110,7 +110,8 @@ void RosLink::run() {
   listener.stop();
 }
 
-// The nodes of the new master are others; and whether time is that of a recording is decided once a process.
+// The controller of the new master may have other limits. Whether time is simulated is fixed for the life of a process,
+// so a change of it is reported.
 void RosLink::renewed() {
   keeper_.change([](Facts& facts) { facts.limits.reset(); });
   bool recorded = false;
@@ -126,7 +127,7 @@ std::unique_ptr<RosLink::Connection> RosLink::connect() {
   made->robot_stop = node.advertise<std_msgs::Empty>("aesop/stop", 10);
   made->controller_stop = node.advertise<std_msgs::Empty>("controller/stop", 10);
   made->sender = std::make_unique<HoldSender>(node, dead_man_, slider_);
-  // The newest picture is the one to show.
+  // Queue of one: only the newest picture is shown.
   made->preview = listen<sensor_msgs::Image>(node, "tracker/preview", 1, [this](const sensor_msgs::Image& image) {
     keeper_.take(image, ageOf(image.header.stamp), steadyNow());
     news_();
@@ -174,7 +175,7 @@ void RosLink::look(Connection& connection) {
   ++connection.turns;
   if (tracker && connection.turns % kViewTurns == 1) tracker_.listViews();
   if (!tracker) keeper_.change([](Facts& facts) { facts.views.reset(), facts.frozen.reset(); });
-  // They cannot change while it runs; the next one may have others.
+  // The limits cannot change while the controller runs, but may differ after its restart.
   if (!controller) connection.limits_wanted = true;
   if (!controller || !connection.limits_wanted) return;
   const std::optional<Limits> limits = limitsOf(connection.node);

@@ -1,7 +1,7 @@
-// The screen's link to the nodes: listens, asks, stops. None of its functions waits for anybody.
+// The screen's link to the nodes: subscribes, calls services, stops. None of its functions blocks.
 //
-// Its threads: one that connects, one that listens, one that says what is held (HoldSender), one for each call of a
-// service. Names are relative, so that a screen in a namespace belongs to the cart there.
+// Its threads: one that connects, one that receives, one that publishes the held controls (HoldSender), and one for
+// each service call. Names are relative, so that a screen in a namespace belongs to the cart there.
 #pragma once
 
 #include <ros/callback_queue.h>
@@ -29,8 +29,8 @@ namespace laparoscope_servo::screen {
 
 class RosLink {
  public:
-  // After ros::init. `news` is called from the link's threads when there is a new picture, or an answer.
-  // `space`: the namespace of the cart, seen from that of the process; empty: the same.
+  // Construct it after ros::init. `news` is called from the link's threads for a new picture or an answer. `space`: the
+  // namespace of the cart, seen from that of the process; empty: the same.
   explicit RosLink(const std::function<void()>& news, const std::string& space = "");
   ~RosLink();
   RosLink(const RosLink&) = delete;
@@ -42,7 +42,7 @@ class RosLink {
   TrackerLink& tracker() { return tracker_; }
   ParameterLink& parameters() { return parameters_; }
 
-  // Over connections that are open already, without a master; then also by the services, if there is one.
+  // Stops over open connections, without a master; then also by the services, if there is a master.
   void stop();
 
   void enable() { trigger("aesop/enable", "Enable"); }
@@ -56,13 +56,13 @@ class RosLink {
 
   HeldControl& deadMan() { return dead_man_; }
   HeldControl& slider() { return slider_; }
-  // -1 to 1 of the limits, while the slider is held.
+  // -1 to 1 of the limits; used while the slider is held.
   void setShares(const std::array<double, 4>& shares);
-  // What is held has changed: say it at once.
+  // Call when a held control has changed: publishes at once.
   void said();
 
  private:
-  // Everything that needs a master to begin with.
+  // All objects that need a master when they are created.
   struct Connection {
     explicit Connection(const std::string& space) : node(space) {}
     ros::NodeHandle node;
@@ -91,7 +91,7 @@ class RosLink {
   std::atomic<bool> ends_{false};
 
   ros::CallbackQueue queue_;
-  mutable std::mutex mutex_;  // of the pointer that follows; never held while a master is asked
+  mutable std::mutex mutex_;  // guards the pointer below; never held during a call to a master
   std::unique_ptr<Connection> connection_;
   ParameterLink parameters_;
   ServiceCalls calls_;

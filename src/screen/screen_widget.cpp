@@ -18,7 +18,7 @@ namespace laparoscope_servo::screen {
 namespace {
 
 constexpr int kBeat = 50;            // ms
-constexpr double kMinuteBeat = 0.5;  // s between two looks at the last minute
+constexpr double kMinuteBeat = 0.5;  // s between two updates of the last minute
 constexpr int kColumnWidth = 410;    // px
 constexpr int kActionsHeight = 96;   // px
 constexpr int kAnswerHeight = 40;    // px
@@ -49,7 +49,7 @@ std::string cartName(const std::string& space) {
   return name == "/" || name == "//" ? "" : ros::names::clean(name);
 }
 
-// The one of several that holds.
+// Marks the active one of several buttons.
 void mark(QPushButton* button, bool active) {
   if (button->property("active").toBool() == active) return;
   button->setProperty("active", active);
@@ -64,7 +64,7 @@ ScreenWidget::ScreenWidget(QWidget* parent, const std::string& space) : QWidget(
   setAttribute(Qt::WA_StyledBackground);
   setStyleSheet(kStyle);
   setFocusPolicy(Qt::ClickFocus);
-  // From the link's threads: what is drawn is drawn by this one.
+  // Called from the link's threads; drawing is passed on to this thread.
   link_ = std::make_unique<RosLink>(
       [this] {
         QMetaObject::invokeMethod(
@@ -100,7 +100,7 @@ ScreenWidget::~ScreenWidget() {
   link_.reset();
 }
 
-// A recording that is paused shows its next picture, for the region is cut from that.
+// With a paused recording, plays the next picture, from which the region is cut.
 void ScreenWidget::select(const QRect& pixels) {
   const Facts facts = link_->facts();
   link_->tracker().selectRegion(pixels);
@@ -112,7 +112,7 @@ QPushButton* ScreenWidget::makeButton(const QString& text, const QString& tip, c
   auto* button = new QPushButton(text, this);
   button->setObjectName(text.toLower().replace(' ', '_'));
   button->setToolTip(tip);
-  button->setFocusPolicy(Qt::NoFocus);  // or the space bar would press it
+  button->setFocusPolicy(Qt::NoFocus);  // otherwise the space bar would press it
   button->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Expanding);
   connect(button, &QPushButton::clicked, this, [act] { act(); });
   return button;
@@ -139,7 +139,7 @@ QWidget* ScreenWidget::makeActions() {
       0, 4);
   grid->addWidget(makeButton("Live", "Back from the frozen picture", [this] { link_->tracker().thaw(); }), 1, 4);
   auto* stop = makeButton("STOP", "Disengages and disables: also by Escape or Pause", [] {});
-  // When it is pressed, and not when it is let go.
+  // Acts on the press, not on the release.
   connect(stop, &QPushButton::pressed, this, [this] { this->stop(); });
   stop->setMinimumWidth(136);
   grid->addWidget(stop, 0, 5, 2, 1);
@@ -177,11 +177,11 @@ QWidget* ScreenWidget::makeColumn(const std::string& space) {
   return column;
 }
 
-// The bands and the dead-man switch stay in sight, whatever is shown below them.
+// The bands and the dead-man switch stay visible, whichever tab is shown below them.
 QWidget* ScreenWidget::makeTabs() {
   auto* tabs = new QTabWidget(this);
   tabs->setObjectName("tabs");
-  tabs->tabBar()->setFocusPolicy(Qt::NoFocus);  // or arrow keys would turn the page
+  tabs->tabBar()->setFocusPolicy(Qt::NoFocus);  // otherwise arrow keys would change the tab
   tabs->setFocusPolicy(Qt::NoFocus);
   tabs->addTab(makeDrive(), "Drive");
   views_ = new ViewsPanel([this](const std::string& name) { link_->tracker().storeView(name); },
@@ -292,7 +292,7 @@ bool ScreenWidget::hasFocusWithin() const {
 bool ScreenWidget::handleKey(int key, bool pressed) {
   if (key == Qt::Key_Escape || key == Qt::Key_Pause) {
     if (pressed) stop();
-    return false;  // it may mean something to others as well
+    return false;  // not consumed: other widgets may use the key too
   }
   if (key != Qt::Key_F9) return false;
   if (!pressed) {
@@ -303,7 +303,7 @@ bool ScreenWidget::handleKey(int key, bool pressed) {
   return hasFocusWithin();
 }
 
-// Of the whole program. Keys come to its windows first, whatever has the focus, and are given on from there.
+// Filter of the whole program: keys reach its windows first, wherever the focus is, and are passed on from there.
 bool ScreenWidget::eventFilter(QObject* object, QEvent* event) {
   const QEvent::Type type = event->type();
   if ((type == QEvent::KeyPress || type == QEvent::KeyRelease) && object->isWindowType()) {

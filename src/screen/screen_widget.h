@@ -1,7 +1,7 @@
-// The screen: picture, three bands, what one may do. The same in a window of its own and as rviz panel.
+// The screen: picture, three bands, and controls. Used both in its own window and as rviz panel.
 //
-// It holds no state that the nodes lack, waits for nobody, and stops by Escape or Pause from any focus within its
-// program.
+// It has no state of its own beside that of the nodes, never blocks, and stops the arm on Escape or Pause, wherever the
+// focus is within its program.
 #pragma once
 
 #include <QLabel>
@@ -28,7 +28,7 @@ namespace laparoscope_servo::screen {
 class ScreenWidget : public QWidget {
   Q_OBJECT
  public:
-  // After ros::init. `space`: the namespace of the cart, seen from that of the process; empty: the same.
+  // Construct it after ros::init. `space`: the namespace of the cart, seen from that of the process; empty: the same.
   explicit ScreenWidget(QWidget* parent = nullptr, const std::string& space = "");
   ~ScreenWidget() override;
 

@@ -20,7 +20,7 @@ void ServiceCalls::Shared::tell(const Answer& answer, const std::function<void()
 void ServiceCalls::start(const std::string& service, const std::string& what, const Ask& ask) {
   {
     const std::lock_guard<std::mutex> lock(shared_->mutex);
-    if (!shared_->waiting.insert(service).second) return;  // the answer that is waited for is on the screen
+    if (!shared_->waiting.insert(service).second) return;  // a call of this service is under way already
   }
   shared_->tell({what, "", false, true});
   try {
@@ -38,7 +38,7 @@ void ServiceCalls::start(const std::string& service, const std::string& what, co
       }
       shared->tell(answer, act);
     }).detach();
-  } catch (const std::exception& error) {  // no thread is left
+  } catch (const std::exception& error) {  // no thread is available
     const std::lock_guard<std::mutex> lock(shared_->mutex);
     shared_->waiting.erase(service);
   }

@@ -1,4 +1,4 @@
-// Calls services, each in a thread of its own: one that hangs keeps nobody waiting. Of each service one call at a time.
+// Calls services, each call in its own thread, so that a hung one blocks no other. One call of each service at a time.
 #pragma once
 
 #include <ros/node_handle.h>
@@ -18,15 +18,15 @@ class ServiceCalls {
  public:
   using Told = std::function<void(const Answer&)>;
 
-  // `told` is called from any thread: when a call begins, and when it has ended.
+  // `told` is called from any thread, at the beginning and the end of a call.
   explicit ServiceCalls(const Told& told) : shared_(std::make_shared<Shared>()) { shared_->told = told; }
-  // Nothing is told any more; a call that hangs is left to itself.
+  // Later results are ignored; a hung call keeps its thread.
   ~ServiceCalls();
   ServiceCalls(const ServiceCalls&) = delete;
   ServiceCalls& operator=(const ServiceCalls&) = delete;
 
-  // `service`: resolved. `what`: in words. A response has `success` and `message`.
-  // `then` is called before `told` when it succeeded.
+  // `service`: resolved name. `what`: name for texts. The response must have `success` and `message`. `then` is called
+  // before `told` on success.
   template <class Service>
   void call(const std::string& service, const std::string& what, const Service& request,
             const std::function<void(const typename Service::Response&)>& then = nullptr) {
@@ -49,7 +49,7 @@ class ServiceCalls {
   using Ask = std::function<void(Answer&, std::function<void()>&)>;
   void start(const std::string& service, const std::string& what, const Ask& ask);
 
-  std::shared_ptr<Shared> shared_;  // with the threads
+  std::shared_ptr<Shared> shared_;  // shared with the threads
 };
 
 }  // namespace laparoscope_servo::screen

@@ -7,8 +7,8 @@ namespace laparoscope_servo::screen {
 namespace {
 
 constexpr int kStripe = 44;    // px, with the symbol
-constexpr int kWordSize = 56;  // px of the font: its capitals are 41 px high
-constexpr int kWordTop = 14;   // px, of the band to the word's line
+constexpr int kWordSize = 56;  // px, size of the font; its capitals are 41 px high
+constexpr int kWordTop = 14;   // px, from the top of the band to the word's line
 constexpr int kWordHeight = 56;
 constexpr int kTextSize = 13;  // px of the font
 constexpr int kLine = 16;      // px
@@ -33,7 +33,7 @@ QColor colourOf(Level level) {
   return {0x7a, 0x80, 0x8a};
 }
 
-// Each level has its own form, for who does not tell the colours apart.
+// Each level has its own form, for users who cannot distinguish the colours.
 void drawSymbol(QPainter& painter, Level level, const QPointF& centre) {
   constexpr double r = 13.0;
   painter.setPen(QPen(Qt::black, 2));
@@ -79,7 +79,7 @@ void StateBand::show(const BandText& text) {
                     text.detail == text_.detail && text.level == text_.level;
   if (same) return;
   text_ = text;
-  // Plain text: what a node says may look like markup.
+  // Escaped, since a node's text may look like markup.
   setToolTip(QString::fromStdString(text.detail).toHtmlEscaped());
   update();
 }
@@ -105,7 +105,7 @@ void StateBand::paintEvent(QPaintEvent*) {
 
   font.setPixelSize(kWordSize);
   const QString word = QString::fromStdString(text_.word);
-  // A long word becomes narrower, never lower.
+  // A long word is condensed horizontally, but keeps its height.
   const int natural = QFontMetrics(font).horizontalAdvance(word);
   if (natural > width) font.setStretch(std::max(40, 100 * width / natural));
   painter.setFont(font);

@@ -1,5 +1,5 @@
-// One band: a word to be read from afar, a sentence, and what to do. Opaque, of a fixed height: what it says does not
-// move what is below it.
+// One band: a word readable from afar, a sentence, and what to do. Opaque and of fixed height, so that its text does
+// not move the widgets below.
 #pragma once
 
 #include <QWidget>

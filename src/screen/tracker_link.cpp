@@ -126,7 +126,7 @@ void TrackerLink::thaw() {
   keeper_.change([](Facts& facts) { facts.frozen.reset(); });
 }
 
-// The pictures are fetched when something has changed.
+// Fetches the pictures only if the list has changed.
 void TrackerLink::listViews() {
   const std::string name = resolved_("tracker/list_views");
   if (name.empty()) return;

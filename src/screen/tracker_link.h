@@ -1,4 +1,4 @@
-// What the screen asks the tracker: of regions, frozen pictures, stored views. Waits for nobody.
+// The screen's calls to the tracker: regions, frozen pictures, stored views. Never blocks.
 #pragma once
 
 #include <QRect>
@@ -13,21 +13,21 @@ namespace laparoscope_servo::screen {
 
 class TrackerLink {
  public:
-  // `resolved`: of a service's name; empty while there is no master. `news`: there is an answer.
+  // `resolved`: resolves a service's name; empty while there is no master. `news`: called for an answer.
   TrackerLink(FactKeeper& keeper, ServiceCalls& calls, const std::function<std::string(const std::string&)>& resolved,
               const std::function<void()>& news)
       : keeper_(keeper), calls_(calls), resolved_(resolved), news_(news) {}
 
-  // In px of the original image, of the picture that is frozen, or of the live one.
+  // `pixels`: px of the original image, in the frozen picture or the live one.
   void selectRegion(const QRect& pixels);
-  // Would it be taken? The answer is Facts::verdict.
+  // Asks whether a region would be accepted; the answer is in Facts::verdict.
   void checkRegion(const QRect& pixels);
   void freeze();
   void thaw();
 
   void storeView(const std::string& name) { call("tracker/store_view", "Store view", name); }
   void recallView(const std::string& name) { call("tracker/recall_view", "Recall view", name); }
-  // Looks whether there are others than before.
+  // Checks whether the list of views has changed.
   void listViews();
 
  private:

@@ -1,5 +1,5 @@
-// One velocity of the scope, in MANUAL. Zero is in the middle; only the held mouse button moves it, from zero wherever
-// it was taken; let go, it is at zero again. Neither wheel nor key nor focus touches it.
+// One velocity of the scope, in MANUAL. Zero is in the middle. Only dragging with the mouse button held moves it,
+// relative to the place of the press; on release it returns to zero. Wheel, keys and focus have no effect.
 #pragma once
 
 #include <QString>

@@ -12,7 +12,7 @@ namespace {
 const QSize kThumbnail(120, 90);
 constexpr int kWayHeight = 36;  // px
 
-// With its region drawn in it.
+// The view's picture with its region drawn in it.
 QPixmap pictureOf(const StoredView& view) {
   QPixmap pixmap(kThumbnail);
   pixmap.fill(Qt::black);

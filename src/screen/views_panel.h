@@ -1,4 +1,4 @@
-// The views that the tracker has stored, by their pictures: one is stored under a name, one is gone back to.
+// Shows the stored views as pictures; stores a view under a name, and recalls one.
 #pragma once
 
 #include <QLabel>

@@ -12,7 +12,7 @@ namespace {
 using parameters::Range;
 using parameters::Table;
 
-// `angular` bounds pan, tilt and spin, `linear` bounds insertion; `per` is what stands below the line of the units.
+// `angular` is the range of pan, tilt and spin, `linear` that of insertion; `per` is the denominator of the units.
 void describeVelocity(Table& table, scope::Velocity& v, const Range& angular, const Range& linear,
                       const std::string& per) {
   table.number("pan", v.pan, angular, "rad/" + per, "about the insertion point, sideways");
@@ -41,19 +41,19 @@ void describeGains(Table& table, PaperGains& c) {
 }
 
 void describePredictor(Table& table, PredictorConfig& c) {
-  table.flag("enabled", c.enabled, "false: the law sees the task error of the last image as it is");
+  table.flag("enabled", c.enabled, "false: the law gets the task error of the last image as it is");
   table.number("delay", c.delay, {0, 1}, "s", "from a command to its execution, until it is measured")
       .atLeast("min_delay")
       .atMost("max_delay");
   table.flag("measure_delay", c.measure_delay, "the delay is measured from the velocities that the robot reports");
-  table.number("min_delay", c.min_delay, {0, 1}, "s", "nothing less is measured");
-  table.number("max_delay", c.max_delay, {0, 1}, "s", "nothing more is measured").atLeast("min_delay");
+  table.number("min_delay", c.min_delay, {0, 1}, "s", "lower bound of the measured delay");
+  table.number("max_delay", c.max_delay, {0, 1}, "s", "upper bound of the measured delay").atLeast("min_delay");
   table.flag("feed_forward", c.feed_forward, "the target's own velocity is added to the law's");
   table.number("command_lifetime", c.command_lifetime, {0.02, 2}, "s",
-               "for which the robot does what it was told last: command/timeout of the node aesop");
+               "for which the robot executes the last command: command/timeout of the node aesop");
 }
 
-// The noises are not zero: without one of its own a filter stops listening.
+// The noises are not zero: a filter without process noise ignores its measurements after a while.
 void describeTarget(Table& table, TargetMotionConfig& c) {
   table.number("centre_noise", c.centre_noise, {1e-6, 1}, "px over the focal length",
                "standard deviation of the region's centre in one image");
@@ -70,20 +70,22 @@ void describeTarget(Table& table, TargetMotionConfig& c) {
                "random walk of the log depth's velocity");
   table.number("orientation_acceleration", c.orientation_acceleration, {0, 10}, "rad/s/sqrt(s)",
                "random walk of the orientation's velocity");
-  table.number("calibration", c.calibration, {0, 2}, "share", "of the scope's own motion that may be wrong");
-  table.number("significance", c.significance, {0, 100}, "standard deviations", "from which on a velocity is believed")
+  table.number("calibration", c.calibration, {0, 2}, "share", "relative uncertainty of the scope's own motion");
+  table
+      .number("significance", c.significance, {0, 100}, "standard deviations",
+              "from which the target's velocity is used")
       .whileRunning();
-  table.number("jump", c.jump, {3, 1000}, "standard deviations", "what is seen further off is another target");
-  table.number("damping", c.damping, {0, 10}, "1/s", "rate at which a velocity that is not seen any more decays");
+  table.number("jump", c.jump, {3, 1000}, "standard deviations", "a larger innovation means another target");
+  table.number("damping", c.damping, {0, 10}, "1/s", "decay rate of the target's velocity");
 }
 
 void describeBreathing(Table& table, BreathingConfig& c) {
   table.flag("enabled", c.enabled, "periodic motion is followed");
   table.number("rate", c.rate, {0, 2}, "Hz",
-               "of the ventilator, in [min_rate, max_rate]; 0, or one that proves wrong: it is searched");
+               "rate of the ventilator, in [min_rate, max_rate]; 0, or if it proves wrong: the rate is searched");
   table.number("rate_stddev", c.rate_stddev, {0, 0.1}, "Hz", "standard deviation of that rate");
-  table.number("min_rate", c.filter.min_frequency, {0.02, 2}, "Hz", "nothing slower is looked for");
-  table.number("max_rate", c.filter.max_frequency, {0.02, 2}, "Hz", "nothing faster is looked for").atLeast("min_rate");
+  table.number("min_rate", c.filter.min_frequency, {0.02, 2}, "Hz", "slowest rate of the search");
+  table.number("max_rate", c.filter.max_frequency, {0.02, 2}, "Hz", "fastest rate of the search").atLeast("min_rate");
 }
 
 void describeRest(Table& table, RestConfig& c) {
@@ -99,21 +101,22 @@ void describeRest(Table& table, RestConfig& c) {
   bands("centre", c.centre_stop, c.centre_start, "px over the focal length", "the centre");
   bands("depth", c.depth_stop, c.depth_start, "", "the log depth, of which 0.01 is 1 % of scale,");
   bands("orientation", c.orientation_stop, c.orientation_start, "rad", "orientation");
-  table.number("hunting_time", c.hunting_time, {0, 10}, "s", "a start so soon after a stop widens the band")
+  table.number("hunting_time", c.hunting_time, {0, 10}, "s", "a start within this time after a stop widens the band")
       .whileRunning();
-  table.number("widening", c.widening, {1, 3}, "times", "that a band grows each time").whileRunning();
-  table.number("widest", c.widest, {1, 10}, "times", "its start's bound, a band grows no further").whileRunning();
+  table.number("widening", c.widening, {1, 3}, "times", "factor by which a band is widened each time").whileRunning();
+  table.number("widest", c.widest, {1, 10}, "times", "largest factor on a band's start threshold").whileRunning();
 }
 
 void describeOscillation(Table& table, OscillationConfig& c) {
   table.flag("enabled", c.enabled, "false: gains stay as they are");
-  table.number("half_period", c.half_period, {0.05, 5}, "s", "slower is no swinging");
-  table.number("changes", c.changes, {1, 100}, "changes", "of sign in a row are a swinging loop");
-  table.number("centre", c.centre, {0, 1}, "px over the focal length", "a swing reaches so far to each side");
-  table.number("depth", c.depth, {0, 1}, "", "a swing of the log depth reaches so far to each side");
-  table.number("orientation", c.orientation, {0, 3.2}, "rad", "a swing of the orientation reaches so far to each side");
-  table.number("step", c.step, {0.1, 1}, "times", "that the gains become each time");
-  table.number("least", c.least, {0.01, 1}, "times", "the gains, they are not lowered further");
+  table.number("half_period", c.half_period, {0.05, 5}, "s", "changes of sign further apart are no oscillation");
+  table.number("changes", c.changes, {1, 100}, "changes",
+               "number of changes of sign in a row that make an oscillation");
+  table.number("centre", c.centre, {0, 1}, "px over the focal length", "least amplitude to each side");
+  table.number("depth", c.depth, {0, 1}, "", "least amplitude of the log depth to each side");
+  table.number("orientation", c.orientation, {0, 3.2}, "rad", "least amplitude of the orientation to each side");
+  table.number("step", c.step, {0.1, 1}, "times", "factor on the gains for each oscillation");
+  table.number("least", c.least, {0.01, 1}, "times", "least factor on the gains");
 }
 
 void describeRange(Table& table, Workspace& c) {
@@ -139,7 +142,7 @@ bool isZero(const std::vector<double>& v) {
   return std::all_of(v.begin(), v.end(), [](double component) { return component == 0.0; });
 }
 
-// What no single row says.
+// Conditions on several parameters together.
 void checkTogether(const ControllerConfig& c, std::vector<std::string>& errors) {
   if (c.breathing.rate != 0.0 &&
       !Range(c.breathing.filter.min_frequency, c.breathing.filter.max_frequency).contains(c.breathing.rate)) {
@@ -166,32 +169,33 @@ void describe(Table& table, ControllerConfig& c) {
   table.choice("law", c.law, {"features", "paper"},
                "features: the region's centre, depth and orientation; paper: eq. (11) of Bourger et al. (2007)");
   table.choice("spin", c.spin, {"servo", "upright", "released"},
-               "what the scope's spin keeps: the region's orientation, the picture's, or nothing");
+               "use of the scope's spin: keeps the region's orientation, keeps the picture upright, or none");
   table.group("features", "gains of the law features", [&] { describeFeatures(table, c.features); });
   table.group("gains", "gains of the law paper", [&] { describeGains(table, c.gains); });
   table.group("predictor", "the error when a command will be executed", [&] { describePredictor(table, c.predictor); });
-  table.group("target", "how the target's own motion is told from noise", [&] { describeTarget(table, c.target); });
+  table.group("target", "model of the target's own motion and of the noise", [&] { describeTarget(table, c.target); });
   table.group("breathing", "the target's periodic motion", [&] { describeBreathing(table, c.breathing); });
   table.group("rest", "within these bands about the target the scope rests", [&] { describeRest(table, c.rest); });
-  table.group("oscillation", "a loop that swings about the target loses gain",
+  table.group("oscillation", "lowers the gains when the loop oscillates about the target",
               [&] { describeOscillation(table, c.oscillation); });
   table.group("dead_zone", "slower commands are not executed by the robot", [&] {
-    table.flag("inverse", c.dead_zone.inverse, "the width is added to what the law asks for");
+    table.flag("inverse", c.dead_zone.inverse, "the width is added to the law's velocity");
     table.group("width", "", [&] { describeVelocity(table, c.dead_zone.width, {0, 0.1}, {0, 0.02}, "s"); });
   });
   const std::string limits =
       "the four components of a motion are scaled together, so that its direction is kept; spin and insertion are "
       "slowed down for themselves while the guard of effect has not seen enough";
   table.group("limits", limits, [&] {
-    // Not zero: since the components are scaled together, it would stop the others too. A gain of zero keeps one still.
+    // Not zero: the components are scaled together, so a zero limit would stop all of them. A gain of zero stops a
+    // single one.
     table.group("velocity", "above dead_zone/width where its inverse is used", [&] {
       describeVelocity(table, c.limits.velocity, {1e-6, 1}, {1e-6, 0.1}, "s");
     });
-    table.group("acceleration", "a safety stop is immediate, whatever stands here", [&] {
+    table.group("acceleration", "does not limit a safety stop, which is immediate", [&] {
       describeVelocity(table, c.limits.acceleration, {1e-6, 100}, {1e-6, 10}, "s^2");
     });
   });
-  table.group("range", "towards a bound the scope is slowed down, at the bound it goes no further",
+  table.group("range", "workspace: the scope is slowed near a bound, and stops there",
               [&] { describeRange(table, c.range); });
   table.group("insertion_point", "where the shafts of the poses meet",
               [&] { describeInsertionPoint(table, c.insertion_point); });

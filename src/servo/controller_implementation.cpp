@@ -15,20 +15,21 @@ ControllerConfig checked(const ControllerConfig& config) {
   return config;
 }
 
-// s, beyond the delay, after which a motion has to show in the image. Derived: a command reaches the limit of 0.1 rad/s
-// by 1 rad/s^2 in 0.1 s (limits/), and in half of that it has moved the picture by 1 px at a focal length of 800 px.
+// s, beyond the delay, after which a motion must be visible in the image. Derived: a command reaches the limit of 0.1
+// rad/s by 1 rad/s^2 in 0.1 s (limits/), and in half of that it has moved the picture by 1 px at a focal length of 800
+// px.
 constexpr double kShows = 0.1;
 
-// The share of what the scope may go before its effect was seen, at which it stands. Derived: one more step, 0.02 s at
-// 0.1 rad/s, is 4 % of 0.044 rad (effect/unconfirmed_turn). It stops at once and does not slow down before: a scope
-// that stops shows more than one that creeps.
+// Share of the effect budget at which the scope stops. Derived: one more step, 0.02 s at 0.1 rad/s, is 4 % of 0.044 rad
+// (effect/unconfirmed_turn). It stops at once instead of slowing down, since fast motion shows its effect better than
+// slow motion.
 constexpr double kUsedUp = 0.97;
-// Spin and insertion show nothing of a fault of pan and tilt. From the share kSlowerAside of what they may go unseen
-// they are slowed down, to the share kSlowest of their speed, so that pan and tilt are shown first.
+// Spin and insertion do not reveal a fault of pan and tilt. From the share kSlowerAside of their budget on they are
+// slowed down, to kSlowest of their speed at least, so that the effect of pan and tilt is confirmed first.
 constexpr double kSlowerAside = 0.8;
 constexpr double kSlowest = 0.1;
 
-// In the task MANUAL the tracker does not count: nothing of it is missing.
+// Facts for the task MANUAL, which does not need the tracker: all of it counts as present.
 TrackerFacts nothingMissing() {
   TrackerFacts facts;
   facts.problem.clear();
@@ -90,7 +91,7 @@ EffectFacts Controller::Implementation::effectFacts() const {
   return {effect_.effect(), effect_.words()};
 }
 
-// What is estimated takes the place of the calibration, which is its prior: where the poses tell nothing, they agree.
+// Uses the estimated d2; the calibration is its prior, so without information from the poses both are equal.
 double Controller::Implementation::d2(const ControllerInput& input) const {
   return input.depth.d2 + d2_correction_.value();
 }
@@ -105,7 +106,7 @@ void Controller::Implementation::correctDepth(const ControllerInput& input) {
   d2_correction_.update(input.time, wanted);
 }
 
-// Whatever moves the scope is seen in the picture, also before it is engaged: the tissue's own motion is known then.
+// Images are observed also before engaging, so that the tissue's own motion is known by then.
 void Controller::Implementation::watchEffect(const ControllerInput& input) {
   const TaskErrorInput& task = input.task_error;
   if (task_ != Task::kHoldView || !task.problem.empty() || !task.valid || !task.image_time) return;
@@ -129,7 +130,7 @@ std::string Controller::Implementation::engage(const ControllerInput& input) {
   machine_.step(request);
   effect_.rearm();
   opposed_.restart();
-  has_time_ = false;  // the pause since the last step is no step
+  has_time_ = false;  // the pause since the last step is not a period
   last_time_ = input.time;
   servo_.reset();
   stick_.restart();
@@ -164,7 +165,7 @@ ControllerOutput Controller::Implementation::update(const ControllerInput& input
     opposed_.report(input.time - input.robot_report.age, input.robot_report.velocity, servo_.history(), servo_.delay());
   }
   if (!input.clock_jump.empty()) insertion_point_.reset();
-  // A pose that is told again says nothing new, and one of a scope that is not in the body nothing at all.
+  // Poses are not used if they repeat the last one, or if the scope is not in the body.
   const bool poses_count = input.depth.problem.empty() && input.depth.pose_is_new && input.depth.d2 > 0.0 &&
                            input.depth.age <= config_.safety.max_depth_age &&
                            input.depth.lateral_offset <= config_.safety.max_lateral_offset;
@@ -175,7 +176,7 @@ ControllerOutput Controller::Implementation::update(const ControllerInput& input
   correctDepth(input);
   watchRepetition(input.task_error);
   watchEffect(input);
-  // Of a time that is no number nothing is counted: the machine stops the scope, and what was done is not forgotten.
+  // A non-finite time is ignored here, and the budget stays; the state machine stops the scope.
   const bool has_clock = std::isfinite(input.time);
   const double told_for = std::clamp(input.time - last_time_, 0.0, config_.predictor.command_lifetime);
   if (has_clock) effect_.command(told_for * told_, task_ == Task::kHoldView);
@@ -239,9 +240,9 @@ void Controller::Implementation::watchRepetition(const TaskErrorInput& task_erro
 ServoLimits Controller::Implementation::limits(const SafetyOutput& safety, double time) const {
   ServoLimits limits{safety.speed_scale, safety.insertion_allowed};
   if (!config_.effect.enabled) return limits;
-  constexpr double kSeen = 0.1;  // s, until what the robot does is seen and judged
+  constexpr double kSeen = 0.1;  // s, until the effect of a motion is observed and judged
   if (!effect_.confirmed()) limits.insertion = 0.5 * config_.effect.unconfirmed_insertion / (servo_.delay() + kSeen);
-  // Where the region is at its place, nothing is wrong with pan and tilt that could show.
+  // Without commanded pan or tilt there is no effect of theirs to verify.
   if (told_.head<2>().isZero(0.0)) return limits;
   const double left = std::clamp((1.0 - effect_.budget().aside()) / (1.0 - kSlowerAside), kSlowest, 1.0);
   if (!(left < 1.0)) return limits;

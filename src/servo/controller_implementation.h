@@ -1,4 +1,4 @@
-// What the controller consists of, and the order of one of its steps.
+// The parts of the controller, and the order of a step.
 #pragma once
 
 #include <optional>
@@ -54,10 +54,10 @@ class Controller::Implementation {
   RepeatWatch repeats_;
   EffectGuard effect_;
   OpposedMotion opposed_;
-  std::optional<double> moves_since_;  // s; nothing: the command is within the dead zone
+  std::optional<double> moves_since_;  // s; empty: the command is within the dead zone
   InsertionPointEstimator insertion_point_;
   SlowCorrection d2_correction_;                    // m
-  Eigen::Vector4d told_ = Eigen::Vector4d::Zero();  // the robot in the last step, after its dead zone
+  Eigen::Vector4d told_ = Eigen::Vector4d::Zero();  // the last command to the robot, after its dead zone
   bool has_time_ = false;
   double last_time_ = 0.0;  // s, of the last step
 };

@@ -14,10 +14,11 @@ namespace laparoscope_servo::servo {
 namespace {
 
 constexpr double kSameImage = 1e-6;  // s, rounding
-constexpr double kBlocked = 0.3;     // s: a robot that does not do what it was told for longer counts as blocked
-constexpr double kHistory = 5.0;     // s: an image of 1 s ago, a delay of 1 s and a command's lifetime of 2 s, at most
+constexpr double kBlocked = 0.3;     // s: a robot that does not execute commands for longer counts as blocked
+// s: more than the largest image age (1 s), delay (1 s) and lifetime of a command (2 s) together
+constexpr double kHistory = 5.0;
 
-// The dead zone's inverse comes after the limits, and must keep to them.
+// Reduces the limits by the dead zone, whose inverse is applied after them.
 Limits beforeDeadZone(const ControllerConfig& config) {
   Limits limits = config.limits;
   if (!config.dead_zone.inverse) return limits;
@@ -98,7 +99,7 @@ void ScopeServo::stop(double time) {
   remember(time, scope::Velocity());
 }
 
-// `executed`: once the delay has passed.
+// `executed`: velocity after the delay has passed.
 void ScopeServo::remember(double time, const scope::Velocity& executed) {
   history_.add(time, executed);
   delay_.command(time, executed);
@@ -116,7 +117,7 @@ void ScopeServo::report(double time, const scope::Velocity& velocity) {
   blocked_ = time - blocked_since_ > kBlocked;
 }
 
-// With the picture's orientation in the place of the ROI's, where that is what is servoed.
+// The task error, with the ROI's orientation replaced by the horizon's (kUpright) or by zero (kReleased).
 TaskError ScopeServo::oriented(const ServoInput& input) const {
   TaskError error = input.error;
   if (config_.spin == SpinMode::kServo) return error;
@@ -124,7 +125,7 @@ TaskError ScopeServo::oriented(const ServoInput& input) const {
   error.e_w.setZero();
   if (config_.spin == SpinMode::kReleased || !input.insertion_point_T_tip) return error;
   const Eigen::Vector3d up(config_.horizon.up[0], config_.horizon.up[1], config_.horizon.up[2]);
-  // When the image was taken, by what the scope has done before or after the pose.
+  // Takes the pose to the time of the image by the scope's motion between both.
   const Eigen::Vector4d since = history_.displacement(input.image_time, input.pose_time, delay()) -
                                 history_.displacement(input.pose_time, input.image_time, delay());
   const Eigen::Matrix3d pose_R_image = geometry::so3Exp(-scope::angularVelocity(scope::Velocity::fromVector(since)));
@@ -133,7 +134,7 @@ TaskError ScopeServo::oriented(const ServoInput& input) const {
   return error;
 }
 
-// The scope's velocity that goes along with the target's.
+// Velocity of the scope that follows this velocity of the target.
 scope::Velocity ScopeServo::following(const Features& velocity) const {
   if (config_.spin != SpinMode::kReleased) return scope::Velocity::fromVector(jacobian_.inverse() * velocity);
   Eigen::Matrix3d without_spin;
@@ -162,7 +163,7 @@ void ScopeServo::observe(const ServoInput& input) {
   oscillation_.update(image_time_, error_);
   if (!to_target_.allFinite()) return;
   const Features place = jacobian_ * (displacement_ + to_target_);
-  // A scope that does not go where it was told to makes a target that stands look as if it went along.
+  // If the scope does not execute its commands, a target at rest looks as if it moved along with the scope.
   if (breathing_.observe(image_time_, place) || blocked_) target_.reset();
   target_.observe(image_time_, place - breathing_.predict(image_time_).place, jacobian_ * executed);
 }
@@ -181,14 +182,14 @@ scope::Velocity ScopeServo::command(const ServoInput& input, const ServoLimits& 
     // does and for the target's motion alike.
     const double middle = input.time + delay() + 0.5 * input.period;
     const Eigen::Vector4d under_way = history_.displacement(image_time_, middle, delay());
-    Eigen::Vector4d displacement = under_way;  // where it is not known how far it is to the target: as if that stood
+    Eigen::Vector4d displacement = under_way;  // if the displacement to the target is unknown: as for a target at rest
     if (to_target_.allFinite() && !target_.empty()) {
       const TargetPrediction breath = breathing_.predict(middle);
       const TargetPrediction target = target_.predict(middle);
       const Eigen::Matrix4d inverse = jacobian_.inverse();
       displacement = to_target_ - (inverse * (target.place + breath.place) - (displacement_ + under_way));
-      // A loop that has swung may have been driven by what it took for the target's motion, and was its own. A breath
-      // is not.
+      // After an oscillation the target velocity is not fed forward: it may be the loop's own motion. Breathing is no
+      // such motion.
       Features velocity = breath.velocity;
       if (!(gainFactor() < 1.0)) velocity += target.velocity;
       if (config_.predictor.feed_forward) follow = following(velocity);
@@ -196,7 +197,7 @@ scope::Velocity ScopeServo::command(const ServoInput& input, const ServoLimits& 
     error = moved(error, displacement, input.scope, config_.features.desired_depth);
   }
   if (!follow.vector().allFinite()) return follow;
-  // Where half a turn is left, both ways round are about as long: the scope keeps to the one on which it has begun.
+  // Near half a turn both ways round are about equally long: the scope keeps to the one that it has begun.
   const double turn = error.alpha - error.desired_alpha;
   const double same_way = turn_ + std::remainder(turn - turn_, 2.0 * M_PI);
   turn_ = shortTurn(same_way);
@@ -205,8 +206,8 @@ scope::Velocity ScopeServo::command(const ServoInput& input, const ServoLimits& 
   const LawVelocity wanted = law().velocity(follows ? error : band_.apply(error, input.time), input.scope);
   if (!wanted.sum().vector().allFinite()) return wanted.sum();
   const double gain = limits.scale * gainFactor();
-  // Pan and tilt come first: where there is no room for spin and insertion, the centre need not wait for them. Nor need
-  // they wait for each other: an axis that creeps shows too late what it does.
+  // Pan and tilt come first, so that the limits of spin and insertion do not slow down the centring. Spin and insertion
+  // are limited separately, since a slow axis delays the verification of its direction.
   scope::Velocity centring = scaled(wanted.centring, gain), spin, insertion;
   std::swap(centring.spin, spin.spin);
   std::swap(centring.insertion, insertion.insertion);

@@ -1,8 +1,8 @@
-// From task errors to velocities of the scope: law, predictor, target motion, hysteresis band, limits, dead zone.
+// Computes velocities of the scope from task errors: law, predictor, target motion, hysteresis band, limits, dead zone.
 //
-// The task error of an image is rolled forward to the time when the command that is given now will be executed: by what
-// the robot has been told and not done yet, and by the target's own motion. The law sees that error. No safety here:
-// see controller.h.
+// The task error of an image is predicted to the time when the present command will be executed, from the commands that
+// are not executed yet and from the target's own motion. The law gets that error. The safety states are in
+// controller.h.
 #pragma once
 
 #include <limits>
@@ -27,16 +27,17 @@ struct ServoInput {
   double image_time = 0.0;  // s, of the exposure, on the same clock
   TaskError error;
   scope::Geometry scope;
-  std::optional<Eigen::Isometry3d> insertion_point_T_tip;  // with the shaft's axes; without it, no cone and no horizon
-  double d2_doubt = 0.0;                                   // m, by which d2 may be less or more
-  double pose_time = 0.0;                                  // s, of the scope's pose, on the same clock
-  double period = 0.0;                                     // s, since the last command, 0 for the first
+  // with the shaft's axes; if empty, cone and horizon are not used
+  std::optional<Eigen::Isometry3d> insertion_point_T_tip;
+  double d2_doubt = 0.0;   // m, uncertainty of d2
+  double pose_time = 0.0;  // s, of the scope's pose, on the same clock
+  double period = 0.0;     // s, since the last command, 0 for the first
 };
 
 struct ServoLimits {
-  double scale = 1.0;             // 0 to 1, of all velocities and their limits
+  double scale = 1.0;             // 0 to 1, factor on all velocities and their limits
   bool insertion_allowed = true;  // false: not deeper
-  // In and out, and about the shaft; the other axes go on as they are.
+  // Limits of the magnitudes of insertion and spin, beside those of the configuration.
   double insertion = std::numeric_limits<double>::infinity();  // m/s
   double spin = std::numeric_limits<double>::infinity();       // rad/s
 };
@@ -46,43 +47,43 @@ class ScopeServo {
   // The configuration must be valid.
   explicit ScopeServo(const ControllerConfig& config);
 
-  // The command; not finite where the law's velocity is not.
+  // The command by the law; not finite if the law's velocity is not.
   scope::Velocity command(const ServoInput& input, const ServoLimits& limits);
 
-  // The command for a velocity that somebody else wants, finite: without a law, within the same limits and range and
-  // through the same dead zone. What the input says of an image does not count.
+  // The command for a given finite velocity: no law, but the same limits, workspace and dead zone. The image part of
+  // `input` is not used.
   scope::Velocity drive(const ServoInput& input, const scope::Velocity& wanted);
 
-  // From the next command on: the laws' gains, the bands of rest, the significance of the target's motion. All else of
-  // the configuration, which must be valid, is left aside. The limits of acceleration hold across the change. Does not
-  // allocate.
+  // Takes from `config`, which must be valid, the laws' gains, the bands of rest and the significance of the target's
+  // motion, for the next command on; its other parameters are ignored. The limits of acceleration hold across the
+  // change. Does not allocate.
   void retune(const ControllerConfig& config);
 
-  // What the robot says that it executed at `time` [s], on the clock of the commands; from this the delay is measured.
+  // Takes the velocity reported for `time` [s], on the clock of the commands; used to measure the delay.
   void report(double time, const scope::Velocity& velocity);
 
-  // The arm has been told to stand still since `time`: what was in the way of motion starts anew.
+  // Call while the command is zero since `time`: limits and bands start anew.
   void stop(double time);
 
-  // Another task begins: as stop(), and what was seen of the target is forgotten. What the robot has been told is not.
+  // Call when another task begins: as stop(), and forgets the target, but not the commands sent.
   void restart(double time);
 
   // Forgets everything.
   void reset();
 
-  // Of the gains, 1 unless the loop has swung.
+  // Factor on the gains; below 1 after an oscillation.
   double gainFactor() const { return oscillation_.factor(); }
 
-  // Hz, of the breath that is followed; 0 when none is.
+  // Breathing rate that is compensated [Hz]; 0: none.
   double breathingRate() const { return breathing_.rate(); }
 
-  // The last command was cut at a bound of the range.
+  // Whether the last command was cut at a bound of the workspace.
   bool atBound() const { return at_bound_; }
 
-  // The robot says that it does not do what it was told.
+  // Whether the robot reports that it does not execute its commands.
   bool blocked() const { return blocked_; }
 
-  // What the robot has been told, after its dead zone.
+  // The commands to the robot, after its dead zone.
   const CommandHistory& history() const { return history_; }
 
   // s, from a command to its execution.
@@ -108,17 +109,19 @@ class ScopeServo {
   TargetMotion target_;
   Breathing breathing_;
   double image_time_ = 0.0;  // s, of the last image
-  TaskError error_;          // in it
+  TaskError error_;          // task error of the last image
   bool has_image_ = false;
   bool at_bound_ = false;
   bool blocked_ = false;
   double blocked_since_ = 0.0;                         // s
-  Eigen::Vector2d desired_ = Eigen::Vector2d::Zero();  // of the region that is servoed, and below
+  Eigen::Vector2d desired_ = Eigen::Vector2d::Zero();  // reference place of the present region, with m_star_
   Eigen::Vector3d m_star_ = Eigen::Vector3d::Zero();
-  Eigen::Matrix4d jacobian_ = Eigen::Matrix4d::Identity();  // of the features at the reference, see target_motion.h
-  Eigen::Vector4d displacement_ = Eigen::Vector4d::Zero();  // of the scope at the last image, since the first
-  Eigen::Vector4d to_target_ = Eigen::Vector4d::Zero();     // in the last image
-  double turn_ = 0.0;                                       // rad, of the last command, alpha
+  // Jacobian of the features at the reference, see target_motion.h
+  Eigen::Matrix4d jacobian_ = Eigen::Matrix4d::Identity();
+  // displacement of the scope from the first to the last image
+  Eigen::Vector4d displacement_ = Eigen::Vector4d::Zero();
+  Eigen::Vector4d to_target_ = Eigen::Vector4d::Zero();  // displacement to the target in the last image
+  double turn_ = 0.0;                                    // rad, error of alpha at the last command
 };
 
 }  // namespace laparoscope_servo::servo

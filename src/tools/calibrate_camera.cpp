@@ -70,7 +70,7 @@ void print(const Board& board, const std::string& file) {
   std::cout << file << ": print it without scaling, and glue it to something flat; measure a square\n";
 }
 
-// Progress is a line for each image that counts: it is minutes of waiting otherwise.
+// Prints a line for each image that was kept, since the run takes minutes.
 void look(const Wanted& wanted, BoardViews& views) {
   const auto source = openImageSource(wanted.inputs, wanted.source);
   double next = 0.0;
@@ -98,7 +98,7 @@ void look(const Wanted& wanted, BoardViews& views) {
 void write(const Wanted& wanted, const sensor_msgs::CameraInfo& info) {
   const std::filesystem::path file = wanted.output.empty() ? calibrationFile(wanted.name) : wanted.output;
   if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());
-  // The parsers tell the format by the ending.
+  // The parsers choose the format by the extension.
   const std::filesystem::path partial = file.parent_path() / ("partial." + file.filename().string());
   if (!camera_calibration_parsers::writeCalibration(partial.string(), wanted.name, info))
     throw std::runtime_error("'" + file.string() + "' cannot be written");

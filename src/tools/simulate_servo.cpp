@@ -32,8 +32,8 @@ struct Request {
   int runs = 1;
   double duration = 0.0;  // s
   closed_loop::RunBounds bounds;
-  std::string csv;      // empty: not asked for
-  std::string summary;  // the same
+  std::string csv;      // empty: none
+  std::string summary;  // empty: none
 };
 
 double positive(const options::variables_map& values, const std::string& name, ParameterReader& reader) {

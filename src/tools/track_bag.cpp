@@ -26,7 +26,7 @@ namespace {
 namespace options = boost::program_options;
 using namespace laparoscope_servo;
 
-constexpr int kSignalled = 128;  // as shells count: and the signal's number
+constexpr int kSignalled = 128;  // plus the signal's number, as in shells
 
 options::options_description describeOptions(OfflineOptions& offline, std::string& roi, bool& select,
                                              std::string& parameters) {
@@ -59,7 +59,7 @@ std::string drawnRegion(const OfflineOptions& offline, const std::string& parame
   return region;
 }
 
-// Place, rate, time left and state: on a terminal in a line that changes, in a log a line of its own now and then.
+// Shows position, rate, time left and state: on a terminal in one changing line, in a log in a new line now and then.
 class ProgressLine {
  public:
   void operator()(const OfflineSummary& summary, std::size_t expected) {
@@ -89,7 +89,7 @@ class ProgressLine {
  private:
   bool terminal_ = isatty(STDERR_FILENO) != 0;
   bool shown_ = false;
-  std::vector<std::size_t> by_state_;  // of the summary before: the one that has grown is the state now
+  std::vector<std::size_t> by_state_;  // of the last summary; the count that has grown is that of the present state
   std::size_t state_ = 0;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   std::chrono::steady_clock::time_point last_ = begin_;
@@ -130,7 +130,7 @@ void onSignal(int signal) {
 
 void catchSignals() {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, onSignal);
-  std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is told like a full disk
+  std::signal(SIGXFSZ, SIG_IGN);  // a limit on the file size is then reported like a full disk
 }
 
 int exitStatus(const OfflineSummary& summary) {

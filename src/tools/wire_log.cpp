@@ -50,7 +50,7 @@ std::string utc(std::int64_t microseconds) {
   return text;
 }
 
-// Every record of the files in order, and the time of the first. Says at the end of each what is wrong with it.
+// Reads all records of the files in order, with the time of the first. Prints the errors of each file at its end.
 bool readAll(const Arguments& arguments, const std::function<void(const aesop::WireRecord&, std::int64_t)>& use) {
   bool good = true;
   std::int64_t start = 0;

@@ -7,8 +7,8 @@ namespace laparoscope_servo::tracking {
 
 namespace {
 
-// Pictures more than of the whole: a codec passes over a quarter of a region for two of them, while the estimate of a
-// region that is covered in part swings by some px (instrument_crossing.mp4 of the films, 25 Hz).
+// Extra repeats allowed for a part: a codec may skip a quarter of a region for two pictures while the estimate of a
+// partly covered region swings by some px (instrument_crossing.mp4 of the films, 25 Hz).
 constexpr int kSkipped = 1;
 
 }  // namespace
@@ -22,15 +22,17 @@ void FrozenFeed::see(const image::Repeats& repeats, double stamp, const Motion& 
 }
 
 void FrozenFeed::watchMotion(const image::Repeats& repeats, const Motion& motion) {
-  // The mean of the last two or so: one estimate that jumps is no motion, and a motion is over as quickly. What repeats
-  // may be what the region was found by: then the estimate tells of motion, not of rest.
+  // A mean with half the weight on the newest step: a single jump of the estimate is no motion, and a motion ends as
+  // quickly. While the region repeats, the estimate may rest on the repeating pixels; it can then show motion, but a
+  // lower speed proves nothing.
   const double speed = 0.5 * (speed_ + motion.step);
   if (repeats.region == 0 || speed > speed_) {
     speed_ = speed;
     moving_ = speed_ > config_.moving;
   }
   if (repeats.region > 0 && motion.by_robot > config_.moved) moving_ = true;
-  // While the region was not taken for one that repeats, the robot's word is of one image.
+  // While the region as a whole does not repeat, by_robot covers one image only: scaled by the number of repeats of the
+  // part.
   const double by_robot = repeats.region == 0 ? motion.by_robot * repeats.part : motion.by_robot;
   part_limit_ = by_robot > config_.moved         ? config_.max_repeats
                 : motion.of_part > config_.moved ? config_.max_repeats + kSkipped

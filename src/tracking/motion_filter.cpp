@@ -8,12 +8,12 @@ namespace laparoscope_servo::tracking {
 
 namespace {
 
-constexpr double kLearningTime = 0.8;  // s, in which what is learned follows
-constexpr int kImagesOfDoubt = 5;      // as many images as the first guess of the innovations counts
+constexpr double kLearningTime = 0.8;  // s, time constant of the innovation and noise estimates
+constexpr int kImagesOfDoubt = 5;      // images that the initial innovation covariance is worth
 constexpr double kLongestGap = 0.4;    // s without an image, for which the innovation still grows
 
-// lengthUnit()s, standard deviations by which shift, affine motion and perspective move the ROI's border unexpectedly:
-// the first guess, and what even a target that has stood still may do in the next image.
+// lengthUnit()s, standard deviations by which shift, affine motion and perspective move the ROI's border against the
+// prediction: the initial values, and the least values, which a target that stood still may reach in the next image.
 struct Spread {
   double shift, affine, perspective;
 };

@@ -200,7 +200,7 @@ const TrackResult& RegionTracker::Implementation::track(const cv::Mat& image, do
     start.g = prior.predicted;
     best = attempt(image, stamp, start, &prior);
     if (carried_ && !best.doubt.empty()) {
-      // A robot that is wrong must not lose what is found without it; what was seen where it led says nothing.
+      // If the ego-motion prior led to no accepted estimate, retry without it and discard its gate results.
       carried_.reset();
       aligner_.startAfresh();
       prior = filter_.predict(stamp);
@@ -217,7 +217,7 @@ const TrackResult& RegionTracker::Implementation::track(const cv::Mat& image, do
   return report(best);
 }
 
-// Where the last estimate is by what a robot says; empty when that is no motion that could be one.
+// The last G moved by the ego-motion; empty if the result is implausible.
 std::optional<Eigen::Matrix3d> RegionTracker::Implementation::carriedBy(
     const std::optional<Eigen::Matrix3d>& motion) const {
   if (!motion || !motion->allFinite() || !(motion->determinant() > 1e-12)) return std::nullopt;
@@ -296,7 +296,7 @@ void RegionTracker::Implementation::decide(const Attempt& best, const MotionPrio
   last_ = e.esm.state;
 }
 
-// What is said of G: while searching, what waits for confirmation.
+// The G to report: while searching, the candidate that is not confirmed yet.
 const Eigen::Matrix3d& RegionTracker::Implementation::shown() const {
   const Confirmation& found = search_.confirmation();
   return state_ != State::kTracking && found.waiting() ? found.candidate().g : last_.g;

@@ -22,7 +22,8 @@ void describe(Table& table, OcclusionConfig& c) {
       .whileRunning();
   table.flag("structure", c.structure,
              "after alignment, areas that do not correlate with the reference are occluded, too");
-  table.number("hold", c.hold, {0, 100}, "images", "an area that failed by its structure stays out for so long");
+  table.number("hold", c.hold, {0, 100}, "images",
+               "for which an area stays occluded after it failed the structure gate");
 }
 
 void describe(Table& table, EsmConfig& c) {
@@ -35,32 +36,30 @@ void describe(Table& table, EsmConfig& c) {
       "each block of 16 px or more");
   table.flag("robust", c.robust, "residuals are weighted by Tukey's function");
   table.number("saturation", c.saturation, {1, 256}, "grey levels",
-               "a pixel as bright in a colour that is tracked weighs nothing; 256 turns that off");
-  table.choice(
-      "channels", c.channels, {"luma", "strongest", "colour"},
-      "what of the colours is tracked: luma, the mixture that varies most across the region, or all three, which "
-      "is three times the work");
+               "a pixel at least this bright in a tracked colour has weight 0; 256 turns that off");
+  table.choice("channels", c.channels, {"luma", "strongest", "colour"},
+               "the tracked channels: luma, the mixture that varies most across the region, or all three, which is "
+               "three times the work");
 }
 
 void describe(Table& table, QualityConfig& c) {
   table
       .number("min_zncc", c.min_zncc, {0, 1}, "correlation",
-              "over the pixels used; more is asked of a region that was better")
+              "least correlation over the pixels used; the limit is higher for a region that correlated better before")
       .whileRunning();
   table
       .number("min_visible_fraction", c.min_visible_fraction, {0, 1}, "share",
-              "of the region's pixels that have to be used")
+              "of the region's pixels that must be used")
       .whileRunning();
   table
       .number("min_return_fraction", c.min_return_fraction, {0, 1}, "share",
               "of the region's pixels that have to be used before it is believed again after a loss")
       .whileRunning();
   table
-      .number(
-          "max_corner_error", c.max_corner_error, {0.01, 100}, "px",
-          "standard deviation expected of the worst corner, where block matching does not say that it is the region")
+      .number("max_corner_error", c.max_corner_error, {0.01, 100}, "px",
+              "expected standard deviation of the worst corner; not tested if block matching recognises the region")
       .whileRunning();
-  table.number("max_centre_error", c.max_centre_error, {0.01, 100}, "px", "standard deviation expected of the centre")
+  table.number("max_centre_error", c.max_centre_error, {0.01, 100}, "px", "expected standard deviation of the centre")
       .whileRunning();
   table
       .number("max_area_ratio", c.max_area_ratio, {1.01, 1000}, "ratio",
@@ -68,13 +67,13 @@ void describe(Table& table, QualityConfig& c) {
       .whileRunning();
   table
       .number("max_jump", c.max_jump, {0.01, 10}, "region diagonals",
-              "how far a corner may be from its prediction; less when little is visible")
+              "allowed distance of a corner from its prediction; less if little is visible")
       .whileRunning();
   table.number("max_search_time", c.max_search_time, {0, 3600}, "s", "the state is LOST after SEARCHING for longer")
       .whileRunning();
   table
       .number("confirmations", c.confirmations, {1, 100}, "images",
-              "as many in a row have to pass every test before TRACKING is said again")
+              "number in a row that must pass every test after a loss, before the state is TRACKING again")
       .whileRunning();
 }
 
@@ -82,23 +81,24 @@ void describe(Table& table, SearchConfig& c) {
   table.flag("features", c.features, "a lost region is looked for by points matched with keyframes");
   table.flag("correlation", c.correlation, "a lost region is looked for by sliding it over a coarse image");
   table.number("max_features", c.max_features, {50, 5000}, "points",
-               "drawn from an image; half as many from a keyframe");
+               "detected in an image; half as many in a keyframe");
   table.number("max_pixels", c.max_pixels, {10000, 10000000}, "px",
-               "an image with more is scaled down before points are drawn");
+               "an image with more is scaled down before points are detected");
   table
       .number("max_ratio", c.max_ratio, {0.1, 1}, "ratio",
               "distance of a point's best match over that of its second best")
       .whileRunning();
-  table.number("min_inliers", c.min_inliers, {4, 1000}, "matches", "that have to agree on a place").whileRunning();
+  table.number("min_inliers", c.min_inliers, {4, 1000}, "matches", "least number that agree on a place").whileRunning();
   table.number("keyframes", c.keyframes, {0, 64}, "views",
-               "kept beside the reference for scales and tilts that it does not show; they only say where to start");
+               "keyframes kept beside the reference for scales and tilts that it does not show; they only give places "
+               "to start from");
   table
       .number("min_detail", c.min_detail, {0, 1}, "correlation",
-              "of the fine structure where a search found the region")
+              "least correlation least correlation of the fine structure where a search found the region")
       .whileRunning();
   table
       .number("budget", c.budget, {0.001, 10}, "s",
-              "that a search may take of an image, by nominal costs; the rest is left for the next image")
+              "of an image for the search, by nominal costs; the rest of the search goes on in the next image")
       .whileRunning();
 }
 
@@ -109,11 +109,11 @@ void describe(Table& table, TrackerConfig& c) {
       .whileRunning();
   table.number("min_roi_side", c.min_roi_side, {8, 1000}, "px", "smaller regions are refused");
   table.number("min_texture", c.min_texture, {0.01, 10}, "px",
-               "a region is refused where noise of 2 grey levels moves a corner by more");
+               "a region is refused if noise of 2 grey levels moves a corner by more");
   table.group("occlusion", "which areas of the region are covered", [&] { describe(table, c.occlusion); });
   table.group("esm", "the alignment of the region with the reference", [&] { describe(table, c.esm); });
-  table.group("quality", "when an estimate is believed", [&] { describe(table, c.quality); });
-  table.group("search", "where a lost region is looked for", [&] { describe(table, c.search); });
+  table.group("quality", "limits of the acceptance tests of an estimate", [&] { describe(table, c.quality); });
+  table.group("search", "how a lost region is searched", [&] { describe(table, c.search); });
 }
 
 std::vector<std::string> validate(const TrackerConfig& config) {

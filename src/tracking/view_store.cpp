@@ -12,11 +12,11 @@ namespace laparoscope_servo::tracking {
 namespace {
 
 constexpr std::size_t kLongestName = 64;  // bytes
-// s, that are taken to lie between two views: how much the light may have changed follows from it.
+// s, assumed between two views: sets how much the illumination may have changed.
 constexpr double kBetweenViews = 10.0;
-constexpr double kWholeSearch = 10.0;  // s: nothing is left for an image that does not come
+constexpr double kWholeSearch = 10.0;  // s: a budget that one image cannot use up, since no further image comes
 
-// One image has to do: nothing moves on in it, so that confirmations would find the same again.
+// One image must suffice: confirmations in the same image would prove nothing.
 TrackerConfig forOneImage(TrackerConfig config) {
   config.quality.confirmations = 1;
   config.search.features = true;
@@ -119,7 +119,7 @@ bool ViewStore::isSeen(const std::string& name, const cv::Mat& image) const {
   return found(entry(name).view, image, config_, lens_.get());
 }
 
-// Breadth first, against the direction of the ways.
+// Breadth-first search, against the direction of the ways.
 std::vector<std::pair<std::string, std::string>> ViewStore::waysTo(const std::string& to) const {
   entry(to);
   std::vector<std::pair<std::string, std::string>> ways = {{to, to}};

@@ -1,8 +1,8 @@
-// The motion by which a scope shows where its insertion point is: out to a cone, round it, back to where it was, by pan
-// and tilt. Insertion only keeps the depth, which the arm's delay would change on the way round.
+// The motion for calibrating the insertion point: out to a cone, round it, and back to the start, by pan and tilt.
+// Insertion only keeps the depth, which would otherwise change on the way round because of the arm's delay.
 //
 // It follows the measured direction of the shaft, so that dead zones and a wrong insertion point change the speed, not
-// the way; and it ends at the first sign that something is not as expected. Pure: `now` is seconds of a steady clock.
+// the path. It ends at the first unexpected measurement. Pure: `now` is seconds of a steady clock.
 #pragma once
 
 #include <string>
@@ -19,27 +19,27 @@ namespace laparoscope_servo::aesop {
 struct PatternConfig {
   double angle = 0.12;             // rad: half the cone's opening
   double speed = 0.05;             // rad/s
-  double max_depth_change = 0.01;  // m: of the depth by the insertion point believed in
-  double patience = 2.0;           // s, without coming nearer to the next direction
+  double max_depth_change = 0.01;  // m, of the depth by the present insertion point
+  double patience = 2.0;           // s, largest time without progress towards the next direction
 };
 
-// Rows for all of it: ranges and meanings.
+// Adds the rows of all parameters, with range and meaning.
 void describe(parameters::Table& table, PatternConfig& config);
 
 std::vector<std::string> validate(const PatternConfig& config);
 
 class CalibrationPattern {
  public:
-  // Starts from the positions `q`. `insertion_point` [m, in aesop_base] is the one that the arm is driven about.
+  // Starts from the positions `q`. `insertion_point` [m, in aesop_base]: the present one, about which the arm moves.
   CalibrationPattern(const PatternConfig& config, const Kinematics& kinematics, const JointVector& q,
                      const Eigen::Vector3d& insertion_point, double now);
 
   struct Step {
-    scope::Velocity velocity;  // zero when done or when there is a problem
+    scope::Velocity velocity;  // zero when done, and if there is a problem
     bool done = false;
     std::string problem;  // why the pattern ends before it is done
   };
-  // `last`: what became of the velocity of the last step. After the end, nothing but the end comes.
+  // `last`: the joint motion for the velocity of the last step. After the end every step returns the end.
   Step step(const JointVector& q, const JointMotion& last, double now);
 
  private:
@@ -53,8 +53,8 @@ class CalibrationPattern {
   std::size_t next_ = 0;
   Eigen::Vector3d start_;
   double start_lever_ = 0.0;
-  double nearest_;     // rad, that the shaft has come to way_[next_]
-  double nearest_at_;  // s, when
+  double nearest_;     // rad, least angle so far between the shaft and way_[next_]
+  double nearest_at_;  // s, time of that
   Step end_;
   bool ended_ = false;
 };

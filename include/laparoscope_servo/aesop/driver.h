@@ -1,7 +1,7 @@
 // The arm, as a node uses it: scope velocities in, joint states and the robot's state out, bytes to and from the line.
 //
 // Pure: no port, no clock, no thread. `now` is seconds of a steady clock; for stamps see CommandGuard. Call receive()
-// with what has come and then transmit() at a steady rate above that of the link, whatever else happens.
+// with the bytes received and then transmit(), always and at a steady rate above that of the link.
 #pragma once
 
 #include "laparoscope_servo/aesop/command_guard.h"
@@ -21,7 +21,7 @@ struct DriverConfig {
   Eigen::Vector3d insertion_point{0.574, -0.079, -0.05};  // m, in aesop_base
 };
 
-// Every error of every part, the name of its group in front.
+// All errors of all parts, each with the name of its group in front.
 std::vector<std::string> validate(const DriverConfig& config);
 
 class Driver {
@@ -29,7 +29,7 @@ class Driver {
   // Throws std::invalid_argument that lists the errors of the configuration.
   explicit Driver(const DriverConfig& config);
 
-  // As in Session. The enable forgets all commands that were stamped before it.
+  // As in Session. Enable also refuses all commands that were stamped before it.
   std::string enable(double stamp_now, double now);
   std::string disable(double now);
   std::string stop(double now, const std::string& reason);
@@ -37,11 +37,11 @@ class Driver {
   std::string pause(const std::string& reason = "paused on request");
   std::string resume(double stamp_now);
 
-  // Takes a command, or says why not. Commands while not ENABLED are judged, but move nothing, then or later.
+  // Accepts a command, or returns why not. Commands while not ENABLED are checked, but have no effect, then or later.
   std::string command(const scope::Velocity& velocity, double stamp, double stamp_now, double now);
 
-  // Another insertion point [m, in aesop_base], or why not: never while ENABLED, PAUSED or in FAULT, nor while the arm
-  // moves.
+  // Sets another insertion point [m, in aesop_base], or returns why not: never while ENABLED, PAUSED or in FAULT, nor
+  // while the arm moves.
   std::string setInsertionPoint(const Eigen::Vector3d& point);
 
   void opened(double now);
@@ -49,27 +49,25 @@ class Driver {
   void receive(const std::uint8_t* data, std::size_t size, double now);
   Bytes transmit(double now);
 
-  // All that goes into the driver and comes out of it from now on is also given to `tap`, which has to live longer;
-  // null: to nobody.
+  // Passes all further input and output of the driver to `tap` also, which must outlive the driver; null: none.
   void setTap(WireTap* tap) { tap_ = tap; }
   // As in Link.
   void setSequence(std::uint16_t sequence) { session_.setSequence(sequence); }
 
-  // Session's state; while ENABLED its reason says why the arm does not do what was commanded, and is empty when it
-  // does.
+  // The session's state. While ENABLED its reason is why the arm does not execute the command; empty if it does.
   OperatingState state(double now) const;
   const Session& session() const { return session_; }
   const CommandGuard& guard() const { return guard_; }
   const Kinematics& kinematics() const { return kinematics_; }
   const Eigen::Vector3d& insertionPoint() const { return insertion_point_; }
-  // The arm's own delay, as measured by what has been sent and received.
+  // The arm's own delay, measured from the messages sent and received.
   const MotionDelay& delay() const { return delay_; }
-  // What the last call of transmit() made of the command.
+  // The joint motion that the last call of transmit() computed for the command.
   const JointMotion& lastMotion() const { return last_motion_; }
 
  private:
   void watchMotion(double now);
-  Bytes turn(double now);
+  Bytes cycle(double now);
   void record(WireEvent event, Bytes payload = {});
   void record(WireEvent event, double now, Bytes payload = {});
 
@@ -79,15 +77,15 @@ class Driver {
   CommandGuard guard_;
   Session session_;
   MotionDelay delay_;
-  std::uint64_t statuses_ = 0;       // received when the last one was looked at
-  std::uint64_t link_sessions_ = 0;  // the same of the link's
+  std::uint64_t statuses_ = 0;       // number of statuses received when the last one was evaluated
+  std::uint64_t link_sessions_ = 0;  // number of sessions of the link at that time
   MotionMonitor monitor_;
-  std::array<double, kDrivenJoints> speed_{};  // of the driven joints, as commanded last
+  std::array<double, kDrivenJoints> speed_{};  // last commanded velocities of the driven joints
   JointMotion last_motion_;
-  std::string refusal_;  // of the last command; empty when it was accepted
+  std::string refusal_;  // why the last command was refused; empty if it was accepted
   WireTap* tap_ = nullptr;
   std::int64_t tap_time_ = 0;  // ns, of the last record
-  Bytes tap_state_;            // the last one recorded
+  Bytes tap_state_;            // the last recorded state
 };
 
 }  // namespace laparoscope_servo::aesop

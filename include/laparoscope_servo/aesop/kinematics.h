@@ -16,12 +16,12 @@ namespace laparoscope_servo::aesop {
 
 using Jacobian = Eigen::Matrix<double, 6, kJoints>;
 
-// Joint positions with the passive ones such that the shaft's line passes through the insertion point.
+// Joint positions at which the shaft's line passes through the insertion point.
 struct WristSolution {
   bool ok = false;
   JointVector q = JointVector::Zero();
   double distance = 0.0;  // m, from the insertion point to the shaft's line
-  std::string reason;     // why not, when not ok
+  std::string reason;     // why there is no solution, if not ok
 };
 
 class Kinematics {
@@ -30,7 +30,7 @@ class Kinematics {
   explicit Kinematics(const KinematicsConfig& config);
 
   const KinematicsConfig& config() const { return config_; }
-  // Indices (0 to 6) of the driven joints, in the order of the arm; 4 of them. Two are passive.
+  // Indices (0 to 6) of the 4 driven joints, in the order of the arm. Two other joints are passive.
   const std::vector<int>& driven() const { return driven_; }
   const std::vector<int>& passive() const { return passive_; }
   bool isDriven(int joint) const { return config_.joints[static_cast<std::size_t>(joint)].role == JointRole::kDriven; }
@@ -51,12 +51,12 @@ class Kinematics {
   // d1: distance along the shaft from O_7 to the insertion point [m, in aesop_base]; negative when it lies behind O_7.
   double leverArm(const JointVector& q, const Eigen::Vector3d& insertion_point) const;
 
-  // Moves the passive joints of `q` (Newton's method from where they stand) until the shaft's line passes through the
-  // insertion point [m, in aesop_base] to 1e-12 m. Not ok when that point is within 1 cm of O_7 or behind it, when a
-  // passive joint would leave its limits, or when no position near is found.
+  // Moves the passive joints of `q` (Newton's method from their present positions) until the shaft's line passes
+  // through the insertion point [m, in aesop_base] to 1e-12 m. Not ok when that point is within 1 cm of O_7 or behind
+  // it, when a passive joint would leave its limits, or when no position near is found.
   WristSolution solveWrist(const JointVector& q, const Eigen::Vector3d& insertion_point) const;
 
-  // Why `q` cannot be: not finite, or a joint outside its limits, naming it. Empty when it can.
+  // Why `q` is impossible: not finite, or a joint (named) outside its limits. Empty if it is possible.
   std::string error(const JointVector& q) const;
 
  private:

@@ -1,5 +1,5 @@
-// What the arm's geometry is. Defaults are those of config/aesop.yaml: an AESOP 3000 from a public calibration demo, of
-// unknown accuracy, hence nominal: calibrate your own arm.
+// The arm's geometry. Defaults are those of config/aesop.yaml: an AESOP 3000 from a public calibration demo of unknown
+// accuracy. They are nominal only; calibrate your own arm.
 #pragma once
 
 #include <Eigen/Core>
@@ -22,7 +22,7 @@ enum class JointRole {
   kDriven,   // moved by a motor on command
   kHand,     // set by hand and then locked
   kPassive,  // free: the trocar moves it
-  kBoth,     // driven and by hand, as it may stand in a file: validate() refuses it
+  kBoth,     // listed as driven and as by hand in a file: validate() refuses it
 };
 
 // One row of a standard Denavit-Hartenberg table: Rz(theta) Tz(d) Tx(a) Rx(alpha), the joint's position added to theta,
@@ -46,29 +46,29 @@ struct KinematicsConfig {
   std::array<DhJoint, kJoints> joints = nominalJoints();
   // l, from O_7 to the centre of the camera along the shaft, which is the z axis of frame 7. 0 to 1 m, exclusive.
   double scope_length = 0.30;
-  // How deep the camera may be, d2 [m]: 0 < minimum < maximum < scope_length.
+  // Range of the camera's depth d2 [m]: 0 < minimum < maximum < scope_length.
   double depth_minimum = 0.03;
   double depth_maximum = 0.22;
 };
 
-// Where a motion is slowed, and where it is refused; both apply only to motion that makes matters worse.
+// Limits at which a motion is slowed, and at which it is refused; both apply only to motion towards the limit.
 struct MotionConfig {
   double limit_margin_angle = 0.087;    // rad, > 0: slowed from here to a revolute joint's limit
   double limit_margin_distance = 0.02;  // m, > 0: the same for prismatic joints and for the depth of the scope
-  // Of the smallest singular value of the 6x6 Jacobian with lengths divided by 0.3 m; it is about 0.6 at the nominal
-  // start pose.
+  // Limits of the smallest singular value of the 6x6 Jacobian with lengths divided by 0.3 m; it is about 0.6 at the
+  // nominal start pose.
   double singular_slow = 0.20;
   double singular_stop = 0.10;  // > 0, < singular_slow
-  // Of d1: the shorter it is, the further the scope turns for the same motion of the arm, and the more a wrong
-  // insertion point does. m, 0.01 < stop < slow < 0.3; pan, tilt and deeper only.
+  // Limits of d1: the shorter it is, the further the scope turns for the same motion of the arm, and the larger is the
+  // effect of a wrong insertion point. m, 0.01 < stop < slow < 0.3; for pan, tilt and deeper only.
   double lever_slow = 0.05;
   double lever_stop = 0.03;
-  // s, 0.05 to 5, from a command to joints that stand: never faster than would reach a limit within it, so that the
-  // delay of the arm carries nothing beyond.
+  // s, 0.05 to 5, from a command to joints at rest: speed is limited so that no limit is reached within this time, and
+  // the arm's delay leads no joint beyond its limit.
   double stopping_time = 0.5;
 };
 
-// Rows for all of it: ranges and meanings.
+// Adds the rows of all parameters, with range and meaning.
 void describe(parameters::Table& table, KinematicsConfig& config);
 void describe(parameters::Table& table, MotionConfig& config);
 

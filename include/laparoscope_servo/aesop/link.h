@@ -1,7 +1,7 @@
-// The line to the controller as a sequence of sessions: identification, sequence numbers, ages, losses.
+// The link to the controller as a sequence of sessions: identification, sequence numbers, ages, losses.
 //
-// Pure: bytes in, bytes out, and `now`, seconds of a steady clock. A link that is not up has to be taken for a robot of
-// which nothing is known.
+// Pure: bytes in, bytes out, and `now`, seconds of a steady clock. While the link is not up, the state of the robot is
+// unknown.
 #pragma once
 
 #include <array>
@@ -18,8 +18,8 @@ namespace laparoscope_servo::aesop {
 
 enum class LinkState {
   kClosed,       // no port
-  kIdentifying,  // port open, controller not (yet) answering as it has to
-  kUp,           // identified, statuses come
+  kIdentifying,  // port open, no valid answer of the controller yet
+  kUp,           // identified, receives statuses
 };
 
 const char* name(LinkState state);
@@ -28,11 +28,11 @@ struct LinkStatistics {
   DecoderStatistics decoder;
   std::uint64_t sent = 0;      // requests
   std::uint64_t received = 0;  // statuses
-  std::uint64_t lost = 0;      // replies of the controller that never came, by its numbers
-  std::uint64_t sessions = 0;  // times that the link came up
+  std::uint64_t lost = 0;      // replies of the controller that did not arrive, by their sequence numbers
+  std::uint64_t sessions = 0;  // number of times that the link came up
 };
 
-// What has come with some bytes. The link may be lost and come up again within one read.
+// Events of a read. The link may be lost and come up again within one read.
 struct LinkUp {};
 struct LinkLost {
   std::string reason;
@@ -41,18 +41,18 @@ using LinkEvent = std::variant<LinkUp, LinkLost, Status>;
 
 class Link {
  public:
-  // `driven`: bit k - 1 for each driven joint k, as the configuration has it; the controller has to agree.
+  // `driven`: bit k - 1 for each driven joint k of the configuration; the controller must report the same.
   Link(const SessionConfig& config, std::uint8_t driven) : config_(config), driven_(driven), codec_(config.codec()) {}
 
   void opened(double now);
   void closed(const std::string& reason);
-  // What has happened by these bytes, oldest first; only statuses of this session.
+  // Decodes these bytes and returns their events, oldest first; only statuses of this session.
   std::vector<LinkEvent> receive(const std::uint8_t* data, std::size_t size, double now);
-  // Loses the link when no status has come for too long. To be called before every sending.
+  // Declares the link lost if no status has come for too long. Call before each sending.
   void watch(double now);
-  // The request that (re)begins the session, when one is due; to be sent while the link is not up.
+  // The request that begins the session (anew), if one is due; send it while the link is not up.
   Bytes identify(double now);
-  // One request. Throws std::invalid_argument like Codec::encode().
+  // Encodes one request. Throws std::invalid_argument like Codec::encode().
   Bytes send(const Message& message, double now);
   // Whether it is time for the next request.
   bool due(double now) const { return now >= next_; }
@@ -63,14 +63,14 @@ class Link {
   const std::string& reason() const { return reason_; }
   // Sequence number of the request sent last.
   std::uint16_t sequence() const { return sequence_; }
-  // Counts on from here: for a recording that begins in the middle.
+  // Sets the sequence number, for a recording that begins in the middle.
   void setSequence(std::uint16_t sequence) { sequence_ = sequence; }
   // Last status of this session.
   const std::optional<Status>& status() const { return status_; }
-  // s since the request that it answers was sent: no less than what it tells is old. Infinite when there is none.
+  // s since the request that the last status answers was sent: an upper bound of its age. Infinite if there is none.
   double statusAge(double now) const;
   const LinkStatistics& statistics() const { return statistics_; }
-  // Of the last statuses of this session.
+  // Round trip times of the last statuses of this session.
   RoundTripSummary roundTrips() const { return round_trips_.summary(); }
   const std::string& model() const { return model_; }
 
@@ -88,7 +88,7 @@ class Link {
   std::unique_ptr<Codec> codec_;
   LinkStatistics statistics_;
   std::uint16_t sequence_ = 0;
-  std::array<double, 1024> sent_at_{};  // s, of the last requests, by sequence number modulo their count
+  std::array<double, 1024> sent_at_{};  // s, when the last requests were sent, by sequence number modulo the size
   double next_ = 0.0;
   RoundTrips round_trips_;
   std::optional<Status> status_;

@@ -1,4 +1,4 @@
-// What the driver and the arm's controller say to each other, apart from how it is written on the wire.
+// The messages between the driver and the arm's controller, independent of the wire format.
 #pragma once
 
 #include <array>
@@ -11,17 +11,17 @@
 namespace laparoscope_servo::aesop {
 
 constexpr int kDrivenJoints = 4;
-constexpr double kLargestNumber = 2000.0;  // of positions and velocities, m or rad (a second), either sign
+constexpr double kLargestNumber = 2000.0;  // magnitude of positions and velocities, m or rad (per second)
 
 // Requests, from the host.
-struct Identify {};    // begins a session; whatever the controller did before, it is DISABLED after it
-struct Enable {};      // DISABLED to ENABLED, at rest
-struct Disable {};     // to DISABLED, standing
-struct Stop {};        // stand still, stay ENABLED
-struct ClearFault {};  // FAULT to DISABLED when the cause has gone
-struct Poll {};        // nothing but the status
-// Velocities of all driven joints, in the order of the arm, valid for `time_to_live` from their arrival: then the
-// controller stops.
+struct Identify {};    // begins a session; the controller is DISABLED after it
+struct Enable {};      // from DISABLED to ENABLED, at rest
+struct Disable {};     // to DISABLED, at rest
+struct Stop {};        // stops, stays ENABLED
+struct ClearFault {};  // from FAULT to DISABLED, if the cause has gone
+struct Poll {};        // requests the status only
+// Velocities of all driven joints, in the order of the arm. They are valid for `time_to_live` from their arrival, then
+// the controller stops.
 struct Velocity {
   std::array<double, kDrivenJoints> speed{};  // m/s for a prismatic joint, else rad/s; within ±2000
   double time_to_live = 0.0;                  // s, 0.001 to 2
@@ -36,7 +36,7 @@ struct Identity {
 
 enum class RobotState : std::uint8_t { kDisabled = 0, kEnabled = 1, kFault = 2 };
 
-// Bits of Status::faults. A bit that has no name here is a fault like any other.
+// Bits of Status::faults. A bit without a name here is a fault too.
 constexpr std::uint16_t kFaultEmergencyStop = 0x0001;
 constexpr std::uint16_t kFaultMotor = 0x0002;
 constexpr std::uint16_t kFaultSensor = 0x0004;
@@ -46,9 +46,9 @@ constexpr std::uint16_t kFaultTrocar = 0x0010;  // the shaft cannot follow: wris
 struct Status {
   RobotState state = RobotState::kDisabled;
   bool homed = false;
-  bool moving = false;       // a joint moves, or a motion is under way in the controller
+  bool moving = false;       // a joint moves, or the controller executes a motion
   std::uint16_t faults = 0;  // 0: none
-  std::uint16_t echo = 0;    // sequence number of the request last taken
+  std::uint16_t echo = 0;    // sequence number of the last request that the controller took
   double time = 0.0;         // s, the controller's clock, in steps of 1 ms; wraps after 49 days
   JointVector position = JointVector::Zero();
   JointVector velocity = JointVector::Zero();
@@ -58,7 +58,7 @@ using Message = std::variant<Identify, Enable, Disable, Stop, ClearFault, Poll, 
 
 // "ENABLED" and so on.
 const char* name(RobotState state);
-// The faults in words, joined by commas; empty for 0.
+// Names of the faults, joined by commas; empty for 0.
 std::string describeFaults(std::uint16_t faults);
 
 }  // namespace laparoscope_servo::aesop

@@ -1,5 +1,5 @@
-// Whether the joints do what they are told, by their own account: a motor that stands, a joint that runs away, a sensor
-// that no longer tells the truth. The controller need not notice any of that.
+// Checks by the reported joint positions and velocities whether the joints execute their commands. Detects a motor that
+// does not move, a joint that runs away, and a faulty sensor, which the arm's controller may not notice.
 //
 // Pure: `now` is seconds of a steady clock.
 #pragma once
@@ -21,17 +21,17 @@ namespace laparoscope_servo::aesop {
 
 // Defaults are those of config/aesop.yaml, group `monitor`.
 struct MonitorConfig {
-  double response_time = 1.0;  // s: what joints do is judged over so long; well above the arm's delay
-  // Slower commands than these may move nothing: friction. rad/s and m/s, 1e-4 to 1
+  double response_time = 1.0;  // s: time over which motion is compared; well above the arm's delay
+  // Slower commands may cause no motion because of friction. rad/s and m/s, 1e-4 to 1
   double slowest_angle = 0.01;
   double slowest_distance = 0.002;
-  // Motion that no command explains, and what positions and velocities may differ by, within response_time. rad and m,
-  // 1e-4 to 1
+  // Allowed motion without a command, and allowed difference between positions and integrated velocities, within
+  // response_time. rad and m, 1e-4 to 1
   double tolerance_angle = 0.01;
   double tolerance_distance = 0.003;
 };
 
-// Rows for all of it: ranges and meanings.
+// Adds the rows of all parameters, with range and meaning.
 void describe(parameters::Table& table, MonitorConfig& config);
 
 std::vector<std::string> validate(const MonitorConfig& config);
@@ -40,18 +40,19 @@ class MotionMonitor {
  public:
   MotionMonitor(const MonitorConfig& config, const Kinematics& kinematics);
 
-  // To be called when the arm is enabled, or is no longer.
+  // Call when the arm is enabled, and when it no longer is.
   void reset() {
     samples_.clear();
     rest_.fill(std::nullopt);
   }
-  // `speed`: of the driven joints, as commanded since the status before. Says what is wrong; empty when nothing is.
+  // `speed`: velocities of the driven joints, as commanded since the last status. Returns what is wrong, or an empty
+  // text.
   std::string take(const Status& status, const std::array<double, kDrivenJoints>& speed, double now);
 
  private:
   struct Joint {
     int number;  // 1 to 7
-    int index;  // in a JointVector
+    int index;   // in a JointVector
     bool prismatic;
   };
   struct Sample {
@@ -59,7 +60,7 @@ class MotionMonitor {
     double controller_time;
     JointVector position;
     JointVector velocity;
-    JointVector travelled;  // by the velocities, since the first sample
+    JointVector travelled;  // integral of the velocities since the first sample
     std::array<double, kDrivenJoints> speed;
   };
   std::string judge(std::size_t driven) const;
@@ -68,9 +69,9 @@ class MotionMonitor {
 
   MonitorConfig config_;
   std::vector<Joint> joints_;
-  std::deque<Sample> samples_;  // of the last two response times
+  std::deque<Sample> samples_;  // samples of the last two response times
   std::array<std::optional<double>, kDrivenJoints>
-      rest_;  // where each joint has to stay until the next command, m or rad
+      rest_;  // m or rad, position that each joint must keep until the next command
 };
 
 }  // namespace laparoscope_servo::aesop

@@ -1,4 +1,4 @@
-// What the driver says of the arm, to the user and to recordings.
+// The arm's operating state, for the user and for recordings.
 #pragma once
 
 #include <string>
@@ -23,7 +23,7 @@ struct OperatingState {
   }
 };
 
-// As in a recording: a byte for the mode, one for the flags, the reason. The way back throws std::invalid_argument.
+// Form in a recording: a byte for the mode, one for the flags, the reason. The inverse throws std::invalid_argument.
 Bytes payloadOf(const OperatingState& state);
 OperatingState stateOf(const Bytes& payload);
 

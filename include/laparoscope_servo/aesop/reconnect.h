@@ -1,5 +1,5 @@
-// When to try the port again: at once the first time, then after pauses that double, so that a port that stays away
-// costs nothing. A session that has lasted makes the pauses short again; one that breaks soon, a loose cable, does not.
+// Decides when to try the port again: at once the first time, then after pauses that double, so that a missing port
+// costs little. A session that lasted for stable_time resets the pauses; a shorter one (a loose cable) does not.
 //
 // Pure: `now` is seconds of a steady clock.
 #pragma once
@@ -18,10 +18,10 @@ namespace laparoscope_servo::aesop {
 struct ReconnectConfig {
   double first_pause = 0.5;    // s
   double longest_pause = 8.0;  // s, first_pause to 60
-  double stable_time = 5.0;    // s: a link that was up for so long has lasted
+  double stable_time = 5.0;    // s: a link that was up for this long was stable
 };
 
-// Rows for all of it: ranges and meanings.
+// Adds the rows of all parameters, with range and meaning.
 void describe(parameters::Table& table, ReconnectConfig& config);
 
 std::vector<std::string> validate(const ReconnectConfig& config);
@@ -33,9 +33,9 @@ class Reconnect {
   bool due(double now) const { return now >= next_; }
   // s until the next attempt; 0 when it is due.
   double remaining(double now) const { return due(now) ? 0.0 : next_ - now; }
-  // The link is up; to be called for as long as it is.
+  // Call regularly while the link is up.
   void up(double now);
-  // An attempt has failed, or the port has been lost.
+  // Call when an attempt has failed, or the port has been lost.
   void lost(double now);
 
  private:

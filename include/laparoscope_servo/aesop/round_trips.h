@@ -7,7 +7,7 @@
 namespace laparoscope_servo::aesop {
 
 struct RoundTripSummary {
-  std::size_t count = 0;  // that the rest is of; all zero when there are none
+  std::size_t count = 0;  // number of round trips; all members are zero if there are none
   double median = 0.0;    // s
   double p99 = 0.0;       // s, 99 of 100 are not longer
   double longest = 0.0;   // s
@@ -25,7 +25,7 @@ class RoundTrips {
 
  private:
   std::size_t capacity_;
-  std::vector<double> times_;  // a ring
+  std::vector<double> times_;  // ring buffer
   std::size_t next_ = 0;
 };
 

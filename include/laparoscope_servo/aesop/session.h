@@ -1,4 +1,4 @@
-// The state of the robot as the host sees it, and what to send next. Nothing leads to ENABLED but enable(): a lost
+// The state of the robot as known to the host, and the next request to send. Only enable() leads to ENABLED: a lost
 // link, a fault, a controller that disables itself or restarts all end in DISABLED or FAULT. session_table.h holds all
 // transitions.
 //
@@ -19,30 +19,30 @@ class Session {
  public:
   Session(const SessionConfig& config, std::uint8_t driven) : config_(config), link_(config, driven) {}
 
-  // Requests. Each returns why it cannot be, or an empty string when it is under way: state() tells how it ends.
+  // Requests. Each returns why it is refused, or an empty string if it is under way; state() has its result.
   std::string enable(double now);
   std::string disable(double now, const std::string& reason = "disabled on request");
-  // The same for who asks for it by something else than a service: it counts as a stop, see stopped().
+  // Disables for another cause than a service call: counts as a stop, see stopped().
   std::string stop(double now, const std::string& reason);
   std::string clearFault(double now);
   std::string pause(const std::string& reason = "paused on request");
   std::string resume();
-  // Disables because something is wrong; until the next enable, the state tells what.
+  // Disables because of an error; the state holds its reason until the next enable.
   void giveUp(const std::string& reason);
 
   void opened(double now);
   void closed(const std::string& reason);
   void receive(const std::uint8_t* data, std::size_t size, double now);
-  // What to send now, often nothing. `speed`: of the driven joints, as wanted at this moment; it reaches the wire only
-  // while ENABLED. All zero, one that is not finite or that the wire cannot carry, is a stop, which is sent at once
-  // and until the controller confirms that it stands.
+  // The bytes to send now, often none. `speed`: wanted velocities of the driven joints at this moment; sent only while
+  // ENABLED. All zero, a non-finite value or one that the wire format cannot carry is a stop, which is sent at once and
+  // until the controller confirms that the arm is at rest.
   Bytes transmit(const std::array<double, kDrivenJoints>& speed, double now);
 
   OperatingState state() const;
-  bool isEnabled() const { return state_ == SessionState::kEnabled; }  // and confirmed, and not paused
+  bool isEnabled() const { return state_ == SessionState::kEnabled; }  // confirmed and not paused
   // The last request was a velocity.
   bool isMoving() const { return motion_ == Motion::kMoving; }
-  // Something else than a request has ended the last ENABLED, or the disable is not confirmed.
+  // The last ENABLED was ended by another cause than a request, or the disable is not confirmed.
   bool stopped() const { return end_ == SessionEnd::kStopped; }
   // The controller has not confirmed a disable in time: the arm may still move.
   bool isUnconfirmed() const { return disable_ == Disabling::kOverdue; }
@@ -50,12 +50,12 @@ class Session {
   void setSequence(std::uint16_t sequence) { link_.setSequence(sequence); }
 
  private:
-  // Of the Disable, which is repeated until the controller says that it has taken it and stands, whatever it said
-  // before: that may be wrong.
+  // State of the Disable, which is repeated until the controller reports that it took it and is at rest. Earlier
+  // reports of rest do not count.
   enum class Disabling { kConfirmed, kAwaited, kOverdue };
-  enum class Motion { kStanding, kMoving, kStopping };  // kStopping: until the controller says that it stands
+  enum class Motion { kStanding, kMoving, kStopping };  // kStopping: until the controller reports rest
 
-  // What the table has for this event; `reason`: that of the state from then on, where the table has something.
+  // Takes the table's transition for this event, if there is one; `reason` is then that of the new state.
   void on(SessionEvent event, const std::optional<SessionReason>& reason = std::nullopt);
   std::string end(SessionEvent event, double now, const std::string& reason);
   void askForDisable();
@@ -75,12 +75,12 @@ class Session {
   Disabling disable_ = Disabling::kConfirmed;
   Motion motion_ = Motion::kStanding;
   bool urgent_ = false;                 // send at once, not at the next slot
-  std::uint16_t stop_sequence_ = 0;     // of the first stop after a velocity
-  std::uint16_t disable_sequence_ = 0;  // of the first disable
-  std::uint16_t request_sequence_ = 0;  // of the last request before the enable
+  std::uint16_t stop_sequence_ = 0;     // sequence number of the first stop after a velocity
+  std::uint16_t disable_sequence_ = 0;  // sequence number of the first disable
+  std::uint16_t request_sequence_ = 0;  // sequence number of the last request before the enable
   double deadline_ = 0.0;               // s, for the enable or the clear_fault under way
   double disable_deadline_ = 0.0;       // s
-  std::string refusal_;                 // why the last speed did not reach the wire
+  std::string refusal_;                 // why the last speed was not sent
 };
 
 }  // namespace laparoscope_servo::aesop

@@ -1,4 +1,4 @@
-// How the driver talks to the controller. Defaults are those of config/aesop.yaml, group `link`.
+// Parameters of the session with the controller. Defaults are those of config/aesop.yaml, group `link`.
 #pragma once
 
 #include <string>
@@ -13,22 +13,22 @@ class Table;
 namespace laparoscope_servo::aesop {
 
 struct SessionConfig {
-  double rate = 40.0;                 // Hz: requests sent, and so statuses asked for
-  double time_to_live = 0.2;          // s: of a velocity; when none follows, the controller stops by itself
-  double status_timeout = 0.3;        // s: no status for longer is a lost link
+  double rate = 40.0;                 // Hz: rate of requests, each of which is answered by a status
+  double time_to_live = 0.2;          // s: validity of a velocity, after which the controller stops by itself
+  double status_timeout = 0.3;        // s: the link is lost if there is no status for longer
   double request_timeout = 1.0;       // s: for the controller to confirm enable, disable or clear_fault
-  CodecFactory codec = makeOwnCodec;  // the wire format; by name: codecNamed()
+  CodecFactory codec = makeOwnCodec;  // the wire format; by name: see codecNamed()
 };
 
-// Rows for all of it: ranges and meanings.
+// Adds the rows of all parameters, with range and meaning.
 void describe(parameters::Table& table, SessionConfig& config);
-// Its row `codec`, which other ends of the line have, too.
+// Adds the row `codec`, which other ends of the line have too.
 void describeCodec(parameters::Table& table, CodecFactory& codec);
 
 std::vector<std::string> validate(const SessionConfig& config);
 
-// Why the line cannot carry statuses at this rate (8N1: ten bits a byte), with figures; empty when it can, with 10 % to
-// spare.
+// Warning, with figures, if the line cannot carry statuses at this rate (8N1: ten bits a byte) with 10 % to spare; else
+// empty.
 std::string lineWarning(const SessionConfig& config, int baud_rate);
 
 }  // namespace laparoscope_servo::aesop

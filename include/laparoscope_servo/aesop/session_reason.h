@@ -11,7 +11,7 @@ struct SessionReason {
     kNone,
     kNotEnabledYet,
     kEnableAskedFor,
-    kGiven,  // `words`: by who asked for it, by the link, by who watches the arm
+    kGiven,  // `words`: given by the caller, the link or the motion monitor
     kFault,  // `faults`, as in Status
     kFaultNotCleared,
     kFaultCleared,
@@ -26,11 +26,11 @@ struct SessionReason {
   std::uint16_t faults = 0;
   std::string words = {};
 
-  // Tells of a fault that there is.
+  // Whether there is a fault.
   bool isFault() const { return kind == Kind::kFault || kind == Kind::kFaultNotCleared; }
 };
 
-// For the user. Nothing may depend on these words.
+// Text for the user; no decision may depend on it.
 std::string text(const SessionReason& reason);
 
 }  // namespace laparoscope_servo::aesop

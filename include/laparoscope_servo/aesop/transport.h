@@ -1,4 +1,4 @@
-// The serial port: opened for this process alone, raw, 8N1, without flow control. Never blocks.
+// The serial port: opened exclusively, raw, 8N1, without flow control. Never blocks.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@
 
 namespace laparoscope_servo::aesop {
 
-// What happened to which port, and what to do about it.
+// An error of a port, with what to do about it.
 class TransportError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -26,15 +26,15 @@ class SerialTransport {
   void open(const std::string& port, int baud_rate);
   void close();
   bool isOpen() const;
-  // The port's driver hands bytes over at once; not every driver can be asked to.
+  // Whether the port's driver passes bytes on at once; not every driver has that setting.
   bool lowLatency() const;
 
-  // What has come since the last call. Throws TransportError, and closes, when the line has gone.
+  // The bytes received since the last call. Throws TransportError, and closes, if the line is gone.
   Bytes read();
-  // Queues bytes and sends what the line takes at once. Throws TransportError, and closes, when the line has gone, or
-  // when it has taken nothing for so long that what waits is no longer true.
+  // Queues bytes and sends as many as the line accepts. Throws TransportError, and closes, if the line is gone, or if
+  // so many bytes wait that they are out of date.
   void write(const Bytes& bytes);
-  // Waits until what was written has left, at most `seconds` (for the last word of a process that ends).
+  // Waits until all written bytes are sent, at most `seconds` (for the last message of a process that ends).
   void drain(double seconds);
 
  private:

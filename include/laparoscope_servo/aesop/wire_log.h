@@ -1,7 +1,7 @@
-// A recording of what the driver heard, said and was told, in a compact binary form: doc/wire_log.md describes it byte
-// by byte. It is enough to run the driver again, bit for bit (wire_replay.h).
+// A recording of all input and output of the driver, in a compact binary form: doc/wire_log.md describes it byte by
+// byte. The driver can be run again from it, bit for bit (wire_replay.h).
 //
-// Pure: records to bytes, and a stream to records.
+// Pure: converts records to bytes, and a stream to records.
 #pragma once
 
 #include <cstdint>
@@ -20,30 +20,30 @@ enum class WireEvent : std::uint8_t {
   kOpened = 1,           // the port
   kClosed = 2,           // the port; text: why
   kReceived = 3,         // bytes from the controller
-  kSent = 4,             // a turn of the driver; bytes to the controller, often none
+  kSent = 4,             // a cycle of the driver; bytes to the controller, often none
   kEnable = 5,           // asked for; number: stamp_now
-  kDisable = 6,          // asked for; text: why, empty when a service did
+  kDisable = 6,          // requested; text: why, empty for a service call
   kClearFault = 7,       // asked for
   kPause = 8,            // asked for; text: why
   kResume = 9,           // asked for; number: stamp_now
   kCommand = 10,         // numbers: pan, tilt, spin, insertion, stamp, stamp_now
-  kState = 11,           // a new one, at the end of a turn: mode, flags, text
-  kInsertionPoint = 12,  // another one; numbers: x, y, z [m]
+  kState = 11,           // new state at the end of a cycle: mode, flags, text
+  kInsertionPoint = 12,  // changed; numbers: x, y, z [m]
 };
 
 struct WireRecord {
   WireEvent event = WireEvent::kSent;
-  std::int64_t time = 0;  // ns, of the driver's steady clock
+  std::int64_t time = 0;  // ns, on the driver's steady clock
   Bytes payload;
 };
 
-// Payloads. numbersOf throws std::invalid_argument unless there are `count`.
+// Payloads of numbers. numbersOf throws std::invalid_argument unless there are `count`.
 Bytes payloadOf(std::initializer_list<double> numbers);
 Bytes payloadOf(const std::string& text);
 std::vector<double> numbersOf(const WireRecord& record, std::size_t count);
 std::string textOf(const WireRecord& record);
 
-// Whoever listens to a driver.
+// Receives all input and output of a driver.
 class WireTap {
  public:
   virtual ~WireTap() = default;
@@ -65,7 +65,7 @@ class WireLogEncoder {
   std::int64_t time_ = 0;
 };
 
-// Names the offset at which the file is no recording any more.
+// Text with the offset at which the file is not a valid recording.
 class WireLogError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -73,13 +73,13 @@ class WireLogError : public std::runtime_error {
 
 class WireLogReader {
  public:
-  // Reads the header. Throws WireLogError. `stream` has to outlive the reader.
+  // Reads the header. Throws WireLogError. `stream` must outlive the reader.
   explicit WireLogReader(std::istream& stream);
 
   const WireLogHeader& header() const { return header_; }
   // The next record, or nothing at the end. Throws WireLogError.
   std::optional<WireRecord> next();
-  // Whether the end came within a record, as it does when the writer was killed.
+  // Whether the file ends within a record, as it does when the writer was killed.
   bool truncated() const { return truncated_; }
 
  private:

@@ -1,8 +1,8 @@
-// The recording as files on a disk that may be slow, full or gone: a thread of its own writes, and whatever goes wrong
-// ends the recording, never the driver.
+// Writes the recording to files, on a disk that may be slow, full or gone: a separate thread writes, and an error ends
+// the recording, never the driver.
 //
-// FILE is the one that is written; it becomes FILE.1 when it is full, and when the next recording begins, FILE.1
-// becomes FILE.2 and so on; the oldest is deleted.
+// The present file is FILE. When it is full, and when the next recording begins, it becomes FILE.1, FILE.1 becomes
+// FILE.2 and so on; the oldest is deleted.
 #pragma once
 
 #include <memory>
@@ -19,26 +19,26 @@ namespace laparoscope_servo::aesop {
 
 // Defaults are those of config/aesop.yaml, group `wire_log`.
 struct WireLogConfig {
-  std::string file;  // none when empty: no recording
+  std::string file;  // empty: no recording
   double size = 20;  // MB: of one file; an hour takes about 20
-  int files = 5;     // that are kept, the one being written among them
+  int files = 5;     // number of files kept, including the present one
 };
 
-// Rows for all of it: ranges and meanings.
+// Adds the rows of all parameters, with range and meaning.
 void describe(parameters::Table& table, WireLogConfig& config);
 
 std::vector<std::string> validate(const WireLogConfig& config);
 
 class WireLogFile : public WireTap {
  public:
-  // Throws nothing that comes from the disk. `codec`: the name of the wire format.
+  // Throws nothing because of the disk. `codec`: name of the wire format.
   WireLogFile(const WireLogConfig& config, const std::string& codec);
-  // Writes what is left.
+  // Writes the remaining records.
   ~WireLogFile() override;
 
   // Never waits for the disk.
   void take(const WireRecord& record) override;
-  // Why the recording has ended; empty while it goes on.
+  // Why the recording has ended; empty while it is running.
   std::string problem() const;
 
  private:

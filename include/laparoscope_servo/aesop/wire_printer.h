@@ -1,4 +1,4 @@
-// A recording as text, for people: a line for every frame and event, and what it comes to at the end. Pure.
+// Prints a recording as text: a line for every frame and event, and a summary at the end. Pure.
 #pragma once
 
 #include <map>
@@ -17,7 +17,7 @@ std::string typeOf(const Message& message);
 
 class WirePrinter {
  public:
-  // `codec`: what the recording was made with.
+  // `codec`: that of the recording.
   explicit WirePrinter(const CodecFactory& codec) : to_controller_(codec()), to_host_(codec()) {}
 
   // The lines of the next record, each with its time in s since `start` in front [ns].
@@ -29,7 +29,7 @@ class WirePrinter {
     explicit Direction(std::unique_ptr<Codec> format) : codec(std::move(format)) {}
     std::unique_ptr<Codec> codec;
     std::uint64_t bytes = 0;
-    std::map<std::string, std::uint64_t> frames;  // by type
+    std::map<std::string, std::uint64_t> frames;  // number of frames by type
   };
 
   void printBytes(const WireRecord& record, Direction& direction, const std::string& head, std::ostream& out);
@@ -42,8 +42,8 @@ class WirePrinter {
   std::uint64_t records_ = 0;
   std::uint64_t turns_ = 0;
   std::int64_t last_turn_ = 0;                     // ns
-  std::int64_t longest_turn_ = 0;                  // ns, between two turns
-  std::map<std::uint16_t, std::int64_t> sent_at_;  // ns, of requests not yet answered
+  std::int64_t longest_turn_ = 0;                  // ns, between two cycles
+  std::map<std::uint16_t, std::int64_t> sent_at_;  // ns, when requests that are not answered yet were sent
   std::vector<double> round_trips_;                // s
 };
 

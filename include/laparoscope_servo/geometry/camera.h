@@ -18,17 +18,17 @@ struct PinholeCamera {
   // K^-1, takes pixels to normalised points. Exact inverse of the form above; the camera must be valid.
   Eigen::Matrix3d inverseMatrix() const;
 
-  // Why this camera cannot be used, naming the value: focal lengths have to be finite and positive, the centre finite.
-  // Empty when it can.
+  // Why this camera cannot be used, naming the value: focal lengths must be finite and positive, the centre finite.
+  // Empty if it can be used.
   std::string error() const;
 };
 
-// To the last digit: two calibrations of one camera differ. No camera with a NaN equals another.
+// Exact comparison of all values; a camera with a NaN equals none.
 bool operator==(const PinholeCamera& a, const PinholeCamera& b);
 bool operator!=(const PinholeCamera& a, const PinholeCamera& b);
 
-// From a row-major 3x3 camera matrix as in sensor_msgs/CameraInfo.K. Does not judge: see error(). A skew is not
-// represented, since camera calibration of ROS reports none.
+// From a row-major 3x3 camera matrix as in sensor_msgs/CameraInfo.K. Does not check the values: see error(). A skew is
+// not represented, since camera calibration of ROS reports none.
 PinholeCamera cameraFromRowMajor(const double* k);
 
 }  // namespace laparoscope_servo::geometry

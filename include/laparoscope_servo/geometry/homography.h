@@ -34,19 +34,19 @@ Eigen::Matrix3d pixelsFromNormalised(const Eigen::Matrix3d& h, const PinholeCame
 
 // The point that the homography takes `p` to. Not finite where p goes to infinity.
 Eigen::Vector2d apply(const Eigen::Matrix3d& g, const Eigen::Vector2d& p);
-// All four corners. Their denominators have one sign, or a NaN is put into every corner: a quadrilateral through
-// infinity is no image of the rectangle.
+// Applies it to all four corners. If their denominators do not have one sign, all corners are NaN: a quadrilateral
+// through infinity is no image of the rectangle.
 Quadrilateral apply(const Eigen::Matrix3d& g, const Quadrilateral& q);
-// The derivative of apply(g, p) by p: how far the image of the point moves when the point does.
+// The derivative of apply(g, p) by p: the motion of the image point for a motion of the point.
 Eigen::Matrix2d derivative(const Eigen::Matrix3d& g, const Eigen::Vector2d& p);
 
 // Signed area in px², positive when the corners turn clockwise as seen in the image (as a Rectangle's do).
 double signedArea(const Quadrilateral& q);
 
-// The largest distance between corresponding corners; infinite where a corner is not finite, so that no comparison
-// takes it for near.
+// The largest distance between corresponding corners; infinite if a corner is not finite, so that it never counts as
+// near.
 double largestDistance(const Quadrilateral& a, const Quadrilateral& b);
-// The same of the corners to which two homographies take those of a rectangle, px.
+// largestDistance() [px] between a rectangle's corners under two homographies.
 double cornerDistance(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b, const Rectangle& rectangle);
 
 // Strictly convex, turning as a Rectangle's corners do, and finite.

@@ -29,8 +29,8 @@ Vector8d sl3Log(const Eigen::Matrix3d& g);
 // determinant is zero, or so small that the division overflows.
 Eigen::Matrix3d normaliseDeterminant(const Eigen::Matrix3d& g);
 
-// Steps between homographies, in the coordinates that N takes theirs to: G + x = G N^-1 exp(A(x)) N. They are steps of
-// one size in all eight directions where N takes what is looked at to a size of about 1.
+// Steps between homographies in coordinates normalised by N: G + x = G N^-1 exp(A(x)) N. All eight directions have
+// steps of similar size if N scales the region to a size of about 1.
 class Sl3Steps {
  public:
   Sl3Steps() = default;
@@ -39,7 +39,7 @@ class Sl3Steps {
 
   const Eigen::Matrix3d& normalisation() const { return n_; }
 
-  // Of the determinant of `g`, but for rounding.
+  // G + x; its determinant is that of `g` up to rounding.
   Eigen::Matrix3d plus(const Eigen::Matrix3d& g, const Vector8d& x) const;
   // The x with plus(from, x) = to, up to scale. Not finite where sl3Log is not; throws as normaliseDeterminant does.
   Vector8d minus(const Eigen::Matrix3d& to, const Eigen::Matrix3d& from) const;

@@ -1,5 +1,4 @@
-// The colours of a region of interest (ROI) as seen in an image, for what is decided per pixel rather than
-// interpolated.
+// The colours of a region of interest (ROI) in an image, without interpolation, for decisions per pixel.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,8 +9,8 @@
 
 namespace laparoscope_servo::image {
 
-// One plane a channel; an image without colour has `blue` alone. 255 in `valid` where the pixel lies in the image, else
-// 0, and the planes are black. Buffers are kept from one use to the next.
+// One plane per channel; an image without colour has only `blue`. `valid` is 255 where the pixel lies in the image,
+// else 0, with black planes. Buffers are reused.
 struct ColourPatch {
   cv::Mat1b blue, green, red, valid;
   bool has_colour = false;
@@ -24,14 +23,14 @@ struct ColourPatch {
 // first; another type throws std::invalid_argument. Where the denominator of g is not positive, nothing is valid.
 void warpNearest(const cv::Mat& image, const Eigen::Matrix3d& g, const cv::Size& size, ColourPatch& patch);
 
-// The same through a lens: `g` takes (i, j, 1) to rectified pixels, `image` is the whole raw image. What lies outside
-// the lens's field is not valid.
+// warpNearest() through a lens: `g` takes (i, j, 1) to rectified pixels, `image` is the whole raw image. Pixels outside
+// the lens's field are not valid.
 void warpNearest(const cv::Mat& image, const Eigen::Matrix3d& g, const Lens& lens, const cv::Size& size,
                  ColourPatch& patch);
 
-// 255 where a channel, blue, green, red, is at least its threshold (grey levels; without colour, the least of them),
-// grown by `grow` px (0 to 64, else std::invalid_argument) in every direction; 0 elsewhere. Highlights move with the
-// lamp rather than with the tissue, and their rims are bleached.
+// Mask: 255 where a channel (blue, green, red) is at least its threshold (grey levels; without colour, the least of
+// them), dilated by `grow` px (0 to 64, else std::invalid_argument) in every direction; 0 elsewhere. Highlights move
+// with the lamp rather than with the tissue, and their rims are bleached.
 void saturatedPixels(const ColourPatch& patch, const std::array<int, 3>& thresholds, int grow, cv::Mat1b& mask);
 inline void saturatedPixels(const ColourPatch& patch, int threshold, int grow, cv::Mat1b& mask) {
   saturatedPixels(patch, {threshold, threshold, threshold}, grow, mask);

@@ -1,11 +1,11 @@
 // The distortion of a lens, with the models and the order of coefficients of sensor_msgs/CameraInfo (and OpenCV).
 //
-// Rectified pixels are those that a pinhole camera would have seen, as in image_proc's image_rect; raw pixels are the
-// image's own. A rectified pixel p is the ray R^-1 P^-1 p of the camera; the model moves that ray's point (x, y, 1),
-// and K takes it to its raw pixel. Homographies of a plane hold between rectified pixels only.
+// Rectified pixels are those of an ideal pinhole camera, as in image_proc's image_rect; raw pixels are the image's own.
+// A rectified pixel p is the ray R^-1 P^-1 p of the camera; the model moves that ray's point (x, y, 1), and K takes it
+// to its raw pixel. Homographies of a plane hold between rectified pixels only.
 //
-// The models are polynomials in the distance from the axis: far out they turn back, and would show one point of the
-// scene twice. What lies beyond the field in which the map is one to one has no raw pixel.
+// The models are polynomials in the distance from the axis, which are not monotonic far out: they would show one point
+// of the scene twice. Points outside the field, in which the map is one to one, have no raw pixel.
 #pragma once
 
 #include <Eigen/Core>
@@ -32,24 +32,24 @@ struct LensParameters {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  // R: rays of the camera to rays of the rectified one
 };
 
-// A part of the raw image, made coarser: its pixel (0, 0) lies on the raw pixel `origin`, and is `scale` raw pixels
-// wide.
+// A part of the raw image at a coarser scale: its pixel (0, 0) lies on the raw pixel `origin`, and is `scale` raw
+// pixels wide.
 struct RawWindow {
   cv::Point origin;
   double scale = 1.0;
 };
 
-// What the loops over pixels need, in single precision, for one window.
+// The lens in single precision, for the loops over the pixels of one window.
 struct LensLoop {
   bool equidistant = false;
-  float k[6] = {};  // of the numerator, then of the denominator; equidistant: the first four
+  float k[6] = {};  // coefficients of the numerator, then of the denominator; equidistant: the first four
   float p1 = 0.0f, p2 = 0.0f;
   float fx = 0.0f, fy = 0.0f, cx = 0.0f, cy = 0.0f;  // px of the window
   float field = 0.0f;                                // largest x^2 + y^2
 };
 
-// Numerators and denominator of a projective map along a row of pixels: at the row's first pixel, and what they grow
-// by.
+// Numerators and denominator of a projective map along a row of pixels: their values at the row's first pixel, and
+// their increments.
 struct ProjectiveRow {
   float u0, u1;
   float v0, v1;
@@ -59,11 +59,11 @@ struct ProjectiveRow {
 class Lens {
  public:
   // Throws std::invalid_argument, with the value and what was expected, for a camera or coefficients that are not
-  // finite, a rotation that is none, and a model that is not one to one even on the axis.
+  // finite, a matrix that is no rotation, and a model that is not one to one even on the axis.
   explicit Lens(const LensParameters& parameters);
 
-  // px to px; empty outside the field, and behind the camera. toRectified solves the model by iterations, to 1e-9 of
-  // the focal length.
+  // Convert pixels; empty outside the field, and behind the camera. toRectified solves the model by iterations, to 1e-9
+  // of the focal length.
   std::optional<Eigen::Vector2d> toRaw(const Eigen::Vector2d& rectified) const;
   std::optional<Eigen::Vector2d> toRectified(const Eigen::Vector2d& raw) const;
 
@@ -88,34 +88,34 @@ class Lens {
   double field_ = 0.0;
 };
 
-// The same map in every pixel.
+// Whether both map all pixels alike.
 bool operator==(const Lens& a, const Lens& b);
 inline bool operator!=(const Lens& a, const Lens& b) {
   return !(a == b);
 }
 
-// Pixels of the window that the rays along `row` are seen at, (u[i], v[i]) for the row's pixel first + i; NaN where
-// there is none. The row is that of raysFromRectified() * g, for a g that takes its pixels to rectified ones. Within
-// 0.001 px of toRaw, for focal lengths and windows of up to 4000 px.
+// Pixels of the window at which the rays along `row` are seen: (u[i], v[i]) for the row's pixel first + i; NaN if there
+// is none. The row is that of raysFromRectified() * g, for a g that takes its pixels to rectified ones. Within 0.001 px
+// of toRaw, for focal lengths and windows of up to 4000 px.
 void locateRaw(const LensLoop& lens, const ProjectiveRow& row, int first, int count, float* u, float* v);
 
 // The part of the raw image that shows the rectified quadrilateral, grown by `margin` (raw px) in every direction, not
 // cut to any image; empty when none of it is in the field. The corners have to be finite.
 cv::Rect rawBox(const Lens& lens, const geometry::Quadrilateral& rectified, double margin);
 
-// The same, or, without a lens (null), the box around the corners themselves.
+// rawBox(), or without a lens (null) the box around the corners themselves.
 cv::Rect seenBox(const Lens* lens, const geometry::Quadrilateral& corners, double margin);
 
-// The rectified pixels that a raw image of `size` shows, cut where it shows more than twice its own width and height.
+// Box of the rectified pixels that a raw image of `size` shows, at most twice its width and height.
 cv::Rect rectifiedBox(const Lens& lens, const cv::Size& size);
 
-// The rectified pixel of each raw one in `box`, to a quarter of a pixel: solved every few pixels only. Far outside any
-// image where there is none.
+// The rectified pixel of each raw one in `box`, to a quarter of a pixel, interpolated between nodes every few pixels.
+// Far outside any image if there is none.
 cv::Mat2f rectifiedMap(const Lens& lens, const cv::Rect& box);
 
-// A mask of the ROI's pixels as the image shows it: result(v, u) = mask at the pixel that `g` takes to the pixel
-// `window`'s first + (u, v) of the raw image, 0 where there is none. Without a lens (null) g takes the mask's pixels to
-// those of the image itself.
+// Draws a mask of the ROI's pixels into the image: result(v, u) = mask at the pixel that `g` takes to pixel
+// `window`.tl() + (u, v) of the raw image; 0 if there is none. Without a lens (null) g takes the mask's pixels to those
+// of the image itself.
 void drawMask(const cv::Mat1b& mask, const Eigen::Matrix3d& g, const Lens* lens, const cv::Rect& window,
               cv::Mat1b& result);
 

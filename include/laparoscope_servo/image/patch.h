@@ -1,5 +1,5 @@
-// A patch of one channel with a margin around it, so that kernels read neighbours and whole strips of columns without
-// asking where the patch ends.
+// A patch of one channel with a margin around it, so that kernels can read neighbours and whole strips of columns
+// without checks at the border.
 #pragma once
 
 #include <opencv2/core.hpp>

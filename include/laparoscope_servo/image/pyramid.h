@@ -3,8 +3,8 @@
 // Level l is 2^l times as coarse as the image. The centre of its pixel (0, 0) lies on the image's pixel origin(), so a
 // point (u, v) of the image is ((u - origin.x) / 2^l, (v - origin.y) / 2^l) at level l.
 //
-// Level 0 is smoothed a little (sigma 0.65 px): between the pixels of what is smooth, bilinear interpolation hardly
-// errs, and gradients are of the tissue rather than of the noise.
+// Level 0 is smoothed a little (sigma 0.65 px): bilinear interpolation is then accurate, and gradients are those of the
+// tissue rather than of the noise.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,12 +14,12 @@
 
 namespace laparoscope_servo::image {
 
-// What blue, green and red weigh in a channel that is tracked. BT.601 luma by default.
+// Weights of blue, green and red in a tracked channel. BT.601 luma by default.
 using ChannelWeights = std::array<float, 3>;
 constexpr ChannelWeights kLuma = {0.114f, 0.587f, 0.299f};
 constexpr int kMaxChannels = 3;
 
-// One channel or more, at most kMaxChannels.
+// One to kMaxChannels channels.
 struct Channels {
   Channels(const ChannelWeights& one) : count(1), weights{one} {}  // NOLINT: a channel is channels
   Channels(const ChannelWeights& first, const ChannelWeights& second, const ChannelWeights& third)
@@ -43,8 +43,7 @@ class RegionPyramid {
   RegionPyramid& operator=(RegionPyramid&&) noexcept = default;
 
   // `image` is CV_8UC1 (there is then one channel, and weights are ignored) or CV_8UC3, blue first. `region` is cut to
-  // the image; it must then hold at least one pixel, else std::invalid_argument. Buffers are kept from one call to the
-  // next.
+  // the image; it must then hold at least one pixel, else std::invalid_argument. Buffers are reused.
   void build(const cv::Mat& image, const cv::Rect& region, int levels, const Channels& channels);
 
   int levels() const { return levels_; }
@@ -62,8 +61,8 @@ class RegionPyramid {
   const cv::Rect& region() const { return region_; }
 
  private:
-  // Regions change in size from image to image; the memory stays. Enough is asked for to hold the whole image, and what
-  // is not used of it is not touched either.
+  // Memory is allocated once, for the whole image, since regions change in size from image to image; unused memory is
+  // not touched.
   struct Plane {
     cv::Mat1f view;
     std::vector<float> data;
@@ -75,7 +74,7 @@ class RegionPyramid {
   cv::Rect region_;
   int levels_ = 0;
   int channels_ = 0;
-  std::vector<Plane> planes_;  // channel by channel
+  std::vector<Plane> planes_;  // ordered by channel
   std::vector<float> rows_;
 };
 

@@ -9,24 +9,24 @@
 
 namespace laparoscope_servo::image {
 
-// patch(j, i) = image at the point that `g` takes (i, j, 1) to, bilinear; valid(j, i) = 1 there, or 0 where that point
+// patch(j, i) = image at the point to which `g` takes (i, j, 1), bilinear; valid(j, i) = 1 there, or 0 if that point
 // lies outside the centres of the image's pixels (the patch then holds the image's first pixel). Both outputs keep
-// their size, which must agree. True when every pixel is valid. Where the denominator of g is not positive, nothing is
-// valid.
+// their size, which must agree. Returns whether all pixels are valid. Pixels are invalid where the denominator of g is
+// not positive.
 bool warpBilinear(const cv::Mat1f& image, const Eigen::Matrix3d& g, Patch& patch, Patch& valid);
 
-// The same for patches without a margin.
+// warpBilinear() for patches without a margin.
 bool warpBilinear(const cv::Mat1f& image, const Eigen::Matrix3d& g, cv::Mat1f& patch, cv::Mat1f& valid);
 
-// The same through a lens: `g` takes the patch's pixels to rectified ones, `image` is that window of the raw image.
-// What lies outside the lens's field is not valid.
+// warpBilinear() through a lens: `g` takes the patch's pixels to rectified ones, `image` is that window of the raw
+// image. Pixels outside the lens's field are not valid.
 bool warpBilinear(const cv::Mat1f& image, const Eigen::Matrix3d& g, const Lens& lens, const RawWindow& window,
                   Patch& patch, Patch& valid);
 bool warpBilinear(const cv::Mat1f& image, const Eigen::Matrix3d& g, const Lens& lens, const RawWindow& window,
                   cv::Mat1f& patch, cv::Mat1f& valid);
 
-// As above, sampled more slowly and more sharply (bicubic), for what is kept: a template. Pixels that are not in the
-// image are that of its border.
+// As above with bicubic sampling, which is slower and sharper, for a template. Pixels outside the image take the value
+// of its border.
 cv::Mat1f rectify(const cv::Mat1f& image, const Eigen::Matrix3d& g, const Lens& lens, const RawWindow& window,
                   const cv::Size& size);
 

@@ -5,8 +5,8 @@
 
 namespace laparoscope_servo::parameters {
 
-// Which of the known names somebody meant who wrote `path`: one that is a slip or two of the finger away, or the same
-// name in another group. Empty when there is none.
+// The known name that was probably meant by `path`: one with one or two typing errors, or the same name in another
+// group. Empty if there is none.
 std::string nearestName(const std::set<std::string>& known, const std::string& path);
 
 }  // namespace laparoscope_servo::parameters

@@ -1,8 +1,9 @@
-// The parameters of a program, told once: name, range, unit, meaning, and where each stands in a configuration.
+// The parameters of a program, defined once: name, range, unit, meaning, and the field of the configuration.
 //
-// Beside a struct with its defaults stands a function describe(table, config) that adds a row for each parameter. From
-// the rows come reading, the ranges that validate() judges, the files in config/, the tables in doc/nodes/, and what
-// may change while the program runs. A table refers to the configuration that it was made of, and must not outlive it.
+// Each configuration struct, with its defaults, has a function describe(table, config) that adds a row for each
+// parameter. Reading parameters, the ranges in validate(), the files in config/, the tables in doc/nodes/ and
+// dynamic_reconfigure all use these rows. A table refers to the configuration for which it was made, and must not
+// outlive it.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +20,7 @@ namespace laparoscope_servo::parameters {
 
 class Table {
  public:
-  // Each adds a row, to be refined by what it returns. `meaning`: a plain sentence without a full stop.
+  // Each adds a row and returns it for further settings. `meaning`: a plain sentence without a full stop.
   Row& flag(const std::string& name, bool& value, const std::string& meaning);
   Row& number(const std::string& name, double& value, const Range& range, const std::string& unit,
               const std::string& meaning);
@@ -36,42 +37,42 @@ class Table {
   }
   Row& choice(const std::string& name, std::string& value, const std::vector<std::string>& names,
               const std::string& meaning);
-  // By the place in the list of names.
+  // choice() by the index in the list of names.
   Row& choice(const std::string& name, const std::vector<std::string>& names, const std::function<std::size_t()>& get,
               const std::function<void(std::size_t)>& set, const std::string& meaning);
   // `size` numbers, or any number of them when it is 0.
   Row& numbers(const std::string& name, std::vector<double>& value, std::size_t size, const Range& range,
                const std::string& unit, const std::string& meaning);
-  // `size` numbers, each as far behind the one before as `stride` says: an array, a vector, a field of several structs.
+  // `size` numbers, `stride` apart: an array, a vector, or a field of several structs.
   Row& numbers(const std::string& name, double* first, std::size_t size, const Range& range, const std::string& unit,
                const std::string& meaning, std::size_t stride = sizeof(double));
-  // Anything else, by functions.
+  // Any other parameter, by functions.
   Row& other(const std::string& name, Row::Kind kind, const std::function<Value()>& get,
              const std::function<void(const Value&)>& set, const std::string& meaning);
 
-  // The rows that `add` adds are in the group `name`, within the group that is being added to.
+  // The rows that `add` adds belong to the group `name`, within the present group.
   void group(const std::string& name, const std::string& meaning, const std::function<void()>& add);
 
-  // What is wrong with the configuration as it is: each names parameter, value, and what was expected.
+  // All errors of the configuration, each with parameter, value, and what was expected.
   std::vector<std::string> errors() const;
 
   const std::deque<Row>& rows() const { return rows_; }
-  // Null when there is none of this whole name.
+  // The row of this full name, or null.
   const Row* find(const std::string& name) const;
   std::set<std::string> names() const;
-  // Empty for a group without one, and where there is no such group.
+  // Empty for a group without a meaning, and if there is no such group.
   std::string meaningOfGroup(const std::string& name) const;
 
  private:
   Row& add(const std::string& name, Row::Kind kind, const std::string& meaning);
   std::string relationError(const Row& row) const;
 
-  std::deque<Row> rows_;  // references to rows stay
+  std::deque<Row> rows_;  // a deque, so that references to rows stay valid
   std::map<std::string, std::string> groups_;
-  std::string prefix_;  // of the group that is being added to, with a slash behind it
+  std::string prefix_;  // name of the present group, with a slash at its end
 };
 
-// What is wrong with a configuration by its table alone.
+// The errors of a configuration by its table alone.
 template <class Config>
 std::vector<std::string> errorsOf(const Config& config) {
   Config copy = config;
@@ -80,7 +81,7 @@ std::vector<std::string> errorsOf(const Config& config) {
   return table.errors();
 }
 
-// Of `from`, what may change while the program runs.
+// Copies from `from` the parameters that may change while the program runs.
 template <class Config>
 void copyWhatMayChange(const Config& from, Config& to) {
   Config copy = from;

@@ -1,4 +1,4 @@
-// The largest of values that may be no numbers.
+// Maximum that keeps NaN.
 #pragma once
 
 #include <algorithm>
@@ -6,7 +6,7 @@
 
 namespace laparoscope_servo::robust {
 
-// NaN when one of both is: std::max drops it, and what was wrong would look like a small number.
+// The larger value; NaN if either is NaN. std::max may drop a NaN, and an invalid value would look like a small one.
 inline double largest(double a, double b) {
   return std::isnan(a) ? a : std::isnan(b) ? b : std::max(a, b);
 }

@@ -1,4 +1,4 @@
-// The middle of values, and what a share of them does not exceed.
+// Median and quantiles.
 #pragma once
 
 #include <algorithm>
@@ -7,7 +7,8 @@
 
 namespace laparoscope_servo::robust {
 
-// Of an even number, the upper of the two in the middle. Reorders `values`, of which there is at least one, none NaN.
+// Median; the upper of the two middle values for an even number. Reorders `values`, which must not be empty nor hold a
+// NaN.
 template <typename Values>
 typename Values::value_type median(Values& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -15,8 +16,9 @@ typename Values::value_type median(Values& values) {
   return *middle;
 }
 
-// The nearest rank: the smallest of the values that at least `share` (0 to 1) of them do not exceed. Of an even number,
-// that of 0.5 is the lower of the two in the middle. Reorders `values`, of which there is at least one, none NaN.
+// Quantile by nearest rank: the smallest value that at least the share `share` (0 to 1) of the values do not exceed.
+// For an even number, that of 0.5 is the lower of the two middle values. Reorders `values`, which must not be empty nor
+// hold a NaN.
 template <typename Values>
 typename Values::value_type nearestRank(Values& values, double share) {
   const auto last = static_cast<double>(values.size() - 1);

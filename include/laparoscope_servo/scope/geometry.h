@@ -1,4 +1,4 @@
-// Where camera and insertion point lie on the scope.
+// Positions of camera and insertion point on the scope.
 //
 // The shaft's frame has its z axis along the shaft into the body; pan, tilt and spin are rotations about its y, x and z
 // axes through the insertion point O_A, insertion is along z. The camera centre O_C lies on the shaft, d2 from O_A.

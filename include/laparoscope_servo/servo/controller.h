@@ -1,7 +1,7 @@
-// The controller: from a task error and a depth, or from a manual command, to a command for the scope, or to zero with
-// a reason.
+// The controller: computes the command for the scope from a task error and a depth, or from a manual command; or zero,
+// with a reason.
 //
-// The scope moves in the state SERVO only, see safety_facts.h; whatever is not SERVO commands exactly zero, at once.
+// The scope moves in the state SERVO only, see safety_facts.h; all other states command exactly zero, at once.
 #pragma once
 
 #include <limits>
@@ -21,63 +21,63 @@ namespace laparoscope_servo::servo {
 
 // What moves the scope in SERVO.
 enum class Task {
-  kHoldView,  // the control law, so that the region of interest stays where it is
-  kManual,    // somebody, by four velocities. Nothing that comes from a camera counts
+  kHoldView,  // the control law, which keeps the region of interest at its place in the image
+  kManual,    // a person, by four velocities; images are not used
 };
 
 struct DepthInput {
-  std::string problem = "depth d2 is unknown";  // why it cannot be used; empty: it can
+  std::string problem = "depth d2 is unknown";  // why the pose cannot be used; empty: it can
   double d2 = 0.0;                              // m, along the shaft from the insertion point to the camera
-  Eigen::Matrix3d camera_R_shaft = Eigen::Matrix3d::Identity();  // the optics, see scope/geometry.h
-  // Where the shaft's tip is in the insertion point's frame, with the shaft's axes; nothing: not known.
+  Eigen::Matrix3d camera_R_shaft = Eigen::Matrix3d::Identity();  // rotation of the optics, see scope/geometry.h
+  // Pose of the shaft's tip in the insertion point's frame, with the shaft's axes; empty: not known.
   std::optional<Eigen::Isometry3d> insertion_point_T_tip;
-  bool pose_is_new = true;      // not the one of the last step again
-  double lateral_offset = 0.0;  // m, of the insertion point from the shaft
+  bool pose_is_new = true;      // false: the pose of the last step again
+  double lateral_offset = 0.0;  // m, distance of the insertion point from the shaft
   double age = 0.0;             // s
 };
 
-// What the robot says of its own motion.
+// The robot's report of its own motion.
 struct RobotReport {
-  bool present = false;      // there is a new one
-  double age = 0.0;          // s, since it was so
-  scope::Velocity velocity;  // of the scope
+  bool present = false;      // true: a new report
+  double age = 0.0;          // s, since the reported motion
+  scope::Velocity velocity;  // measured velocity of the scope
 };
 
 struct ControllerInput {
   double time = 0.0;       // s, on a clock that never jumps
-  std::string clock_jump;  // which other clock jumped since the last step, in words; empty: none
-  std::string ended;       // what has ended the engagement since the last step, in words; empty: nothing
+  std::string clock_jump;  // description of a jump of another clock since the last step; empty: none
+  std::string ended;       // what has ended the engagement since the last step; empty: nothing
   TaskErrorInput task_error;
-  ManualInput manual;  // what cannot be used lets the scope stand, at once
+  ManualInput manual;  // unusable input stops the scope at once
   DepthInput depth;
   RobotReport robot_report;
-  RobotFacts robot;       // where the configuration requires it
-  DeadManFacts dead_man;  // the same
+  RobotFacts robot;       // used if safety/robot_required
+  DeadManFacts dead_man;  // used if safety/dead_man_required
 };
 
 using ControllerState = SafetyState;
 
 struct ControllerOutput {
   ControllerState state = ControllerState::kIdle;
-  std::string reason;   // why it is this state, never empty; without numbers that change from one step to the next
-  std::string caution;  // in SERVO: what slows the scope or lets it go no deeper; empty: nothing
+  std::string reason;   // reason for the state, never empty; without numbers that change from one step to the next
+  std::string caution;  // in SERVO: what slows the scope or keeps it from going deeper; empty: nothing
   double speed_scale = 0.0;
   Task task = Task::kHoldView;
   scope::Velocity command;
   bool engaged() const { return isEngaged(state); }
 };
 
-// What the controller has found out, for those who watch it.
+// The controller's estimates, for display and diagnostics.
 struct ControllerFigures {
-  // Where the shafts of the last poses meet, in the insertion point's frame: where it is not at the origin, the
-  // calibration is off.
+  // Point where the shafts of the last poses meet, in the insertion point's frame. Its distance from the origin is the
+  // error of the calibration.
   InsertionPointEstimate insertion_point;
-  double insertion_point_residual = 0.0;  // m, root mean square distance of the last shafts from it
+  double insertion_point_residual = 0.0;  // m, root mean square distance of the last shafts from that point
   double delay = 0.0;                     // s, from a command to its execution
-  double breathing_rate = 0.0;            // Hz, of the breath that is followed; 0: none is
-  double gain_factor = 1.0;               // of the gains, 1 unless the loop has swung
-  double evidence = 0.0;                  // log of the ratio of likelihoods, a fault in the picture over none
-  double unconfirmed = 0.0;               // share of the motion that is allowed before its effect is seen
+  double breathing_rate = 0.0;            // Hz, breathing rate that is compensated; 0: none
+  double gain_factor = 1.0;               // factor on the gains, below 1 after an oscillation of the loop
+  double evidence = 0.0;                  // log likelihood ratio of the best fault hypothesis over none
+  double unconfirmed = 0.0;               // used share of the motion that is allowed before its effect is confirmed
 };
 
 class Controller {
@@ -88,34 +88,34 @@ class Controller {
   Controller(Controller&&) noexcept;
   Controller& operator=(Controller&&) noexcept;
 
-  // Allows motion. Refused unless everything that motion relies on is there, but for the dead-man switch: returns why,
-  // or nothing when engaged. Once engaged, it has no effect.
+  // Allows motion. Returns the reason of a refusal, or an empty text when engaged. Refused if anything that motion
+  // relies on is missing, except the dead-man switch. Has no effect when engaged already.
   std::string engage(const ControllerInput& input);
 
   // Back to IDLE, from every state; `reason` is kept for the output.
   void disengage(const std::string& reason);
 
-  // Something outside of the control asks for a stop at `time` [s]: IDLE, but FAULT where the clock has jumped since the
-  // last update, as nobody knows what the arm did meanwhile. Without effect where nothing is engaged.
+  // Stops at `time` [s] on request from outside of the control: the state becomes IDLE, or FAULT if the clock has
+  // jumped since the last update, since the arm's motion meanwhile is unknown. Has no effect if not engaged.
   void stop(const std::string& reason, double time);
 
-  // Another task: the next command is zero, and the task starts from rest. Engages nothing, clears nothing; what the
-  // new task misses ends the motion as ever. The same task again has no effect.
+  // Switches to another task: the next command is zero, and the task starts from rest. Does not engage and clears no
+  // state; inputs that the new task misses end the motion as usual. Has no effect for the present task.
   void select(Task task);
 
   ControllerOutput update(const ControllerInput& input);
 
-  // Other gains and thresholds between two updates, whatever the state; all else of the configuration, which must be
-  // valid, is left aside. Does not allocate.
+  // Takes the gains and thresholds of `config`, which must be valid, between two updates and in any state; its other
+  // parameters are ignored. Does not allocate.
   void retune(const ControllerConfig& config);
 
-  // Why engage() would be refused, or motion ends; empty when nothing is missing.
+  // The reason why engage() would be refused, or why motion ends; empty when nothing is missing.
   std::string problem(const ControllerInput& input) const;
 
   bool engaged() const;
   Task task() const;
 
-  // What it has found out.
+  // The present estimates.
   ControllerFigures figures() const;
 
  private:

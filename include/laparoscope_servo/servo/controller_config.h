@@ -17,24 +17,24 @@ class Table;
 
 namespace laparoscope_servo::servo {
 
-// How what the poses of the shaft tell of the insertion point is used.
+// Use of the insertion point that is estimated from the poses of the shaft.
 struct InsertionPointUse {
-  bool use = true;                 // false: the calibration is taken for true, and nothing watches it
-  double prior_stddev = 0.01;      // m, of the calibration, per axis; 0: it counts for nothing
-  double correction_rate = 0.005;  // m/s, at which the d2 that is used goes from the calibration's to the estimate's
+  bool use = true;                 // false: the calibration is used as it is, and is not monitored
+  double prior_stddev = 0.01;      // m, of the calibration, per axis; 0: no prior
+  double correction_rate = 0.005;  // m/s, rate at which the d2 used moves from the calibration's to the estimate's
   InsertionPointConfig estimator;
 };
 
-// Which way is up, and what the scope's spin is for; needs the pose of the shaft.
+// The direction "up" for SpinMode::kUpright, which needs the pose of the shaft.
 struct HorizonConfig {
   std::vector<double> up{0.0, 0.0, 1.0};  // in the insertion point's frame, of any length but 0
 };
 
 struct ControllerConfig {
   LawKind law = LawKind::kFeatures;
-  PaperGains gains;                  // of kPaper
-  FeatureGains features;             // of kFeatures; desired_depth for the predictor of both
-  SpinMode spin = SpinMode::kServo;  // of kFeatures
+  PaperGains gains;                  // for the law kPaper
+  FeatureGains features;             // for the law kFeatures; desired_depth also for the predictor of both laws
+  SpinMode spin = SpinMode::kServo;  // for the law kFeatures
   PredictorConfig predictor;
   TargetMotionConfig target;
   BreathingConfig breathing;
@@ -49,7 +49,7 @@ struct ControllerConfig {
   SafetyConfig safety;
 };
 
-// Rows for all of it: ranges and meanings.
+// Adds the rows of all parameters, with range and meaning.
 void describe(parameters::Table& table, ControllerConfig& config);
 
 // Every error, each naming the field, its value and what was expected; empty when there is none.

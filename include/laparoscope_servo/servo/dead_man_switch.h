@@ -1,8 +1,8 @@
-// What the dead-man switch says, when several may say it.
+// State of the dead-man switch, from one or several publishers.
 //
-// "Released" counts from everybody, while it is fresh. "Pressed" counts from a source only once that source has said
-// "released" since the engaging: a publisher that was forgotten and says "pressed" for ever never counts, and a switch
-// that is held down while somebody engages has to be let go once.
+// A recent "released" of any source counts. "Pressed" of a source counts only after it published "released" since the
+// engaging: a forgotten publisher that always sends "pressed" never counts, and a switch that is held down while
+// engaging must be released once.
 #pragma once
 
 #include <memory>
@@ -14,15 +14,15 @@ namespace laparoscope_servo::servo {
 
 class DeadManSwitch {
  public:
-  // One for each connection; kept, so that its address is not used again.
+  // Identifies a connection; kept alive, so that its address is not used again.
   using Source = std::shared_ptr<const void>;
 
-  // `max_age`: s, an older word does not count.
+  // `max_age`: s, an older message does not count.
   explicit DeadManSwitch(double max_age) : max_age_(max_age) {}
 
-  // Somebody engages: every source has to be seen released.
+  // Call when engaging: every source must be seen released again.
   void engaging();
-  // `now`: s. `may_press`: false, only its "released" counts.
+  // Takes a message of a source. `now`: s. `may_press`: false if only "released" counts from it.
   void said(const Source& source, bool pressed, bool may_press, double now);
   DeadManFacts facts(double now) const;
 
@@ -30,12 +30,12 @@ class DeadManSwitch {
   struct Word {
     Source source;
     bool pressed = false;
-    bool counts = false;  // as "pressed": it may, and was seen released
+    bool counts = false;  // "pressed" counts: the source may press, and was seen released
     double time = 0.0;    // s
   };
 
   double max_age_;
-  std::vector<Word> words_;  // the last one of each source
+  std::vector<Word> words_;  // the last message of each source
 };
 
 }  // namespace laparoscope_servo::servo

@@ -1,11 +1,12 @@
-// Which control law, and its gains.
+// Gains and modes of the control laws.
 #pragma once
 
 namespace laparoscope_servo::servo {
 
 enum class LawKind { kFeatures, kPaper };
 
-// Gains of the paper's experiment, (k_p, k_t, k_s, k_d). For pan and tilt they hold the 1/d2 of eq. (11).
+// Gains of the paper's experiment, (k_p, k_t, k_s, k_d). Those of pan and tilt are rates [1/s]: they include the 1/d2
+// of eq. (11).
 struct PaperGains {
   double pan = 0.3;         // 1/s, k_p
   double tilt = 0.3;        // 1/s, k_t
@@ -13,20 +14,21 @@ struct PaperGains {
   double insertion = 0.02;  // m/s, k_d
 };
 
-// Of the law on the features' own errors, see src/servo/law/feature_law.h.
+// Gains of the law on the features' own errors, see src/servo/law/feature_law.h.
 struct FeatureGains {
   double centre = 8.0;       // 1/s, of x and y
   double depth = 8.0;        // 1/s, of log depth
   double orientation = 8.0;  // 1/s, of alpha
   double desired_depth =
-      0.08;  // m, Z*: from the camera to the tissue at the reference; wrong by a factor, it changes how fast
+      // m, Z*: from the camera to the tissue at the reference; an error of it changes only the speed of convergence
+      0.08;
 };
 
-// What becomes of the orientation.
+// What the scope's spin is used for.
 enum class SpinMode {
-  kServo,     // that of the ROI is servoed
-  kUpright,   // that of the picture is: what is up in space is up in it
-  kReleased,  // left as it comes: the scope does not spin
+  kServo,     // servoes the orientation of the ROI
+  kUpright,   // keeps the direction "up" in space upright in the image
+  kReleased,  // the scope does not spin; the orientation is not controlled
 };
 
 }  // namespace laparoscope_servo::servo

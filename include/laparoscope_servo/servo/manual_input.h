@@ -1,4 +1,4 @@
-// What a stick, a slider or a pad says.
+// Velocity commanded by a stick, a slider or a pad.
 #pragma once
 
 #include <limits>
@@ -9,7 +9,7 @@ namespace laparoscope_servo::servo {
 
 struct ManualInput {
   scope::Velocity velocity;
-  double age = std::numeric_limits<double>::infinity();  // s
+  double age = std::numeric_limits<double>::infinity();  // s, since the command
 };
 
 }  // namespace laparoscope_servo::servo

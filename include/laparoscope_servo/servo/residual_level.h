@@ -2,7 +2,7 @@
 
 namespace laparoscope_servo::servo {
 
-// Of the estimate of the insertion point: how badly the robot's poses agree with one.
+// Level of the residual of the insertion point: how badly the robot's poses agree with one point.
 enum class ResidualLevel { kOk, kWarning, kStop };
 
 }  // namespace laparoscope_servo::servo

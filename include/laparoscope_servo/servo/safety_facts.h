@@ -1,15 +1,17 @@
-// The states of the controller, and what it is told of the robot and of the dead-man switch.
+// The states of the controller, and its input from the robot and the dead-man switch.
 //
 //   IDLE   not engaged
-//   ARMED  engaged and everything is there, but the dead-man switch is not pressed
+//   ARMED  engaged and nothing is missing, but the dead-man switch is not pressed
 //   SERVO  the only state in which the scope moves
-//   HOLD   engaged, but something that motion relies on is missing for now; goes on by itself when it comes back within
-//          `resume_time`, so that an instrument may cross the region
-//   LOST   was missing for longer, or another region was selected while it was the arm that was waited for, or somebody
-//          has stopped the robot: engaged no more, somebody has to look at the arm and engage again
-//   FAULT  something that must not be: only disengaging clears it
+//   HOLD   engaged, but an input is missing, late or out of range; returns to SERVO or ARMED by itself if it is back
+//          within `resume_time`, so that an instrument may cross the region
+//   LOST   no longer engaged: HOLD lasted for `resume_time`, the robot was stopped, another node or an operator ended
+//          the engagement, or another region was selected during a HOLD for the arm. Left by engaging again
+//   FAULT  no longer engaged: a clock jumped, a command was not finite, the robot's poses do not agree with the
+//          insertion point, or the picture moves as with a fault. Left by disengaging only
 //
-// Whatever is not SERVO commands exactly zero, at once.
+// All states but SERVO command exactly zero, at once. The transitions and the rest of their input are in
+// src/servo/safety/safety_machine.h.
 #pragma once
 
 #include <cstdint>
@@ -23,27 +25,28 @@ enum class SafetyState : unsigned { kIdle, kArmed, kServo, kHold, kLost, kFault 
 constexpr SafetyState kSafetyStates[] = {SafetyState::kIdle, SafetyState::kArmed, SafetyState::kServo,
                                          SafetyState::kHold, SafetyState::kLost,  SafetyState::kFault};
 
-// IDLE, ARMED and so on, as messages and files have it.
+// IDLE, ARMED and so on, as in messages and files.
 const char* name(SafetyState state);
 
-// Engaged: the scope moves, or may begin to without anybody engaging it.
+// Engaged: the scope moves, or may start to move without another call of engage.
 constexpr bool isEngaged(SafetyState state) {
   return state == SafetyState::kArmed || state == SafetyState::kServo || state == SafetyState::kHold;
 }
 
-// Facts as constructed: nothing is there. Ages are in s; one that is negative or NaN is too old.
+// Default values mean: nothing was received. Ages are in s; a negative or NaN age counts as too old.
 struct RobotFacts {
-  std::string problem = "no operating state of the robot was received";  // empty: there is one
+  // why there is no usable state; empty: there is one
+  std::string problem = "no operating state of the robot was received";
   bool enabled = false;
   double age = std::numeric_limits<double>::infinity();
-  bool paused = false;        // enabled, but paused: somebody resumes it. Neither of the two: it was stopped
-  std::uint32_t enables = 0;  // how often it was enabled: another number, and it was stopped meanwhile
+  bool paused = false;        // enabled, but paused until an operator resumes it. Neither enabled nor paused: stopped
+  std::uint32_t enables = 0;  // number of times it was enabled; if it changes, the robot was stopped meanwhile
 };
 
 struct DeadManFacts {
   bool pressed = false;
   double age = std::numeric_limits<double>::infinity();
-  std::string problem = {};  // why a switch that says "pressed" does not count; empty: it counts, or is not pressed
+  std::string problem = {};  // why "pressed" does not count; empty: it counts, or the switch is not pressed
 };
 
 }  // namespace laparoscope_servo::servo

@@ -1,4 +1,4 @@
-// What the controller is told of the image: a task error, and how much of it can be believed.
+// The controller's input from the tracker: a task error and its quality.
 #pragma once
 
 #include <limits>
@@ -10,19 +10,20 @@
 namespace laparoscope_servo::servo {
 
 struct TaskErrorInput {
-  std::string problem = "no task error was received";  // why there is none that could be used; empty: there is
-  bool valid = false;                                  // the tracker's own word
-  double region = 0.0;                                 // another number is another region of interest
+  std::string problem = "no task error was received";  // why there is no usable task error; empty: there is one
+  bool valid = false;                                  // `valid` field of the message
+  // identifies the region of interest; changes when another one is selected
+  double region = 0.0;
   TaskError error;
   double age = std::numeric_limits<double>::infinity();        // s, since the message came
   double image_age = std::numeric_limits<double>::infinity();  // s, since the image was taken
-  std::optional<double> image_time;  // s, when that was, on the clock of ControllerInput::time
-  double visible_fraction = 0.0;     // 0 to 1, of the region of interest
-  double corner_error = std::numeric_limits<double>::infinity();  // px, expected of the worst corner
+  std::optional<double> image_time;  // s, time of the image on the clock of ControllerInput::time
+  double visible_fraction = 0.0;     // 0 to 1, visible share of the region of interest
+  double corner_error = std::numeric_limits<double>::infinity();  // px, expected error of the worst corner
 };
 
-// Which of its numbers no tracker of a region in the image can say, in words that stay the same while it is so; empty
-// when all are possible. Only of a task error that is valid: of another one nothing counts.
+// Which value is impossible for a region in the image, in a text that does not change while it is so; empty if all are
+// possible. Call for valid task errors only: the values of others have no meaning.
 std::string implausible(const TaskErrorInput& input);
 
 }  // namespace laparoscope_servo::servo

@@ -1,9 +1,9 @@
-// The task function: how far the current image is from the reference image, seen at the ROI.
+// The task function: the error between current and reference image at the ROI.
 //
 // Bourger et al. (2007), eq. (6): e_v = (H - I) m*, [e_w]x = H - H'. H takes normalised points of the reference image
 // to those of the current one and is scaled to R + t n'/d* (median singular value 1), so that e_v is the ROI's
-// displacement over its depth. Also the features of the ROI that a law of four degrees of freedom uses: centre, depth,
-// orientation. Camera frame: optical, x right, y down, z forward.
+// displacement over its depth. Also computes the features of the ROI for a law of four degrees of freedom: centre,
+// depth, orientation. Camera frame: optical, x right, y down, z forward.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,7 +20,7 @@ struct TaskError {
       Eigen::Vector3d::UnitZ();  // the ROI's centre in the reference image, normalised: (x*, y*, 1)
 
   double x = 0.0;  // the ROI's centre in the current image, normalised
-  double y = 0.0;  // the same
+  double y = 0.0;  // second coordinate of that centre
   double log_depth =
       0.0;  // log(Z/Z*), taken from the ROI's area: minus half the log of the area over that in the reference
   double alpha = 0.0;  // rad in (-pi, pi], rotation of the ROI in the image, positive from x (right) to y (down)
@@ -36,7 +36,7 @@ struct TaskError {
 // through infinity).
 TaskError taskError(const Eigen::Matrix3d& h, const geometry::Rectangle& roi, const geometry::PinholeCamera& camera);
 
-// Every number of it is finite.
+// Whether all values are finite.
 bool isFinite(const TaskError& error);
 
 }  // namespace laparoscope_servo::servo

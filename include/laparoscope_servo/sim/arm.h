@@ -19,47 +19,48 @@ class Table;
 namespace laparoscope_servo::sim {
 
 struct ArmConfig {
-  // Joint positions at power-on; those of the passive joints are a first guess, the trocar decides. m, rad
+  // Joint positions at power-on; those of the passive joints are initial values for the solution at the trocar. m, rad
   aesop::JointVector start = (aesop::JointVector() << 0.25, -0.9, 1.5, 0.0, 0.0, 0.0, 0.0).finished();
-  Eigen::Vector3d insertion_point{0.574, -0.079, -0.05};  // m, in aesop_base: where the trocar really is
-  double delay = 0.16;                                    // s: from a command to its effect, as the paper measured
-  // A commanded speed up to here moves nothing; m/s, rad/s, of the driven joints. At the nominal start pose these are
-  // about 4 mrad/s and 0.4 mm/s of the scope.
+  Eigen::Vector3d insertion_point{0.574, -0.079, -0.05};  // m, in aesop_base: the true position of the trocar
+  double delay = 0.16;                                    // s: from a command to its effect, measured in the paper
+  // Speeds of the driven joints up to this cause no motion; m/s, rad/s. At the nominal start pose these are about 4
+  // mrad/s and 0.4 mm/s of the scope.
   aesop::JointVector dead_zone = (aesop::JointVector() << 4e-4, 3e-3, 3e-3, 0.0, 0.0, 0.0, 4e-3).finished();
-  double breakaway = 1.25;      // friction; a joint at rest needs this many times its dead zone to start
-  double time_constant = 0.03;  // s: of a joint following its speed
+  double breakaway = 1.25;      // friction: factor on the dead zone for a joint to start from rest
+  double time_constant = 0.03;  // s, with which a joint follows its speed
 };
 
-// Rows for all of it: ranges and meanings.
+// Adds the rows of all parameters, with range and meaning.
 void describe(parameters::Table& table, ArmConfig& config);
 
 std::vector<std::string> validate(const ArmConfig& config);
 
 class Arm {
  public:
-  // Throws std::invalid_argument: errors of the configuration, or a start pose that joint limits or the trocar do not
-  // allow.
+  // Throws std::invalid_argument for errors of the configuration, or a start pose that is impossible because of joint
+  // limits or the trocar.
   Arm(const aesop::Kinematics& kinematics, const ArmConfig& config);
 
-  // Speeds of the driven joints, in the order of the arm; they take effect `delay` after `now`, until the next ones do.
+  // Speeds of the driven joints, in the order of the arm; they take effect `delay` after `now`, and last until the next
+  // ones.
   void command(const std::array<double, aesop::kDrivenJoints>& speed, double now);
-  // Stands at once and forgets what was on its way: the brakes of a fault.
+  // Stops at once and drops delayed commands: the brakes of a fault.
   void brake();
-  // A motor that does nothing any more, whatever is commanded: index 0 to 6; -1 for none.
+  // Makes a motor ignore its commands: index 0 to 6; -1 for none.
   void jam(int joint) { jammed_ = joint; }
-  // A hand moves the scope about the trocar by pan, tilt, spin [rad] and insertion [m] in `seconds`, evenly. Says why
-  // not.
+  // Moves the scope by hand about the trocar, by pan, tilt, spin [rad] and insertion [m], evenly within `seconds`.
+  // Returns why not, or an empty text.
   std::string hand(const scope::Velocity& displacement, double seconds, double now);
-  // Lets time pass until `now`.
+  // Simulates the time until `now`.
   void step(double now);
 
   const aesop::JointVector& position() const { return q_; }
   const aesop::JointVector& velocity() const { return qdot_; }
   bool isMoving() const;
   bool isInHand() const { return hand_left_ > 0.0; }
-  // s: until when a driven joint has moved by its motor; -infinity before.
+  // s: last time at which a motor moved a driven joint; -infinity: never.
   double movedUntil() const { return moved_until_; }
-  // Why the arm cannot follow, e.g. the wrist has reached its limit; empty when it can. brake() forgets it.
+  // Why the arm cannot follow, e.g. the wrist has reached its limit; else empty. brake() clears it.
   const std::string& stuck() const { return stuck_; }
 
  private:

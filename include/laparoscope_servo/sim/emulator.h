@@ -1,5 +1,4 @@
-// The far end of the line: the controller of an AESOP as doc/aesop_protocol.md describes it, with an emulated arm
-// behind it.
+// The far end of the line: an AESOP's controller as in doc/aesop_protocol.md, with an emulated arm.
 //
 // Pure: bytes in, bytes out; `now` is seconds from any start.
 #pragma once
@@ -23,16 +22,15 @@ struct EmulatorConfig {
   aesop::CodecFactory codec = aesop::makeOwnCodec;  // the wire format
 };
 
-// Every error, the name of its group in front.
-// Rows for all of it: ranges and meanings.
+// Adds the rows of all parameters, with range and meaning.
 void describe(parameters::Table& table, EmulatorConfig& config);
 // Without the group `kinematics`, which is the arm's.
 void describeEmulator(parameters::Table& table, EmulatorConfig& config);
 
 std::vector<std::string> validate(const EmulatorConfig& config);
 
-// s without a good frame from the host, in ENABLED, after which the controller disables itself. It also keeps what a
-// line held back for longer from moving the arm when it comes after all.
+// s without a good frame from the host, in ENABLED, after which the controller disables itself. It also prevents motion
+// by frames that a line has held back for longer.
 constexpr double kHostTimeout = 0.5;
 
 class Emulator {
@@ -40,20 +38,20 @@ class Emulator {
   // Throws std::invalid_argument, as Arm does. `now`: power-on.
   Emulator(const EmulatorConfig& config, double now);
 
-  // Takes bytes from the line, and gives back what goes onto it.
+  // Takes bytes from the line, and returns the bytes to send.
   aesop::Bytes receive(const std::uint8_t* data, std::size_t size, double now);
-  // Lets time pass; the velocity runs out on time, however long the step.
+  // Simulates the time until `now`; a velocity expires in time, also within a long step.
   void step(double now);
 
-  // The cause of a fault: it is there until called with 0. The fault itself stays until the host clears it.
+  // Sets the cause of a fault, which lasts until a call with 0. The fault itself stays until the host clears it.
   void setFaultCause(std::uint16_t bits, double now);
-  // A joint stands whatever is commanded, without a fault: index 0 to 6; -1 for none.
+  // Makes a joint ignore its commands, without a fault: index 0 to 6; -1 for none.
   void jam(int joint, double now);
-  // Statuses lie from now on.
+  // Makes the statuses lie from now on.
   void lie(Lie lie, double now);
-  // As if switched off and on; the arm stays where it is.
+  // Like switching off and on; the arm keeps its position.
   void reboot(double now);
-  // A hand moves the scope: see Arm::hand. Refused unless DISABLED.
+  // Moves the scope by hand: see Arm::hand. Refused unless DISABLED.
   std::string hand(const scope::Velocity& displacement, double seconds, double now);
 
   const Arm& arm() const { return arm_; }
@@ -61,7 +59,7 @@ class Emulator {
   std::uint16_t faults() const { return faults_; }
   // s since the last velocity other than zero was taken; infinite before the first.
   double velocityAge(double now) const { return now - velocity_at_; }
-  // s: how long the motors have moved the joints after the last velocity taken, at most, so far.
+  // s: longest time so far for which the motors moved the joints after the last velocity taken.
   double longestMotion() const { return longest_motion_; }
   // s since power-on.
   double time(double now) const { return now - power_on_; }
@@ -86,10 +84,10 @@ class Emulator {
   std::uint16_t reply_sequence_ = 0;
   double velocity_at_ = -std::numeric_limits<double>::infinity();
   double longest_motion_ = 0.0;
-  double heard_ = 0.0;  // s: the last good frame
+  double heard_ = 0.0;  // s: time of the last good frame
   Liar liar_;
   double velocity_until_ = 0.0;
-  bool driven_ = false;  // a velocity counts
+  bool driven_ = false;  // a velocity is in force
 };
 
 }  // namespace laparoscope_servo::sim

@@ -1,5 +1,5 @@
-// What is not on the wire: the hand of a nurse, faults on demand, the truth about the joints. Lines of text, one answer
-// each; doc/aesop_emulator.md lists them.
+// Control of the emulator beside the wire: a nurse's hand, faults on demand, the true joint positions. Lines of text
+// with one answer each; doc/aesop_emulator.md lists them.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace laparoscope_servo::sim {
 
-// The requests, for a command-line help.
+// Help text of the requests.
 std::string emulatorControlHelp();
 
 // Answers one request, without its line end: "ok", "ok <values>" or "error <why>". `now` as for the emulator.

@@ -25,25 +25,25 @@ struct EmulatorMotion {
 struct EmulatorRecord {
   double velocity_age = -1.0;   // s since the controller took a velocity other than zero; -1: never
   double motion_age = -1.0;     // s since a motor moved a joint; -1: never
-  double longest_motion = 0.0;  // s, of the motors after the last velocity taken, so far
+  double longest_motion = 0.0;  // s, longest motion of the motors after the last velocity taken, so far
 };
 
 class EmulatorControlClient {
  public:
-  // Throws std::runtime_error when nothing listens at `path`. `timeout`: s, for each request.
+  // Throws std::runtime_error if nothing listens at `path`. `timeout`: s, for each request.
   explicit EmulatorControlClient(const std::string& path, double timeout = 1.0);
   ~EmulatorControlClient();
   EmulatorControlClient(const EmulatorControlClient&) = delete;
   EmulatorControlClient& operator=(const EmulatorControlClient&) = delete;
 
-  // What follows "ok " in the answer to a line. Throws std::runtime_error: an answer "error ...", no answer in time, or
-  // the emulator has gone; after the last two the client is of no further use: make another.
+  // Sends a line, and returns the text after "ok " in the answer. Throws std::runtime_error for an answer "error ...",
+  // without an answer in time, and if the emulator is gone; after the last two the client cannot be used any more.
   std::string request(const std::string& line);
 
   EmulatorState state();
   EmulatorMotion motion();
   EmulatorRecord record();
-  // Displacements in rad and m, evenly within `seconds`.
+  // Moves the scope by hand: displacements in rad and m, evenly within `seconds`.
   void hand(const scope::Velocity& displacement, double seconds);
   void fault(const std::string& name) { request("fault " + name); }
   void fault(const std::string& name, double value);

@@ -1,4 +1,4 @@
-// The emulator as a running thing: a pty, a control socket, real time.
+// Runs the emulator in real time, with a pty and a control socket.
 #pragma once
 
 #include <atomic>
@@ -12,21 +12,21 @@ namespace laparoscope_servo::sim {
 
 struct ServerConfig {
   std::string link;                    // the port's name
-  std::string control;                 // path of the control socket; none when empty
-  std::uint32_t seed = 1;              // of the line's dice
-  int baud_rate = 0;                   // bit/s; 0: bytes take no time
-  std::vector<ScheduledFault> script;  // s since the start
+  std::string control;                 // path of the control socket; empty: none
+  std::uint32_t seed = 1;              // seed of the line's random numbers
+  int baud_rate = 0;                   // bit/s; 0: no delay
+  std::vector<ScheduledFault> script;  // with times in s since the start
 };
 
 class EmulatorServer {
  public:
-  // Throws std::runtime_error and std::invalid_argument, each naming what is wrong.
+  // Throws std::runtime_error and std::invalid_argument with the error.
   EmulatorServer(const EmulatorConfig& config, const ServerConfig& server);
   ~EmulatorServer();
 
-  // Runs until `stop` becomes true. Throws std::runtime_error when the port cannot be made again after a hangup.
+  // Runs until `stop` becomes true. Throws std::runtime_error if the port cannot be created again after a hangup.
   void run(const std::atomic<bool>& stop);
-  // The pseudo-terminal behind the link at the start.
+  // The pseudo-terminal to which the link points at the start.
   const std::string& device() const;
 
  private:

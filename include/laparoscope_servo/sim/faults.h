@@ -1,4 +1,4 @@
-// Faults on demand: of the line, of the arm, and statuses that lie; at once, at a time, for a time.
+// Faults on demand: of the line, of the arm, and false statuses; at once, scheduled, or for a limited time.
 // doc/aesop_emulator.md lists them.
 //
 // Pure: `now` is seconds from any start, the same as the emulator's.
@@ -15,9 +15,9 @@ namespace laparoscope_servo::sim {
 
 struct Fault {
   std::string name;
-  std::string value;  // a number, or the name of a lie; empty when there is none
+  std::string value;  // a number, or the name of a lie; empty: none
   std::string way;    // "to_controller" or "to_host", for faults of the line; empty: both
-  double duration = std::numeric_limits<double>::infinity();  // s, until the fault is undone
+  double duration = std::numeric_limits<double>::infinity();  // s, after which the fault ends
 };
 
 struct ScheduledFault {
@@ -25,24 +25,24 @@ struct ScheduledFault {
   Fault fault;
 };
 
-// Why there is no such fault, naming what is wrong; empty when there is.
+// Error of a fault's definition; empty if it is valid.
 std::string error(const Fault& fault);
-// A line for each fault, for a command-line help.
+// Help text with a line for each fault.
 std::string faultHelp();
 
 class Faults {
  public:
   Faults(Emulator& emulator, Wire& wire) : emulator_(emulator), wire_(wire) {}
 
-  // Begins a fault, or says why not.
+  // Begins a fault, or returns why not.
   std::string begin(const Fault& fault, double now);
-  // The same at a time; `at` counts from `now`.
+  // Begins a fault later; `at` counts from `now`.
   std::string schedule(const ScheduledFault& fault, double now);
-  // Begins and ends what has fallen due.
+  // Begins and ends faults that are due.
   void step(double now);
-  // s: when something falls due next; infinite when nothing does.
+  // s: time of the next event; infinite if there is none.
   double next() const;
-  // Forgets what is scheduled; what has begun stays.
+  // Drops scheduled faults; present ones stay.
   void forget() { schedule_.clear(); }
 
  private:
@@ -58,7 +58,7 @@ class Faults {
 
   Emulator& emulator_;
   Wire& wire_;
-  std::vector<Event> schedule_;  // by time
+  std::vector<Event> schedule_;  // sorted by time
 };
 
 }  // namespace laparoscope_servo::sim

@@ -1,4 +1,4 @@
-// Statuses that are not true: what a broken sensor, or a controller gone mad, would say.
+// False statuses: those of a broken sensor, or of a faulty controller.
 #pragma once
 
 #include <optional>
@@ -10,20 +10,20 @@ namespace laparoscope_servo::sim {
 
 enum class Lie {
   kNone,
-  kDisabled,    // says DISABLED
-  kEnabled,     // says ENABLED
-  kHealthy,     // says that there is no fault; FAULT is called ENABLED
-  kStanding,    // no velocities, and nothing moves
-  kMoving,      // always moving
-  kFrozen,      // positions stay those of the beginning of the lie
-  kJumped,      // positions are off by 0.2 m or rad
-  kEchoFrozen,  // claims that it took no further request
-  kEchoAhead,   // claims requests that were never sent
+  kDisabled,    // reports DISABLED
+  kEnabled,     // reports ENABLED
+  kHealthy,     // reports no fault, and ENABLED instead of FAULT
+  kStanding,    // reports zero velocities and rest
+  kMoving,      // always reports motion
+  kFrozen,      // reports the positions of the beginning of the lie
+  kJumped,      // reports positions that are wrong by 0.2 m or rad
+  kEchoFrozen,  // reports that it took no further request
+  kEchoAhead,   // reports requests that were never sent
 };
 
 // "disabled", "echo_frozen" and so on, separated by blanks, without "none".
 std::string lieNames();
-// Of these names and of "none".
+// The lie of one of these names or of "none".
 std::optional<Lie> lieNamed(const std::string& name);
 
 class Liar {

@@ -9,18 +9,18 @@
 
 namespace laparoscope_servo::sim {
 
-// How bright a plane and other things are under a lamp at the camera's centre: the cosine of the angle of incidence
-// over the distance squared, times the falloff of beam and lens. 1 for a plane seen squarely at the reference distance,
+// Brightness of a plane and of other surfaces under a lamp at the camera's centre: the cosine of the angle of incidence
+// over the squared distance, times the falloff of beam and lens. 1 for a plane seen squarely at the reference distance,
 // on the axis.
 class Lamp {
  public:
   // `border_radius` [px]: black outside this circle round the image's middle, with a soft edge of a pixel; 0: none.
   Lamp(const LightConfig& config, const geometry::PinholeCamera& camera, const cv::Size& size, double border_radius);
 
-  // Per pixel, CV_32FC1; 0 where the ray does not meet the plane.
+  // Brightness per pixel, CV_32FC1; 0 where the ray does not meet the plane.
   cv::Mat1f onPlane(const Plane& plane) const;
 
-  // On a surface seen squarely through pixel (u, v), at depth z > 0 [m]. The pixel must be in the image.
+  // Brightness of a surface seen squarely through pixel (u, v), at depth z > 0 [m]. The pixel must be in the image.
   float onSurface(int u, int v, double z) const;
 
  private:
@@ -30,7 +30,7 @@ class Lamp {
   cv::Mat1f ray_length_;  // |m|, m = (x, y, 1)
 };
 
-// A gain as cameras control it: towards the one that gives the image its target mean, with a time constant.
+// Automatic gain, as in cameras: follows the gain for which the image has its target mean, with a time constant.
 class Exposure {
  public:
   explicit Exposure(const ExposureConfig& config) : config_(config), gain_(config.gain) {}

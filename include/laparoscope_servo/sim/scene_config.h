@@ -1,4 +1,4 @@
-// What can be set of the simulated camera and of what it sees. Defaults are those of config/simulation.yaml.
+// Parameters of the simulated camera and its scene. Defaults are those of config/simulation.yaml.
 //
 // The tissue is a plane with a frame of its own: origin in the middle of the texture, x to the texture's right, y down
 // in it, z into the tissue, so that a camera that looks at it squarely has parallel axes.
@@ -27,22 +27,23 @@ struct TissueConfig {
 };
 
 struct LightConfig {
-  double reference_distance = 0.08;  // m, > 0: from here, squarely, tissue has the brightness of its texture
-  double beam_exponent = 0.0;        // lamp and lens lose cos^this of the angle to the optical axis
+  double reference_distance = 0.08;  // m, > 0: distance at which tissue seen squarely has the brightness of its texture
+  // brightness of lamp and lens falls with this power of the cosine of the angle to the optical axis
+  double beam_exponent = 0.0;
 };
 
 struct ExposureConfig {
   bool automatic = true;
-  double gain = 1.0;           // fixed when not automatic
-  double target = 75.0;        // grey levels: mean of the image that the gain is moved to
+  double gain = 1.0;           // fixed gain, if not automatic
+  double target = 75.0;        // grey levels: target mean of the image for the automatic gain
   double time_constant = 0.4;  // s, > 0
 };
 
 struct InstrumentConfig {
   double radius = 0.0025;                           // m, > 0
-  Eigen::Vector3d trocar = {0.11, 0.12, -0.14};     // m, tissue frame: where it comes from
-  Eigen::Vector3d start = {-0.075, -0.03, -0.025};  // m, tissue frame: tip when a crossing begins ...
-  Eigen::Vector3d end = {0.085, 0.03, -0.025};      // ... and when it ends
+  Eigen::Vector3d trocar = {0.11, 0.12, -0.14};     // m, tissue frame: point through which the shaft enters
+  Eigen::Vector3d start = {-0.075, -0.03, -0.025};  // m, tissue frame: tip at the beginning of a crossing ...
+  Eigen::Vector3d end = {0.085, 0.03, -0.025};      // ... and at its end
   double crossing_time = 4.0;                       // s, > 0
   double period = 0.0;                              // s, >= 0: from one crossing to the next; 0: only on demand
 };
@@ -66,7 +67,7 @@ struct SceneConfig {
   InstrumentConfig instrument;
 };
 
-// Rows for all of it: ranges and meanings.
+// Adds the rows of all parameters, with range and meaning.
 void describe(parameters::Table& table, SceneConfig& config);
 
 // Every error, each naming the field, its value and what was expected. Empty when the configuration can be used.

@@ -1,5 +1,5 @@
-// What lies between a commanded and an executed velocity of the scope: the delay of the robot's controller and the dead
-// zone of its drives. Deterministic: time is an argument.
+// Model between commanded and executed velocity of the scope: the delay of the robot's controller and the dead zone of
+// its drives. Deterministic: time is an argument.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,12 +18,12 @@ struct ScopeActuatorConfig {
   double delay = 0.16;  // s, from a command to its execution
   // Half the width of the dead zone of pan, tilt, spin [rad/s] and insertion [m/s]; 0: none.
   std::vector<double> dead_zone{0.004, 0.004, 0.004, 0.0004};
-  // "subtract": what is above the dead zone is executed less its width, as with friction. "threshold": it is executed
-  // as it is.
+  // "subtract": the width is subtracted from velocities above the dead zone, as with friction. "threshold": they are
+  // executed unchanged.
   std::string dead_zone_kind = "subtract";
 };
 
-// Rows for all of it: ranges and meanings.
+// Adds the rows of all parameters, with range and meaning.
 void describe(parameters::Table& table, ScopeActuatorConfig& config);
 
 // Every error, each naming the field, its value and what was expected.
@@ -34,11 +34,11 @@ class ScopeActuator {
   // The configuration must be valid.
   explicit ScopeActuator(const ScopeActuatorConfig& config) : config_(config) {}
 
-  // A command (pan, tilt, spin [rad/s], insertion [m/s]) given at `time` [s]; times must not decrease.
+  // Takes a command (pan, tilt, spin [rad/s], insertion [m/s]) at `time` [s]; times must not decrease.
   void command(double time, const Eigen::Vector4d& velocity);
 
-  // What is executed at `time`, which must not decrease: the last command that is at least `delay` old, zero before the
-  // first.
+  // The velocity executed at `time`, which must not decrease: the last command that is at least `delay` old, zero
+  // before the first.
   Eigen::Vector4d velocity(double time);
 
  private:

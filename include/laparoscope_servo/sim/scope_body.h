@@ -1,9 +1,9 @@
-// A rigid scope in space, driven by the velocity of its end-effector, and where it passes an insertion point.
+// A rigid scope in space, moved by the velocity of its end-effector, and its distance from an insertion point.
 //
 // Frames (parallel axes, z along the shaft into the body): end-effector O_7, and the tip of the shaft, where the
-// camera's centre O_C is, a length l ahead of it. A stiff wrist holds the scope's direction: nothing keeps it at the
-// insertion point, whether it stays there is for who drives it, and is measured here. A passive wrist leaves the
-// direction to the insertion point.
+// camera's centre O_C is, a length l ahead of it. A stiff wrist holds the scope's direction: staying at the insertion
+// point is the caller's task, and the distance is measured here. With a passive wrist the insertion point determines
+// the direction.
 #pragma once
 
 #include "laparoscope_servo/geometry/se3.h"
@@ -19,14 +19,14 @@ class ScopeBody {
             Wrist wrist = Wrist::kStiff)
       : world_T_tip_(world_T_tip), insertion_point_(insertion_point), length_(length), wrist_(wrist) {}
 
-  // Moves for `dt` [s] with a constant twist of the end-effector, expressed in its frame. A passive wrist takes no part
-  // of the twist but the end-effector's translation and the spin.
+  // Moves for `dt` [s] with a constant twist of the end-effector, expressed in its frame. With a passive wrist only the
+  // end-effector's translation and the spin have an effect.
   void move(const geometry::Vector6d& end_effector_twist, double dt);
 
-  // The insertion point has moved, to world coordinates [m]; a passive wrist follows it.
+  // Moves the insertion point to world coordinates [m]; a passive wrist follows it.
   void moveInsertionPoint(const Eigen::Vector3d& insertion_point);
 
-  // The tip's twist, in its frame, when the end-effector has this one and the wrist is stiff.
+  // The tip's twist, in its frame, for this twist of the end-effector and a stiff wrist.
   geometry::Vector6d tipTwist(const geometry::Vector6d& end_effector_twist) const;
 
   // world_T_tip.
@@ -34,7 +34,7 @@ class ScopeBody {
 
   // m, along the shaft from the insertion point to the camera.
   double depth() const { return -insertionPointAtTip().z(); }
-  // m, from the insertion point to the shaft.
+  // m, distance from the insertion point to the shaft.
   double lateralOffset() const { return insertionPointAtTip().head<2>().norm(); }
   double length() const { return length_; }
 

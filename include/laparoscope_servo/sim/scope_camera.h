@@ -1,4 +1,4 @@
-// The simulated laparoscope's camera: what it sees of tissue and instrument from where the arm holds it.
+// The simulated laparoscope's camera: renders tissue and instrument from its pose.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -14,18 +14,17 @@ namespace laparoscope_servo::sim {
 struct RenderedImage {
   cv::Mat image;            // CV_8UC3, blue, green, red
   cv::Mat instrument_mask;  // CV_8UC1, 255 where the instrument covers the tissue; empty when there is none
-  double gain = 1.0;        // of the exposure
+  double gain = 1.0;        // gain of the exposure
 };
 
 // The same poses and times in the same order give the same images.
 class ScopeCamera {
  public:
-  // Throws std::invalid_argument that lists every error of the configuration, std::runtime_error when the texture's
-  // file cannot be read.
+  // Throws std::invalid_argument that lists every error of the configuration, std::runtime_error if the texture's file
+  // cannot be read.
   ScopeCamera(const SceneConfig& config, const Eigen::Isometry3d& base_T_tissue);
 
-  // What the camera at that pose sees at `time` [s], with the instrument's tip at `tip` (tissue's frame, m) if there is
-  // one.
+  // The image from this pose at `time` [s], with the instrument's tip at `tip` (tissue's frame, m) if there is one.
   RenderedImage render(const Eigen::Isometry3d& base_T_camera, double time,
                        const std::optional<Eigen::Vector3d>& tip = std::nullopt);
 
@@ -40,7 +39,7 @@ class ScopeCamera {
   Lamp lamp_;
   Exposure exposure_;
   cv::RNG random_;
-  cv::Mat noise_;  // CV_32FC3, larger than the image: a window at a random place is each image's noise
+  cv::Mat noise_;  // CV_32FC3, larger than the image; a window at a random place is the noise of an image
 };
 
 }  // namespace laparoscope_servo::sim

@@ -19,12 +19,12 @@ struct Plane {
 
 Plane planeSeenFrom(const Eigen::Isometry3d& base_T_camera, const Eigen::Isometry3d& base_T_tissue);
 
-// aesop_base_T_tissue of tissue that the camera at its start pose sees at the configured distance and tilt.
+// aesop_base_T_tissue for which the tissue has the configured distance and tilt from the camera at its start pose.
 Eigen::Isometry3d placeTissue(const TissueConfig& config, const Eigen::Isometry3d& base_T_start_camera);
 
-// The truth that a tracker is measured against: G, pixels of the reference image to pixels of the current one,
-// determinant 1. Throws std::invalid_argument when the reference camera is not in front of the tissue, or the current
-// one lies in its plane.
+// The true G (ground truth for trackers): pixels of the reference image to pixels of the current one, determinant 1.
+// Throws std::invalid_argument when the reference camera is not in front of the tissue, or the current one lies in its
+// plane.
 Eigen::Matrix3d trueHomography(const geometry::PinholeCamera& camera, const Eigen::Isometry3d& base_T_tissue,
                                const Eigen::Isometry3d& base_T_reference, const Eigen::Isometry3d& base_T_current);
 
@@ -36,14 +36,14 @@ class Tissue {
   const Eigen::Isometry3d& pose() const { return base_T_tissue_; }
   const cv::Mat& texture() const { return pyramid_.front(); }
 
-  // The texture as the camera sees it, without light, CV_8UC3: each pixel the mean of supersampling² samples of a
-  // version of the texture that is as coarse as they are, so that nothing aliases. What lies behind the camera is
-  // black, and so is everything when the camera is not in front of the tissue.
+  // The texture as the camera sees it, without light, CV_8UC3: each pixel is the mean of supersampling² samples of the
+  // texture at a matching pyramid level, which avoids aliasing. Points behind the camera are black, and so is the whole
+  // image if the camera is not in front of the tissue.
   cv::Mat view(const geometry::PinholeCamera& camera, const cv::Size& size, int supersampling,
                const Eigen::Isometry3d& base_T_camera) const;
 
  private:
-  // Pixels of the texture to points (x, y) of the tissue's plane [m], homogeneous.
+  // Takes pixels of the texture to points (x, y) of the tissue's plane [m], homogeneous.
   Eigen::Matrix3d metresFromTexels() const;
 
   std::vector<cv::Mat> pyramid_;  // each level half the size of the one before

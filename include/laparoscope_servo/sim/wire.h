@@ -1,6 +1,5 @@
-// What a bad line does to bytes: loses, doubles, corrupts, delays and withholds them, or is cut. It also takes its
-// time: a pseudo-terminal carries a frame at once, a serial line ten bits a byte. Pure and repeatable: the dice have a
-// seed.
+// A bad line: loses, doubles, corrupts, delays and holds back bytes, or is cut. It also has a transmission time, ten
+// bits a byte, which a pseudo-terminal does not. Pure and repeatable: the random numbers have a seed.
 #pragma once
 
 #include <algorithm>
@@ -13,22 +12,22 @@
 namespace laparoscope_servo::sim {
 
 struct WireFaults {
-  double drop = 0.0;                                                // 0 to 1: probability of a byte to get lost
-  double corrupt = 0.0;                                             // 0 to 1: of one of its bits to flip
-  double duplicate = 0.0;                                           // 0 to 1: of a byte to come twice
-  double delay = 0.0;                                               // s, 0 to 10: of every byte
-  double stalled_until = -std::numeric_limits<double>::infinity();  // s: until then all bytes wait on the line
+  double drop = 0.0;                                                // 0 to 1: probability that a byte is lost
+  double corrupt = 0.0;                                             // 0 to 1: probability that one of its bits flips
+  double duplicate = 0.0;                                           // 0 to 1: probability that a byte comes twice
+  double delay = 0.0;                                               // s, 0 to 10: delay of every byte
+  double stalled_until = -std::numeric_limits<double>::infinity();  // s: time until which the line holds back all bytes
 };
 
 // One direction of the line.
 class WireDirection {
  public:
-  // `baud_rate`: bit/s, 8N1; 0 for a line that takes no time.
+  // `baud_rate`: bit/s, 8N1; 0 for no transmission time.
   WireDirection(std::uint32_t seed, int baud_rate)
       : random_(seed), byte_time_(baud_rate > 0 ? 10.0 / baud_rate : 0.0) {}
-  // Bytes that the sender hands over now. A line that is far behind its sender loses them.
+  // Takes bytes from the sender. They are lost if too many are waiting.
   void push(const aesop::Bytes& bytes, double now);
-  // What has come through by `now`, in order.
+  // The bytes that have arrived by `now`, in order.
   aesop::Bytes pop(double now);
   // s: when the next byte comes through; infinite when none is under way.
   double next() const;
@@ -46,7 +45,7 @@ class WireDirection {
 
   std::mt19937 random_;
   double byte_time_;          // s
-  double sent_until_ = -1e9;  // s: when the last byte has left
+  double sent_until_ = -1e9;  // s: when the last byte has been sent
   std::deque<Byte> line_;
 };
 
@@ -54,7 +53,7 @@ class Wire {
  public:
   explicit Wire(std::uint32_t seed, int baud_rate = 0) : to_controller(seed, baud_rate), to_host(seed + 1, baud_rate) {}
 
-  // Takes the port away, with all that is under way, until then.
+  // Removes the port, with all bytes under way, until this time.
   void cut(double until);
   bool isCut(double now) const { return now < cut_until_; }
   // s: when the next byte comes through; infinite when none is under way.

@@ -12,12 +12,11 @@ class CornerPath {
  public:
   static constexpr std::size_t kMemory = 64;  // images: 2.6 s at 25 Hz
 
-  // Those of the next image, nothing where the region was not tracked.
+  // Adds the corners in the next image; empty if the region was not tracked there.
   void add(const std::optional<geometry::Quadrilateral>& corners);
   void clear() { corners_.clear(); }
 
-  // How far [px] the corner that moved most is from where it was in any of the last `images`; 0 where that is not
-  // known.
+  // Largest distance [px] of a corner from its place in any of the last `images` images; 0 if that is not known.
   double farthest(const geometry::Quadrilateral& corners, int images) const;
 
  private:

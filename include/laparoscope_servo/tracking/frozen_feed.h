@@ -1,8 +1,9 @@
-// Decides from repeated pictures whether the images still show what is there.
+// Decides from repeated pictures whether the feed is frozen.
 //
-// A picture that repeats as a whole is not believed. In a compressed feed the region alone may repeat, because the
-// codec skips blocks that hardly change: that is believed for a short time, while nothing says that the region should
-// have moved. A part of the region may repeat for as long as the region has moved by less than a codec skips.
+// A picture that repeats as a whole means a frozen feed. In a compressed feed the region alone may repeat, because the
+// codec skips blocks that hardly change: this is accepted for a short time, as long as neither images nor robot show
+// that the region moves. A part of the region may repeat for as long as the region has moved by less than a codec
+// skips.
 #pragma once
 
 #include <string>
@@ -16,18 +17,18 @@ class FrozenFeed {
  public:
   explicit FrozenFeed(const InputConfig& config) : config_(config) {}
 
-  // How far the region's corner that moved most has moved [px]; 0 where the region was not tracked.
+  // Displacement [px] of the region's corner that moved most; 0 if the region was not tracked.
   struct Motion {
-    double step = 0.0;      // by the image, since the picture before
-    double of_part = 0.0;   // by the image, at most during the pictures in which the part repeated that repeats now
-    double by_robot = 0.0;  // by what a robot says, since the last picture that was believed and not one that repeats
+    double step = 0.0;      // by the tracker, since the last picture
+    double of_part = 0.0;   // by the tracker, largest over the pictures since the repeating part was last new
+    double by_robot = 0.0;  // by the robot's motion, since the last picture that was accepted and new
   };
 
-  // Of one picture: how it repeats, its stamp [s], how the region moved.
+  // Takes one picture: how it repeats, its stamp [s], how the region moved.
   void see(const image::Repeats& repeats, double stamp, const Motion& motion);
 
-  // Why the picture shows nothing that may be believed; empty when it may be. Once said, it is said until more than
-  // `max_repeats` pictures in a row were new.
+  // Why the feed counts as frozen; empty if it does not. Holds until more than `max_repeats` pictures in a row were
+  // new.
   const std::string& reason() const { return reason_; }
 
  private:
@@ -38,11 +39,11 @@ class FrozenFeed {
   double last_new_stamp_ = 0.0;
   double last_new_part_stamp_ = 0.0;
   double stamp_ = 0.0;
-  double speed_ = 0.0;  // px an image, over the last new ones
+  double speed_ = 0.0;  // px per image, over the last new ones
   bool moving_ = false;
-  int part_limit_ = 0;  // pictures in which a part may repeat, by how far the region moved meanwhile
+  int part_limit_ = 0;  // number of pictures in which a part may repeat; depends on how far the region moved meanwhile
   enum class Frozen { kNot, kWhole, kRegion, kPart } frozen_ = Frozen::kNot;
-  int fresh_ = 0;  // new pictures in a row since
+  int fresh_ = 0;  // new pictures in a row
   std::string reason_;
 };
 

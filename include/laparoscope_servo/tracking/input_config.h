@@ -1,4 +1,4 @@
-// What can be set of how images are taken in. Defaults are those of config/tracker.yaml.
+// Parameters of the image input. Defaults are those of config/tracker.yaml.
 #pragma once
 
 #include <string>
@@ -11,21 +11,23 @@ class Table;
 namespace laparoscope_servo::tracking {
 
 struct InputConfig {
-  // Of pictures that repeat. The line between a feed that stands still and one that is compressed was measured, see
-  // doc/pictures.md.
-  int max_repeats = 1;         // pictures in a row that may repeat in whole, or in a region that moves
-  int max_still_repeats = 15;  // max_repeats to 1000, in the region alone, while nothing says that it should move
-  double moving = 0.5;         // px, an image: a region that moved by more before was moving
-  double moved = 2.0;  // px: what has moved by more cannot look the same: the region by the robot, a part by either
+  // Pictures that repeat. The thresholds between a frozen and a compressed feed were measured, see doc/pictures.md.
+  int max_repeats = 1;  // pictures in a row that may repeat in whole, or in a region that moves
+  // max_repeats to 1000, in the region alone, while neither images nor robot show that it moves
+  int max_still_repeats = 15;
+  double moving = 0.5;  // px per image: a region that moved faster counts as moving
+  // px: after a larger displacement a repeat is a frozen feed; of the region by the robot, of a part by robot or
+  // tracker
+  double moved = 2.0;
 
-  // Of stamps and sizes that do not go on as those before.
-  int restart_images = 3;  // images in a row, after which another time, or another size, is believed
+  // Jumps of stamps and changes of size.
+  int restart_images = 3;  // images in a row, after which a new time or a new size is accepted
   double loop_step = 1.0;  // s: a larger step back is a recording that begins again
   double max_gap = 2.0;    // s: an image that is further ahead waits for another one to confirm it
   double max_ahead = 0.1;  // s: of an image's stamp, ahead of this machine's clock
 };
 
-// Rows for all of it: ranges and meanings.
+// Adds the rows of all parameters, with range and meaning.
 void describe(parameters::Table& table, InputConfig& config);
 
 // Every error, each naming the field, its value and what was expected. Empty when the configuration can be used.

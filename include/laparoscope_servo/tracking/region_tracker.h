@@ -1,5 +1,6 @@
 // Tracks a region of interest (ROI) of tissue, taken for a plane, through a sequence of images: ESM on SL(3) with
-// detection of occlusions. The whole of section II of Bourger et al. (2007), with states that say what may be believed.
+// detection of occlusions. Implements section II of Bourger et al. (2007), and adds a state that says whether the
+// estimate is valid.
 //
 // Images are 8 bit, grey (CV_8UC1) or blue-green-red (CV_8UC3); times are seconds, from the images' stamps. The tracker
 // keeps no clock and no global state: the same images give the same results. It is not thread-safe.
@@ -29,7 +30,7 @@ struct AreaReport {
   int rows = 0;
   int columns = 0;
   std::vector<float> distance;  // eq. (2), 0 to 1; NaN where an area could not be compared
-  std::vector<bool> occluded;   // did not drive ESM
+  std::vector<bool> occluded;   // true: the area did not drive ESM
   std::vector<AreaCause> cause;
 };
 
@@ -40,19 +41,20 @@ struct TrackResult {
   geometry::Rectangle roi;                          // in the reference image, px
   double reference_stamp = 0.0;                     // s
   double visible_fraction = 0.0;                    // 0 to 1, share of the ROI's pixels that the estimate used
-  double zncc = 0.0;                                // -1 to 1, over those pixels, the mean of each area taken out
-  int iterations = 0;                               // of ESM, all levels
-  double corner_error = 0.0;  // px, standard deviation expected of the worst corner, by residuals and motion
-  double centre_error = 0.0;  // px, the same of the ROI's centre, which may be known where the corners are not
-  double corner_scatter =
-      0.0;             // px, of corner_error, what changes from image to image: without what the tissue deforms by
-  double sigma = 0.0;  // grey levels, robust standard deviation of the residual
-  double gain = 1.0;   // gain * image + bias has the light of the reference
-  double bias = 0.0;   // grey levels
-  bool colour_used = false;  // false: the image has no colour, the colour gate stands aside
+  double zncc = 0.0;                                // -1 to 1, over those pixels, with the mean of each area subtracted
+  int iterations = 0;                               // iterations of ESM, over all levels
+  // px, expected standard deviation of the worst corner, by residuals, motion prior and what the tissue deforms by
+  double corner_error = 0.0;
+  // px, expected standard deviation of the ROI's centre, which may be small where corner_error is large
+  double centre_error = 0.0;
+  double corner_scatter = 0.0;  // px, corner_error without deformation: how the worst corner varies between images
+  double sigma = 0.0;           // grey levels, robust standard deviation of the residual
+  double gain = 1.0;            // gain * image + bias has the illumination of the reference
+  double bias = 0.0;            // grey levels
+  bool colour_used = false;     // false: the image has no colour, the colour gate is inactive
   AreaReport areas;
   bool selected_now = false;  // this image is the reference
-  bool motion_used = false;   // the motion that was given led to this estimate
+  bool motion_used = false;   // this estimate started from the `motion` given
 };
 
 class RegionTracker {
@@ -64,8 +66,8 @@ class RegionTracker {
   RegionTracker& operator=(RegionTracker&&) noexcept;
 
   // From now on images are raw ones, seen through `lens`: the ROI and G are in rectified pixels, of a pinhole camera,
-  // and the lens is put between them and the image where pixels are read. Without one (the default) images are what a
-  // pinhole camera sees. A lens that differs from the one before resets to IDLE, and the next image says so.
+  // and the lens is put between them and the image where pixels are read. Without one (the default) images are those of
+  // a pinhole camera. A lens that differs from the one before resets to IDLE, and the next image says so.
   void setLens(const std::optional<image::Lens>& lens);
 
   // From the next image on, the configuration's parameters that may change while the tracker runs, as describe() says
@@ -91,21 +93,21 @@ class RegionTracker {
   void recall(const cv::Mat& reference, double reference_stamp, const geometry::Rectangle& roi, double now);
 
   // Processes the next image. A stamp before the last one, or an image of another size than the reference, resets to
-  // IDLE, with the reason. Throws std::invalid_argument for an image that is empty or of another type than those above;
-  // the tracker then goes on as if the image had not come. `motion`: where something else than the images, a robot,
-  // says that the tissue has gone: takes pixels of the last image in which the state was TRACKING to pixels of this
-  // one, any scale. It gives the place to start from; only the motion that remains beside it is predicted to go on. A
-  // motion that is no homography, or from which no estimate is accepted, is ignored. Does not allocate while tracking,
-  // but for a view that it stores now and then. The result is the tracker's own: it lasts until the next call of
-  // select(), track() or reset(), or until the tracker is moved from.
+  // IDLE with a reason. Throws std::invalid_argument for an image that is empty or of another type than those above;
+  // the tracker then goes on as if the image had not come. `motion`: the ego-motion of the scope from another source
+  // than the images (the robot), as a homography of any scale from pixels of the last image in state TRACKING to pixels
+  // of this one. The search starts where it puts the ROI; only the motion that remains beside it is predicted to go on.
+  // A motion that is no homography, or that leads to no accepted estimate, is ignored. Does not allocate while
+  // tracking, but for a view that it stores now and then. The result belongs to the tracker and is valid until the next
+  // call of select(), track() or reset(), or until the tracker is moved from.
   const TrackResult& track(const cv::Mat& image, double stamp,
                            const std::optional<Eigen::Matrix3d>& motion = std::nullopt);
 
   // Forgets the ROI.
   void reset();
 
-  // 255 where a pixel of the ROI, as seen in the image that was processed last, is taken for occluded, 0 elsewhere;
-  // empty before the first image. Of that image's size and pixels, also with a lens. Drawn only when asked for.
+  // Mask of the image processed last, in its own (raw) pixels: 255 where the ROI counts as occluded, 0 elsewhere; empty
+  // before the first image. Drawn by this call.
   cv::Mat occlusionMask() const;
 
   bool hasRoi() const;

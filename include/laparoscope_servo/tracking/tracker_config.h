@@ -1,4 +1,4 @@
-// What can be set of the region tracker. Defaults are those of config/tracker.yaml.
+// Parameters of the region tracker. Defaults are those of config/tracker.yaml.
 #pragma once
 
 #include <string>
@@ -10,25 +10,26 @@ class Table;
 
 namespace laparoscope_servo::tracking {
 
-// What the histograms of the areas are made of, before ESM.
+// The feature of the areas' histograms, which are compared before ESM.
 enum class ColourGate {
   kNone,
   kPublished,   // S0 cos H, eq. (4) and (5) of Bourger et al. (2007)
-  kNormalised,  // the same divided by the pixel's intensity: bears changes of brightness
+  kNormalised,  // kPublished divided by the pixel's intensity, which makes it independent of brightness
 };
 
-// How the light of the image and that of the reference are related.
+// Model of the change of illumination between image and reference.
 enum class Light {
-  kConstant,  // not at all: the residual is their difference
-  kGlobal,    // one gain, one bias
-  kLocal,     // one gain, a bias for each block of 16 x 16 px: shading and shadows that move do not pull the estimate
+  kConstant,  // none: the residual is the difference of image and reference
+  kGlobal,    // one gain and one bias
+  kLocal,     // one gain, and a bias for each block: moving shading and shadows do not bias the estimate
 };
 
-// What of the colours ESM tracks.
+// The channels that ESM tracks.
 enum class TrackedChannels {
   kLuma,
-  kStrongest,  // the mixture that varies most across the ROI, of colours that do not clip
-  kColour,     // blue, green and red, but what clips: three residuals a pixel, as Bourger et al. (2007) extend ESM
+  kStrongest,  // the mixture of colours that varies most across the ROI, without colours that clip
+  // blue, green and red, without those that clip: up to three residuals per pixel, as in Bourger et al. (2007)
+  kColour,
 };
 
 struct OcclusionConfig {
@@ -37,48 +38,51 @@ struct OcclusionConfig {
   int columns = 14;
   int bins = 32;           // m of eq. (1)
   double threshold = 0.5;  // tau_b: an area at a greater distance (2) is occluded
-  bool structure = true;   // after ESM, areas that do not correlate with the reference are occluded, too
+  bool structure = true;   // true: after ESM, areas that do not correlate with the reference also count as occluded
   int hold = 2;            // images: how long an area that failed the structure gate stays out
 };
 
 struct EsmConfig {
-  int levels = 3;           // of the pyramid; a level twice as coarse each
-  int max_iterations = 50;  // per level
+  int levels = 3;           // levels of the pyramid, each half the size of the last
+  int max_iterations = 50;  // iterations per level
   double min_step = 0.02;   // px: converged when no corner of the ROI is expected to move by more
   Light light = Light::kLocal;
-  bool robust = true;    // Tukey's weights on the residuals
-  int saturation = 250;  // grey levels: pixels as bright as this in a colour that is tracked weigh nothing;
-                         // 256 turns it off
+  bool robust = true;  // Tukey's weights on the residuals
+  // grey levels: pixels at least this bright in a tracked colour have weight 0; 256 turns this off
+  int saturation = 250;
   TrackedChannels channels = TrackedChannels::kStrongest;
 };
 
-// When an estimate is believed.
+// Limits of the acceptance tests of an estimate.
 struct QualityConfig {
-  double min_zncc = 0.5;              // over the pixels used; the tracker asks for more of a ROI that was better
+  // over the pixels used; the limit is higher for a ROI that correlated better before
+  double min_zncc = 0.5;
   double min_visible_fraction = 0.1;  // share of the ROI's pixels used
-  double min_return_fraction = 0.3;   // the same to be believed again after a loss
-  // px: standard deviations expected of the worst corner, where block matching does not say that it is the
-  // ROI, and of the centre. The centre may be known where the corners are not: who needs them looks at corner_error.
+  double min_return_fraction = 0.3;   // share of the ROI's pixels used, to be accepted again after a loss
+  // px: limits of the expected standard deviation of the worst corner (not tested if block matching recognises the ROI)
+  // and of the centre. The centre may be accurate where the corners are not; a user of the corners must look at
+  // corner_error.
   double max_corner_error = 3.0;
   double max_centre_error = 2.5;
-  double max_area_ratio = 6.0;   // area of the ROI in the image over that in the reference, or its inverse
-  double max_jump = 0.35;        // of the ROI's diagonal: how far a corner may be from its prediction; less when
-                                 // little of the ROI is visible
+  double max_area_ratio = 6.0;  // largest ratio of the ROI's areas in image and reference, or of its inverse
+  // share of the ROI's diagonal: allowed distance of a corner from its prediction; less if little of the ROI is visible
+  double max_jump = 0.35;
   double max_search_time = 2.0;  // s: SEARCHING for longer is LOST
-  int confirmations = 3;         // images in a row that pass every test, before TRACKING is said again
+  // images in a row that must pass every test after a loss, before the state is TRACKING again
+  int confirmations = 3;
 };
 
-// Where to look for the ROI when it was lost. After the place where it was seen last, which is always tried.
+// Search for a lost ROI. The place of the last accepted estimate is always tried first.
 struct SearchConfig {
-  bool features = true;     // by points matched with stored views
-  bool correlation = true;  // by sliding the ROI over a coarse image
-  int max_features = 600;   // points drawn from an image; half of it from a stored view
-  int max_pixels = 60000;   // an image with more is scaled down before points are drawn
+  bool features = true;     // search by points matched with keyframes
+  bool correlation = true;  // search by sliding the ROI over a coarse image (template search)
+  int max_features = 600;   // points detected in an image; half as many in a keyframe
+  int max_pixels = 60000;   // an image with more pixels is scaled down before points are detected
   double max_ratio = 0.85;  // distance of a point's best match over that of its second best
-  int min_inliers = 8;      // matches that agree
-  int keyframes = 8;        // views stored beside the reference
-  double min_detail = 0.7;  // correlation of the fine structure, where it was found
-  double budget = 0.015;    // s, by nominal costs: what does not fit is left for the next image
+  int min_inliers = 8;      // least number of matches that agree
+  int keyframes = 8;        // keyframes stored beside the reference
+  double min_detail = 0.7;  // least correlation of the fine structure where the ROI was found
+  double budget = 0.015;    // s per image, by nominal costs: the rest of the search goes on in the next image
 };
 
 struct TrackerConfig {
@@ -86,12 +90,12 @@ struct TrackerConfig {
   EsmConfig esm;
   QualityConfig quality;
   SearchConfig search;
-  double velocity_damping = 0.8;  // share of the last motion that is expected to go on
+  double velocity_damping = 0.8;  // share of the last motion that is predicted to go on
   int min_roi_side = 16;          // px
-  double min_texture = 0.5;       // px: corner error that two grey levels of noise may cause in a ROI
+  double min_texture = 0.5;       // px: largest corner error that two grey levels of noise may cause in a ROI
 };
 
-// Rows for all of it: ranges and meanings.
+// Adds the rows of all parameters, with range and meaning.
 void describe(parameters::Table& table, TrackerConfig& config);
 
 // Every error, each naming the field, its value and what was expected. Empty when the configuration can be used.

@@ -1,4 +1,4 @@
-// What can be set of stored views. Defaults are those of config/tracker.yaml.
+// Parameters of stored views. Defaults are those of config/tracker.yaml.
 #pragma once
 
 #include <string>
@@ -11,14 +11,15 @@ class Table;
 namespace laparoscope_servo::tracking {
 
 struct ViewConfig {
-  int capacity = 32;                  // views
-  double min_visible_fraction = 0.5;  // of the region while a view is stored: an instrument is no part of a view
-  // When a recall goes on from a view on the way to the next one.
+  int capacity = 32;  // views
+  // of the region when a view is stored, so that no instrument becomes part of a view
+  double min_visible_fraction = 0.5;
+  // Limits within which a view counts as reached, so that a recall goes on to the next one.
   double arrival_centre = 20.0;  // px: distance of the region's centre from its place in the view
   double arrival_scale = 0.1;    // relative difference between the region's scale and that in the view
 };
 
-// Rows for all of it: ranges and meanings.
+// Adds the rows of all parameters, with range and meaning.
 void describe(parameters::Table& table, ViewConfig& config);
 
 // Every error, each naming the field, its value and what was expected. Empty when the configuration can be used.

@@ -1,6 +1,6 @@
-// Views that a surgeon has stored under names: images, each with a region of interest (ROI), and which of them can be
-// reached from which. One leads to another when the ROI of the other is found in its image, by the search that finds a
-// lost ROI, with all of that search's tests. No clock, not thread-safe.
+// Stores named views (images with a region of interest, ROI), and which view can be reached from which. View A leads to
+// view B if the search for a lost ROI finds the ROI of B in the image of A, with all of that search's tests. Keeps no
+// clock, is not thread-safe.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,17 +18,18 @@
 namespace laparoscope_servo::tracking {
 
 struct View {
-  cv::Mat image;            // CV_8UC1 or CV_8UC3, not shared
+  cv::Mat image;            // CV_8UC1 or CV_8UC3, a copy of its own
   geometry::Rectangle roi;  // px, whole; with a lens rectified ones
 };
 
-// Where a ROI is now, as an upright rectangle of whole pixels: about the same middle, of the same area, as wide to high
-// as what bounds it; then cut to `image`, the pixels there are. Throws std::invalid_argument when nothing is left.
+// An upright rectangle of whole pixels for a ROI seen at `g`: with the area of the ROI there, and centre and aspect
+// ratio of its bounding box; then cut to the bounds `image`. Throws std::invalid_argument when nothing is left.
 geometry::Rectangle uprightRoi(const Eigen::Matrix3d& g, const geometry::Rectangle& roi, const cv::Rect& image);
 
 class ViewStore {
  public:
-  // The names of the views to go through, the last one that was asked for; empty when there is no way: `why` says why.
+  // The names of the views to go through, ending with the requested one. Empty if there is no way; `why` then holds the
+  // reason.
   struct Route {
     std::vector<std::string> names;
     std::string why;
@@ -38,24 +39,25 @@ class ViewStore {
   // for a configuration that validate() refuses, and for a capacity below 1.
   explicit ViewStore(const TrackerConfig& config, int capacity = 32, std::shared_ptr<const image::Lens> lens = nullptr);
 
-  // Copies the view, and compares it with every other. Replaces one of the same name. Throws std::invalid_argument,
-  // saying what was expected, when the name is empty or longer than 64 bytes, no place is left, or a tracker would not
-  // take the ROI; the store then stays as it was.
+  // Copies the view and compares it with every other one. Replaces a view of the same name. Throws
+  // std::invalid_argument, saying what was expected, when the name is empty or longer than 64 bytes, no place is left,
+  // or a tracker would not take the ROI; the store then stays as it was.
   void store(const std::string& name, const cv::Mat& image, const geometry::Rectangle& roi);
 
   std::vector<std::string> names() const;  // in alphabetical order
-  // Throws std::invalid_argument that names the views there are when this is none of them; so do all that follow.
+  // This and all functions below throw std::invalid_argument for an unknown name; its text lists the stored names.
   const View& get(const std::string& name) const;
 
-  // The ROI of `to` was found in the image of `from`.
+  // Whether the ROI of `to` was found in the image of `from`.
   bool leads(const std::string& from, const std::string& to) const;
   // Whether the view's ROI is found in an image (CV_8UC1 or CV_8UC3).
   bool isSeen(const std::string& name, const cv::Mat& image) const;
 
-  // The least number of views, both ends with them, each of which leads to the next; empty when there is no way.
+  // The shortest sequence of views, `from` and `to` included, each of which leads to the next; empty if there is none.
   std::vector<std::string> path(const std::string& from, const std::string& to) const;
-  // The same, from what `image` shows now to view `to`, without a step for the image itself. Looks for the views in the
-  // image in the order of their distance from `to`, so that `to` itself, when it is seen, costs one search.
+  // The shortest sequence of views from the present `image` to view `to`, without an entry for the image itself.
+  // Searches the image for the views in the order of their distance from `to`, so that a visible `to` costs only one
+  // search.
   Route route(const cv::Mat& image, const std::string& to) const;
 
  private:
@@ -63,7 +65,7 @@ class ViewStore {
     View view;
     std::map<std::string, bool> leads_to;
   };
-  // In the order of distance, `to` first: the next view on the way from each view that leads there.
+  // Each view from which `to` can be reached with the next view on the way, in the order of distance, `to` first.
   std::vector<std::pair<std::string, std::string>> waysTo(const std::string& to) const;
   const Entry& entry(const std::string& name) const;
 

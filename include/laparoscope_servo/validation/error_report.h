@@ -6,12 +6,12 @@
 
 namespace laparoscope_servo::validation {
 
-// What is wrong with a part of a configuration, as errors of the whole: each with "group/" in front is added to `all`.
+// Adds the errors of a part of a configuration to `all`, each with "group/" in front.
 inline void addGroup(const std::string& group, const std::vector<std::string>& errors, std::vector<std::string>& all) {
   for (const std::string& error : errors) all.push_back(group + "/" + error);
 }
 
-// Throws std::invalid_argument that names `what` and lists all errors; does nothing when there is none.
+// Throws std::invalid_argument that names `what` and lists all errors, if there are any.
 inline void throwErrors(const std::string& what, const std::vector<std::string>& errors) {
   if (errors.empty()) return;
   std::string text = what + ": ";

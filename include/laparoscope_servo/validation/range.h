@@ -1,4 +1,4 @@
-// The one way in which this package says how large a number may be: [0, 1] with its ends, (0, 1] without 0.
+// Ranges of numbers, and their form in texts: [0, 1] with its ends, (0, 1] without 0.
 #pragma once
 
 #include <limits>
@@ -13,7 +13,7 @@ struct Range {
   static constexpr Range above(double low, double high) { return {low, high, false, true}; }
   // (low, high)
   static constexpr Range between(double low, double high) { return {low, high, false, false}; }
-  // Every number that is finite.
+  // All finite numbers.
   static constexpr Range finite() {
     return between(-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity());
   }
@@ -35,7 +35,7 @@ struct Range {
       : low(low_end), high(high_end), with_low(low_too), with_high(high_too) {}
 };
 
-// With as few digits as read back as the same number.
+// The number with the fewest digits that read back as the same number.
 std::string numberText(double value);
 
 }  // namespace laparoscope_servo::validation

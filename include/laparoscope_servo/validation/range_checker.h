@@ -1,4 +1,4 @@
-// Collects what is wrong with the fields of a configuration, for the validate() functions of all parts.
+// Collects the errors of a configuration's fields, for the validate() functions of all parts.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@ namespace laparoscope_servo::validation {
 
 class RangeChecker {
  public:
-  // An error unless the value is in [minimum, maximum], so for NaN, too. `unit` ends the text where there is one.
+  // Adds an error unless the value is in [minimum, maximum]; also for NaN. `unit` is appended to the text.
   template <typename T>
   void range(const std::string& field, T value, T minimum, T maximum, const std::string& unit = "") {
     const Range bounds(static_cast<double>(minimum), static_cast<double>(maximum));
@@ -21,7 +21,7 @@ class RangeChecker {
 
   void add(const std::string& error) { errors_.push_back(error); }
 
-  // One for each field, in the order in which they were found.
+  // The errors, in the order in which they were found.
   const std::vector<std::string>& errors() const { return errors_; }
 
  private:

@@ -11,9 +11,9 @@ namespace laparoscope_servo::aesop {
 
 namespace {
 
-constexpr int kCorners = 12;           // of the way round the cone
+constexpr int kCorners = 12;           // number of directions round the cone
 constexpr double kReached = 0.015;     // rad
-constexpr double kProgress = 0.002;    // rad, nearer than before counts as progress
+constexpr double kProgress = 0.002;    // rad, by which the shaft must come nearer to count as progress
 constexpr double kMargin = 0.05;       // rad, beyond the cone
 constexpr double kDepthGain = 1.0;     // 1/s
 constexpr double kDepthSpeed = 0.005;  // m/s, at most
@@ -26,11 +26,11 @@ double angleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 }  // namespace
 
 void describe(parameters::Table& table, PatternConfig& c) {
-  table.number("pattern_angle", c.angle, {0.02, 0.4}, "rad", "half the opening of the cone that the arm drives round");
+  table.number("pattern_angle", c.angle, {0.02, 0.4}, "rad", "half the opening angle of the cone");
   table.number("pattern_speed", c.speed, {0.02, 0.15}, "rad/s", "of the shaft on its way round");
   table.number("pattern_max_depth_change", c.max_depth_change, {0.001, 0.05}, "m", "beyond it the pattern ends");
   table.number("pattern_patience", c.patience, {0.5, 20}, "s",
-               "without coming nearer to the next direction, the pattern ends");
+               "the pattern ends without progress towards the next direction for this time");
 }
 
 std::vector<std::string> validate(const PatternConfig& config) {

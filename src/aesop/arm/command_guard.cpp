@@ -10,10 +10,10 @@
 namespace laparoscope_servo::aesop {
 
 void describe(parameters::Table& table, CommandConfig& c) {
-  table.number("timeout", c.timeout, {0.02, 2}, "s", "a command that no other follows counts no longer");
+  table.number("timeout", c.timeout, {0.02, 2}, "s", "without a new command the velocity is zero after this time");
   table.number("max_stamp_age", c.max_stamp_age, {0.02, 10}, "s", "a command whose stamp is older is refused");
   table.number("max_stamp_lead", c.max_stamp_lead, {0, 2}, "s",
-               "a command whose stamp is further ahead is refused: clocks of two machines differ");
+               "a command whose stamp is further ahead is refused; allows for clocks that differ");
   table.number("max_pan", c.max_pan, {1e-4, 1}, "rad/s", "beyond a limit all four components are scaled alike");
   table.number("max_tilt", c.max_tilt, {1e-4, 1}, "rad/s", "beyond a limit all four components are scaled alike");
   table.number("max_spin", c.max_spin, {1e-4, 1}, "rad/s", "beyond a limit all four components are scaled alike");
@@ -49,7 +49,7 @@ std::string CommandGuard::describe(Refusal refusal) const {
 }
 
 std::string CommandGuard::accept(const scope::Velocity& velocity, double stamp, double stamp_now, double now) {
-  if (stamp_now < last_stamp_now_) reset(stamp_now);  // the clock was set back: old stamps compare with nothing
+  if (stamp_now < last_stamp_now_) reset(stamp_now);  // the clock was set back: old stamps cannot be compared any more
   last_stamp_now_ = stamp_now;
   if (const std::optional<Refusal> refusal = judge(velocity, stamp, stamp_now)) {
     if (*refusal == Refusal::kNotFinite) forget();
@@ -58,7 +58,7 @@ std::string CommandGuard::accept(const scope::Velocity& velocity, double stamp, 
   }
   last_ = clamp(velocity);
   accepted_at_ = now;
-  // A zero may bear any stamp: one from the future would keep out all that follows.
+  // A zero may have any stamp; one from the future must not refuse all later commands.
   if (stamp > last_stamp_ && stamp <= stamp_now + config_.max_stamp_lead) last_stamp_ = stamp;
   ++accepted_;
   return "";

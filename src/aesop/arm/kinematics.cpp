@@ -10,7 +10,7 @@ namespace laparoscope_servo::aesop {
 
 namespace {
 
-constexpr double kClosestLever = 0.01;  // m: nearer to O_7 the direction to the insertion point says nothing
+constexpr double kClosestLever = 0.01;  // m: nearer to O_7 the direction to the insertion point is not determined
 constexpr double kConverged = 1e-12;    // m
 constexpr double kLargestStep = 0.3;    // rad
 constexpr int kMaxIterations = 50;

@@ -16,9 +16,9 @@ using parameters::Value;
 
 constexpr double kDegree = 3.14159265358979323846 / 180.0;
 
-constexpr double kFar = 100.0;  // m or rad: beyond it a number is a typing error
+constexpr double kFar = 100.0;  // m or rad: larger numbers are typing errors
 
-// A list of the numbers, 1 to 7, of the joints of which `holds` says so.
+// A list of the numbers, 1 to 7, of the joints for which `holds` is true.
 void describeJoints(Table& table, const std::string& name, KinematicsConfig& c,
                     const std::function<bool(const DhJoint&)>& holds, const std::function<void(DhJoint&, bool)>& set,
                     const std::string& meaning) {
@@ -39,8 +39,8 @@ void describeJoints(Table& table, const std::string& name, KinematicsConfig& c,
   row.unit = "joint numbers";
 }
 
-// Both lists together say what every joint is, in whichever order they are read: either one alone starts from the
-// other's default.
+// Both lists together define the role of every joint, in whichever order they are read; if one is missing, its default
+// holds.
 void describeRole(Table& table, const std::string& name, KinematicsConfig& c, JointRole role, JointRole other,
                   const std::string& meaning) {
   const auto holds = [role](const DhJoint& joint) { return joint.role == role || joint.role == JointRole::kBoth; };
@@ -102,21 +102,22 @@ void describe(Table& table, KinematicsConfig& c) {
 
 void describe(Table& table, MotionConfig& c) {
   table.number("limit_margin_angle", c.limit_margin_angle, Range::between(0, 1), "rad",
-               "slowed from here to a revolute joint's limit");
+               "distance from a revolute joint's limit within which it is slowed");
   table.number("limit_margin_distance", c.limit_margin_distance, Range::between(0, 0.1), "m",
-               "slowed from here to a prismatic joint's limit and to the depths of kinematics");
+               "distance from a prismatic joint's limit, and from the depths of kinematics, within which it is slowed");
   table
       .number("singular_slow", c.singular_slow, Range::between(0, 1), "",
               "slowed below this smallest singular value (lengths over 0.3 m)")
       .above("singular_stop");
-  table.number("singular_stop", c.singular_stop, Range::between(0, 1), "", "held below this smallest singular value");
+  table.number("singular_stop", c.singular_stop, Range::between(0, 1), "", "stops below this smallest singular value");
   table
       .number("lever_slow", c.lever_slow, Range::between(0.01, 0.3), "m",
               "slowed below this d1, from the end effector to the insertion point, in pan, tilt and deeper")
       .above("lever_stop");
-  table.number("lever_stop", c.lever_stop, Range::between(0.01, 0.3), "m", "held below this d1");
+  table.number("lever_stop", c.lever_stop, Range::between(0.01, 0.3), "m", "stops below this d1");
   table.number("stopping_time", c.stopping_time, {0.05, 5}, "s",
-               "from a command to joints that stand, its delay included");
+               "time to a limit below which motion is slowed; at least the time from a command to joints at rest, "
+               "delay included");
 }
 
 std::vector<std::string> validate(const KinematicsConfig& config) {

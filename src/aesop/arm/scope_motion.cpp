@@ -16,11 +16,11 @@ namespace {
 
 constexpr double kLength = 0.3;             // m, makes lengths comparable with angles
 constexpr double kLargestDeviation = 0.02;  // m, of the shaft's line from the insertion point
-// rad or m, of the joint that moves most, to see whether a motion leads towards a singularity: short, as a long step
-// would end on the far side of it, where matters look better.
+// rad or m, step of the joint that moves most, to test whether a motion leads towards a singularity. It is short, since
+// a long step could end beyond the singularity, where the Jacobian is well conditioned again.
 constexpr double kLookAhead = 1e-4;
-constexpr double kSingular = 1e-3;    // smallest singular value from which directions mean something
-constexpr double kTangential = 1e-6;  // 1/s; slower than this, nothing gets worse
+constexpr double kSingular = 1e-3;    // smallest singular value from which the direction of joint motion is determined
+constexpr double kTangential = 1e-6;  // 1/s; a slower decrease of the singular value is ignored
 
 // Columns of the joints that move: driven and passive ones in the order of the arm.
 std::vector<int> movingJoints(const Kinematics& kinematics) {
@@ -38,18 +38,18 @@ geometry::Matrix6d movingJacobian(const Kinematics& kinematics, const JointVecto
   return m;
 }
 
-// Keeps the strongest reason for slowing a motion.
+// Keeps the smallest scale, and its reason.
 class Brake {
  public:
   explicit Brake(double stopping_time) : stopping_time_(stopping_time) {}
 
-  // `room`: what is left before the motion has to stand, `margin`: where slowing begins at the latest, `speed`: at
-  // which the room becomes less. The room shrinks no faster than would take the stopping time to its end.
+  // `room`: distance left to the limit; `margin`: distance at which slowing begins at the latest; `speed`: at which the
+  // room shrinks. The scaled motion would need at least the stopping time to reach the limit.
   void apply(double room, double margin, double speed, const std::string& what) {
     limit(room / robust::largest(margin, stopping_time_ * speed), what);
   }
   void limit(double scale, const std::string& what) {
-    const double bounded = scale > 0.0 ? scale : 0.0;  // 0 for NaN: what is not known holds
+    const double bounded = scale > 0.0 ? scale : 0.0;  // NaN is treated as 0, i.e. stop
     if (bounded >= scale_) return;
     scale_ = bounded;
     what_ = what;
@@ -98,7 +98,7 @@ void brakeAtShortLever(const MotionConfig& config, double d1, const scope::Veloc
   }
 }
 
-// Of conditioning() when the joints move with `velocity`; 1/s.
+// Rate of change of conditioning() when the joints move with `velocity` [1/s].
 double conditioningRate(const Kinematics& kinematics, const JointVector& q, const JointVector& velocity, double now) {
   const double fastest = velocity.lpNorm<Eigen::Infinity>();
   if (!(fastest > 0.0)) return 0.0;

@@ -65,7 +65,7 @@ std::vector<LinkEvent> Link::receive(const std::uint8_t* data, std::size_t size,
       last_number_ = frame.sequence;
     } else if (const auto* status = std::get_if<Status>(&frame.message)) {
       countLosses(frame.sequence);
-      // One from before this session tells nothing about it.
+      // A status from before this session is ignored.
       if (!isUp()) continue;
       take(*status, now);
       events.push_back(isUp() ? LinkEvent(*status) : LinkLost{reason_});
@@ -104,10 +104,10 @@ void Link::take(const Status& status, double now) {
     begin("the controller answers requests that were never sent", now);
     return;
   }
-  const bool answers = !status_ || status.echo != status_->echo;  // or it echoes again what it has taken before
+  const bool answers = !status_ || status.echo != status_->echo;  // false: echoes the same request as the last status
   ++statistics_.received;
   status_ = status;
-  // Its age counts from the request: a line that holds bytes back delivers old news in time.
+  // Its age counts from the request, since a line that holds bytes back may deliver old statuses regularly.
   const auto behind = static_cast<std::uint16_t>(sequence_ - status.echo);
   if (behind >= sent_at_.size()) {
     status_at_ = -std::numeric_limits<double>::infinity();
@@ -143,7 +143,8 @@ Bytes Link::send(const Message& message, double now) {
   ++sequence_;
   sent_at_[sequence_ % sent_at_.size()] = now;
   ++statistics_.sent;
-  // Slots keep their rhythm, but are not made up for after a pause, and begin anew after a request between them.
+  // Slots are periodic; missed ones are not made up for after a pause, and the period starts anew after a request
+  // between slots.
   const double period = 1.0 / config_.rate;
   next_ = next_ <= now && next_ + period > now ? next_ + period : now + period;
   return bytes;

@@ -9,8 +9,7 @@ namespace laparoscope_servo::aesop {
 void describe(parameters::Table& table, ReconnectConfig& c) {
   table.number("first_pause", c.first_pause, {0.05, 10}, "s", "each further pause is twice as long");
   table.number("longest_pause", c.longest_pause, {0.05, 60}, "s", "no pause is longer").atLeast("first_pause");
-  table.number("stable_time", c.stable_time, {0, 3600}, "s",
-               "after a link that was up for so long the pauses are short again");
+  table.number("stable_time", c.stable_time, {0, 3600}, "s", "a link that was up for this long resets the pauses");
 }
 
 std::vector<std::string> validate(const ReconnectConfig& config) {

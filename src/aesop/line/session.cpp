@@ -45,7 +45,7 @@ std::string Session::enable(double now) {
   if (isFault(status)) return text({Kind::kFault, status.faults}) + "; clear_fault comes first";
   if (!status.homed) return "the arm is not homed: its joint positions mean nothing";
   if (isOn(state_)) return "";
-  // The controller must come from DISABLED, so that what it did before cannot go on.
+  // The controller must be DISABLED first, so that no earlier motion can continue.
   if (status.state != RobotState::kDisabled) return "still disabling; try again";
   on(Event::kEnable, SessionReason{Kind::kEnableAskedFor});
   urgent_ = true;
@@ -129,7 +129,7 @@ void Session::take(const Status& status) {
   takeFault(status);
   if (!status.homed) on(Event::kNotHomed, SessionReason{Kind::kHomingLost});
   if (status.state == RobotState::kDisabled) on(Event::kDisabledItself, SessionReason{Kind::kDisabledItself});
-  // Not while a Disable waits for its confirmation: no Enable has been sent then.
+  // Not while a Disable awaits its confirmation, since no Enable has been sent then.
   if (status.state == RobotState::kEnabled && disable_ == Disabling::kConfirmed &&
       compareSequence(status.echo, request_sequence_) > 0) {
     on(Event::kEnableConfirmed, SessionReason());
@@ -141,7 +141,7 @@ void Session::take(const Status& status) {
 
 void Session::takeFault(const Status& status) {
   if (isFault(status)) {
-    // One that is known keeps what was said of it.
+    // An already reported fault keeps its reason text.
     if (isOn(state_) || !reason_.isFault() || reason_.faults != status.faults) {
       on(Event::kFault, SessionReason{Kind::kFault, status.faults});
     }
@@ -160,7 +160,7 @@ void Session::watch(double now) {
     on(Event::kEnableOverdue, SessionReason{Kind::kEnableNotConfirmed});
     if (link_.status()) on(Event::kClearOverdue, SessionReason{Kind::kFaultNotCleared, link_.status()->faults});
   }
-  // What cannot be asked is not overdue.
+  // No timeout of the Disable runs while the link is down.
   if (!link_.isUp() && isUnconfirmed()) disable_ = Disabling::kAwaited;
   if (!link_.isUp() || disable_ == Disabling::kConfirmed) disable_deadline_ = now + config_.request_timeout;
   if (now > disable_deadline_) {
@@ -204,8 +204,8 @@ Bytes Session::transmit(const std::array<double, kDrivenJoints>& speed, double n
   }
 }
 
-// An Identify disables the controller: it is a Disable, too. Their numbers go on while nobody answers, for hours
-// perhaps, until that of the Disable looks as if it were still to come.
+// An Identify disables the controller, so it counts as the Disable that awaits its confirmation. Sequence numbers wrap
+// at 65536; without this, the number of an old Disable would compare as newer after a long time without an answer.
 Bytes Session::identify(double now) {
   Bytes bytes = link_.identify(now);
   if (!bytes.empty()) disable_sequence_ = link_.sequence();

@@ -10,9 +10,11 @@ namespace laparoscope_servo::aesop {
 void describe(parameters::Table& table, SessionConfig& c) {
   table.number("rate", c.rate, {5, 200}, "Hz", "requests to the controller, each answered by its status");
   table.number("time_to_live", c.time_to_live, {0.01, 2}, "s",
-               "the controller stops by itself when no command follows in this time, which is at least 2 / rate");
-  table.number("status_timeout", c.status_timeout, {0.05, 5}, "s", "no status for longer is a lost link");
-  table.number("request_timeout", c.request_timeout, {0.1, 10}, "s", "for the controller to confirm a request");
+               "validity of a velocity, at least 2 / rate; without a new one the controller then stops by itself");
+  table.number("status_timeout", c.status_timeout, {0.05, 5}, "s",
+               "longest time without a status; then the link is lost");
+  table.number("request_timeout", c.request_timeout, {0.1, 10}, "s",
+               "longest time longest time for the controller to confirm a request");
   describeCodec(table, c.codec);
 }
 
@@ -20,14 +22,14 @@ void describeCodec(parameters::Table& table, CodecFactory& codec) {
   const std::vector<std::string> names = codecNames();
   table.choice(
       "codec", names,
-      [names, &codec] {  // one that is on no list, of who links the driver, is none of a file's either
+      [names, &codec] {  // a codec of a program that links the driver is on no list and has no name in files
         const auto found = std::find_if(names.begin(), names.end(), [&codec](const std::string& name) {
           return codec && codecNamed(name)()->name() == codec()->name();
         });
         return found == names.end() ? std::size_t{0} : static_cast<std::size_t>(found - names.begin());
       },
       [names, &codec](std::size_t k) { codec = codecNamed(names[k]); },
-      "the wire format; own is the only one that is shipped");
+      "the wire format; own is the only one in this package");
 }
 
 std::vector<std::string> validate(const SessionConfig& config) {

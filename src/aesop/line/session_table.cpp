@@ -21,7 +21,7 @@ constexpr unsigned kOff = kDisabled | kClearing;
 
 }  // namespace
 
-// One screen. A row that leads to the state itself changes its reason.
+// All transitions. A self-transition only updates the reason.
 const std::vector<SessionTransition>& sessionTransitions() {
   constexpr bool disables = true;
   constexpr bool sends_nothing = false;
@@ -37,11 +37,11 @@ const std::vector<SessionTransition>& sessionTransitions() {
       {kOn, Event::kLinkLost, State::kDisabled, disables, End::kStopped},
       {kOn, Event::kFault, State::kDisabled, disables, End::kStopped},
       {kOn, Event::kNotHomed, State::kDisabled, disables, End::kStopped},
-      {kEnabled | kPaused, Event::kDisabledItself, State::kDisabled, disables, End::kStopped},  // so it says
+      {kEnabled | kPaused, Event::kDisabledItself, State::kDisabled, disables, End::kStopped},  // by its own report
       {kEnabling, Event::kEnableOverdue, State::kDisabled, disables, End::kStopped},
 
       {kDisabled, Event::kClearFault, State::kClearing, sends_nothing, End::kAsBefore},
-      {kClearing, Event::kClearFault, State::kClearing, sends_nothing, End::kAsBefore},  // for as long again
+      {kClearing, Event::kClearFault, State::kClearing, sends_nothing, End::kAsBefore},  // starts the timeout again
       {kClearing, Event::kNoFault, State::kDisabled, sends_nothing, End::kAsBefore},
       {kClearing, Event::kClearOverdue, State::kDisabled, sends_nothing, End::kAsBefore},
 

@@ -59,7 +59,7 @@ class SerialTransport::Port {
     port_.open(name, error);
     if (error) fail(name_, error.value());
     if (::isatty(port_.native_handle()) == 0) fail(name_, ENOTTY);
-    // The lock keeps out our own kind, also as root; TIOCEXCL keeps out everybody else.
+    // The lock keeps out other processes of this package, also as root; TIOCEXCL keeps out all others.
     if (::flock(port_.native_handle(), LOCK_EX | LOCK_NB) != 0) fail(name_, errno);
     if (::ioctl(port_.native_handle(), TIOCEXCL) != 0) fail(name_, errno);
     exclusive_ = true;
@@ -75,7 +75,7 @@ class SerialTransport::Port {
                            " baud, 8N1, no flow control: " + refused.code().message());
     }
     low_latency_ = askForLowLatency();
-    ::tcflush(port_.native_handle(), TCIOFLUSH);  // what was on its way to or from somebody else
+    ::tcflush(port_.native_handle(), TCIOFLUSH);  // drops bytes that belong to another process
     listen();
   }
 
@@ -113,8 +113,8 @@ class SerialTransport::Port {
   }
 
  private:
-  // Bytes are handed over as they come, not when a timer of the adapter (16 ms in FTDI's) has run out. A pty and many
-  // drivers have no such setting.
+  // Makes the driver pass on bytes as they come instead of after a timer of the adapter (16 ms in FTDI's). A pty and
+  // many drivers have no such setting.
   bool askForLowLatency() {
     serial_struct settings{};
     if (::ioctl(port_.native_handle(), TIOCGSERIAL, &settings) != 0) return false;
@@ -160,8 +160,8 @@ class SerialTransport::Port {
   void release() {
     if (!port_.is_open()) return;
     if (exclusive_) ::ioctl(port_.native_handle(), TIOCNXCL);
-    ::tcflush(port_.native_handle(), TCOFLUSH);  // or closing may wait half a minute for a line that takes nothing
-    error_code ignored;                          // closing a line that has gone reports that it has gone
+    ::tcflush(port_.native_handle(), TCOFLUSH);  // otherwise closing may wait half a minute for a blocked line
+    error_code ignored;                          // closing a line that is gone returns an error
     port_.close(ignored);
   }
 
@@ -185,7 +185,7 @@ void SerialTransport::open(const std::string& port, int baud_rate) {
   port_.reset();
   try {
     port_ = std::make_unique<Port>(port, baud_rate);
-  } catch (const boost::system::system_error& error) {  // no descriptors left, for one
+  } catch (const boost::system::system_error& error) {  // for example if no descriptors are left
     throw TransportError("port '" + port + "': it cannot be opened: " + error.what());
   }
 }

@@ -70,7 +70,7 @@ class Writer {
   Bytes bytes_;
 };
 
-// Reads a payload whose length has been checked; a read past its end is refused all the same.
+// Reads a payload whose length has been checked; it still refuses to read beyond the end.
 class Reader {
  public:
   Reader(const std::uint8_t* data, std::size_t size) : data_(data), size_(size) {}
@@ -86,7 +86,7 @@ class Reader {
     const std::uint32_t low = u16();
     return low | (static_cast<std::uint32_t>(u16()) << 16);
   }
-  // In millionths; what is out of range makes the payload malformed.
+  // In millionths; a value out of range makes the payload malformed.
   double micro() {
     const double value = static_cast<std::int32_t>(u32()) / kMicro;
     in_range_ = in_range_ && std::abs(value) <= kLargestNumber;
@@ -248,7 +248,7 @@ std::vector<Frame> Decoder::push(const std::uint8_t* data, std::size_t size) {
     }
     if (buffer_.size() - at < kHeader) break;
     const std::size_t payload = start[3];
-    // A length that no frame has would make a corrupted byte swallow the good frames behind it.
+    // An impossible length is refused at once; otherwise a corrupted byte would swallow the good frames behind it.
     if (payload > kLargestPayload) {
       skip(1);
       continue;
@@ -258,7 +258,7 @@ std::vector<Frame> Decoder::push(const std::uint8_t* data, std::size_t size) {
     const auto sum = static_cast<std::uint16_t>(start[total - 2] | (start[total - 1] << 8));
     if (crc(start + 2, total - 4) != sum) {
       ++statistics_.crc_errors;
-      skip(1);  // not the whole frame: its length may be what is wrong
+      skip(1);  // not the whole frame, since its length may be wrong
       continue;
     }
     if (deliver(start, frames)) {
@@ -267,7 +267,7 @@ std::vector<Frame> Decoder::push(const std::uint8_t* data, std::size_t size) {
       skip(total);
     }
   }
-  // Of what is left, at most one frame's beginning is kept.
+  // Keeps the rest, which is at most the beginning of one frame.
   buffer_.erase(buffer_.begin(), buffer_.begin() + static_cast<std::ptrdiff_t>(at));
   return frames;
 }

@@ -1,7 +1,7 @@
 // The wire format between the driver and the controller, version 1: doc/aesop_protocol.md describes it byte by byte. It
 // is this project's own: the vendor's is not public.
 //
-// The decoder takes bytes as they come, in pieces of any length, and finds its way back after garbage.
+// The decoder takes bytes in pieces of any length, and synchronises again after garbage.
 #pragma once
 
 #include "laparoscope_servo/aesop/codec.h"
@@ -12,25 +12,25 @@ constexpr std::uint8_t kProtocolVersion = 1;
 constexpr std::size_t kFrameOverhead = 9;  // bytes of a frame beside its payload
 constexpr std::size_t kLargestPayload = 66;
 
-// The bytes of one frame. Throws std::invalid_argument, naming field and value, when a number is not finite or out of
-// range.
+// Encodes one frame. Throws std::invalid_argument, naming field and value, when a number is not finite or out of range.
 Bytes encode(const Frame& frame);
 
 class Decoder {
  public:
-  // The frames that `size` more bytes complete, oldest first.
+  // Decodes `size` more bytes and returns the frames that they complete, oldest first.
   std::vector<Frame> push(const std::uint8_t* data, std::size_t size);
   std::vector<Frame> push(const Bytes& bytes) { return push(bytes.data(), bytes.size()); }
-  // Forgets a frame that is not yet complete; the statistics stay.
+  // Drops an incomplete frame; the statistics stay.
   void reset() { buffer_.clear(); }
 
-  // Bytes of a frame that is not yet complete: fewer than the longest frame has. All others that were pushed since the
-  // last reset are skipped bytes or bytes of frames delivered.
+  // Number of bytes of an incomplete frame, less than the longest frame. All other bytes since the last reset were
+  // skipped or belong to frames returned.
   std::size_t pending() const { return buffer_.size(); }
   const DecoderStatistics& statistics() const { return statistics_; }
 
  private:
-  // Whether the frame at `start` with a right sum is good; counts it.
+  // Decodes the frame at `start`, whose check sum is correct, and counts it; false if it is malformed or of another
+  // version.
   bool deliver(const std::uint8_t* start, std::vector<Frame>& frames);
 
   Bytes buffer_;

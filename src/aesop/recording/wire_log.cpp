@@ -106,7 +106,7 @@ std::optional<WireRecord> WireLogReader::next() {
       *event > static_cast<std::uint8_t>(WireEvent::kInsertionPoint)) {
     fail("event " + std::to_string(*event) + ", expected 1 to 12");
   }
-  truncated_ = true;  // until the record is complete
+  truncated_ = true;  // set to false when the record is complete
   const std::optional<std::uint64_t> pause = varint();
   const std::optional<std::uint64_t> size = varint();
   if (!pause || !size) return std::nullopt;

@@ -21,7 +21,8 @@ namespace laparoscope_servo::aesop {
 
 namespace {
 
-constexpr std::size_t kLargestBacklog = 1 << 20;  // bytes, of minutes: a disk that is as far behind has a problem
+// bytes, of several minutes: with a larger backlog the disk counts as faulty
+constexpr std::size_t kLargestBacklog = 1 << 20;
 constexpr std::chrono::milliseconds kPause{200};  // between two writes
 constexpr double kMegabyte = 1e6;
 
@@ -45,7 +46,7 @@ std::vector<std::string> validate(const WireLogConfig& config) {
 class WireLogFile::Writer {
  public:
   Writer(const WireLogConfig& config, const std::string& codec) : config_(config), codec_(codec) {
-    // Signals are for the thread that drives the arm; a limit on the size of files must not kill the process either.
+    // Signals are for the thread that drives the arm; a limit on the file size must not kill the process.
     sigset_t all;
     sigset_t before;
     ::sigfillset(&all);
@@ -84,7 +85,7 @@ class WireLogFile::Writer {
   }
 
  private:
-  // A new file. It says the state first: what came before is elsewhere.
+  // Begins a new file, with the present state first, since the earlier records are in another file.
   void begin(std::int64_t time) {
     if (waiting_.empty() || segments_ > 0) waiting_.emplace_back();
     encoder_.begin({wallTime(), time, codec_}, waiting_.back());
@@ -109,7 +110,7 @@ class WireLogFile::Writer {
       last = ending_;
       std::vector<Bytes> pieces;
       pieces.swap(waiting_);
-      // Goes on behind what is being written now, in the same file.
+      // Appends to the same file, after the records that are being written now.
       if (segments_ > 0) waiting_.emplace_back();
       backlog_ = 0;
       lock.unlock();
@@ -119,7 +120,7 @@ class WireLogFile::Writer {
     }
   }
 
-  // Each piece but the first begins a new file. Says what went wrong.
+  // Each piece but the first begins a new file. Returns what went wrong.
   std::string write(const std::vector<Bytes>& pieces) {
     for (std::size_t k = 0; k < pieces.size(); ++k) {
       if (k > 0 || file_ < 0) {
@@ -168,7 +169,7 @@ class WireLogFile::Writer {
 
   const WireLogConfig config_;
   const std::string codec_;
-  int file_ = -1;  // the thread's alone
+  int file_ = -1;  // used by the thread only
 
   mutable std::mutex mutex_;
   std::condition_variable wake_;

@@ -37,17 +37,17 @@ void AesopDiagnostics::summarise(const aesop::OperatingState& state, const aesop
 }
 
 void AesopDiagnostics::addMaster(double now, const AesopReport& report, Status& status) {
-  const std::string complaint = report.master.complaint(now);
+  const std::string complaint = report.command_owner.complaint(now);
   if (!complaint.empty()) {
     status.mergeSummary(DiagnosticStatus::WARN, complaint);
   } else if (report.publishers > 1) {
     status.mergeSummary(DiagnosticStatus::WARN,
                         std::to_string(report.publishers) + " publishers of commands are connected, only " +
-                            report.master.name() + " counts ('rostopic info' of the topic names them)");
+                            report.command_owner.name() + " counts ('rostopic info' of the topic names them)");
   }
-  status.add("node whose commands count", report.master.name());
+  status.add("node whose commands count", report.command_owner.name());
   status.add("publishers of commands", report.publishers);
-  status.add("commands refused for their sender", report.master.refused());
+  status.add("commands refused for their sender", report.command_owner.refused());
 }
 
 void AesopDiagnostics::addCommands(double now, const aesop::CommandGuard& guard, Status& status) {

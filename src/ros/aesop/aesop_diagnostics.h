@@ -1,4 +1,4 @@
-// What the aesop node says on /diagnostics.
+// The diagnostics of the aesop node.
 #pragma once
 
 #include <diagnostic_updater/DiagnosticStatusWrapper.h>
@@ -11,23 +11,23 @@
 
 namespace laparoscope_servo {
 
-// What the node knows beside the driver.
+// Facts of the node that the driver does not have.
 struct AesopReport {
-  const InputOwner& master;
-  std::uint32_t publishers = 0;  // connections that carry commands
+  const InputOwner& command_owner;
+  std::uint32_t publishers = 0;  // number of connections on which commands may come
   double next_attempt = 0.0;     // s until the port is tried again, while it is closed
 };
 
 // Times are seconds of a steady clock.
 class AesopDiagnostics {
  public:
-  // `line_warning`: what is wrong with the settings of the line; empty when nothing is.
+  // `line_warning`: error in the settings of the line; empty if there is none.
   AesopDiagnostics(const std::string& port, const std::string& line_warning)
       : port_(port), line_warning_(line_warning) {}
 
   const std::string& lineWarning() const { return line_warning_; }
   // Level: ERROR without a link or in FAULT; WARN when the line cannot carry the rate or has lost bytes since the last
-  // call, or when others than the master command. Rates are those since the last call.
+  // call, or when other nodes than the owner publish commands. Rates are those since the last call.
   void fill(double now, const aesop::Driver& driver, const AesopReport& report,
             diagnostic_updater::DiagnosticStatusWrapper& status);
 

@@ -17,11 +17,12 @@ namespace laparoscope_servo {
 namespace {
 
 constexpr std::chrono::milliseconds kPeriod{5};
-constexpr std::uint32_t kQueue = 1000;     // commands: 0.1 s of a stranger that floods the topic with 10 kHz
-constexpr double kReportPause = 1.0;       // s, between two warnings of commands that are refused for the same reason
-constexpr double kStrangerPause = 10.0;    // s, between two of the same publisher that is not the master
+constexpr std::uint32_t kQueue = 1000;  // commands: 0.1 s of another publisher that floods the topic at 10 kHz
+constexpr double kReportPause = 1.0;    // s, between two warnings of commands that are refused for the same reason
+// s, between two warnings about the same publisher that does not own the commands
+constexpr double kStrangerPause = 10.0;
 constexpr double kDiagnosticsPause = 1.0;  // s
-constexpr double kStatePeriod = 0.05;      // s, between two publications of an operating state that stays
+constexpr double kStatePeriod = 0.05;      // s, between two publications of an unchanged operating state
 constexpr double kLastWord = 0.5;          // s, for the controller to confirm the disable when the node ends
 
 std::vector<std::string> resolved(const ros::NodeHandle& node, const std::vector<std::string>& names) {
@@ -38,7 +39,7 @@ AesopNode::AesopNode(const ros::NodeHandle& node, const ros::NodeHandle& private
       tip_R_optical_(scope::obliqueOptics(parameters.optics_angle, parameters.optics_roll).transpose()),
       driver_(parameters.driver),
       reconnect_(parameters.reconnect),
-      master_(node.resolveName(parameters.publisher, false), "commands", "command/publisher"),
+      command_owner_(node.resolveName(parameters.publisher, false), "commands", "command/publisher"),
       callers_(resolved(node, parameters.service_callers)),
       calibration_(private_node, parameters, callers_, service_errors_, driver_),
       reported_(parameters.port, aesop::lineWarning(parameters.driver.session, parameters.baud_rate)),
@@ -51,20 +52,20 @@ AesopNode::AesopNode(const ros::NodeHandle& node, const ros::NodeHandle& private
   pose_publisher_ = private_node_.advertise<geometry_msgs::PoseStamped>("measured_cp", 10);
   twist_publisher_ = private_node_.advertise<geometry_msgs::TwistStamped>("measured_cv", 10);
   state_publisher_ = private_node_.advertise<OperatingState>("operating_state", 10, true);
-  // Only the master's newest command counts, but others must not push it out of the queue.
+  // Only the owner's newest command counts, but those of others must not push it out of the queue.
   command_subscriber_ =
       node_.subscribe("servo_command", kQueue, &AesopNode::onCommand, this, ros::TransportHints().tcpNoDelay());
   stop_subscriber_ = private_node_.subscribe("stop", 1, &AesopNode::onStop, this, ros::TransportHints().tcpNoDelay());
   advertise("enable", &AesopNode::enable, Callers::kNamed);
   advertise("resume", &AesopNode::resume, Callers::kNamed);
   advertise("clear_fault", &AesopNode::clearFault, Callers::kNamed);
-  // What makes the arm stand is for everybody.
+  // Services that stop the arm may be called by every node.
   advertise("disable", &AesopNode::disable, Callers::kAll);
   advertise("pause", &AesopNode::pause, Callers::kAll);
   diagnostics_.setHardwareID(parameters_.port);
   diagnostics_.add("AESOP", [this](diagnostic_updater::DiagnosticStatusWrapper& status) {
     const double now = steadyNow();
-    reported_.fill(now, driver_, {master_, command_subscriber_.getNumPublishers(), reconnect_.remaining(now)}, status);
+    reported_.fill(now, driver_, {command_owner_, command_subscriber_.getNumPublishers(), reconnect_.remaining(now)}, status);
     stops_.describe(now, status);
     calibration_.describe(status);
     if (recording_ && !recording_->problem().empty())
@@ -94,7 +95,8 @@ void AesopNode::run(const std::function<bool()>& stop) {
     }
   } catch (const std::exception& error) {
     ROS_FATAL_STREAM(error.what() << "; the arm is disabled, the node ends");
-    shutDown([this] { exchange(steadyNow()); });  // nothing else, as it may be what has failed
+    // only the exchange with the arm, since any other part may have failed
+    shutDown([this] { exchange(steadyNow()); });
     throw;
   }
   shutDown([this] { step(); });
@@ -118,7 +120,7 @@ void AesopNode::step() {
   watchOutside(now);
   exchange(now);
   if (driver_.session().link().isUp()) reconnect_.up(now);
-  if (!driver_.session().isEnabled()) master_.release();
+  if (!driver_.session().isEnabled()) command_owner_.release();
   watchRecording();
   publishStatus();
   countEnables();
@@ -133,15 +135,15 @@ void AesopNode::step() {
 void AesopNode::watchOutside(double now) {
   const std::string stop = stops_.takeStop(now);
   if (!stop.empty()) stopArm(stop, now);
-  // At every step: an enable that was under way may have been confirmed in the meantime.
+  // At every step, since an enable that was under way may be confirmed meanwhile.
   const std::string& problem = stops_.masterProblem();
   if (!problem.empty() && driver_.session().isEnabled()) driver_.pause(problem);
-  // What was commanded before is forgotten, and what comes in the meantime at the next step.
+  // Clears the last command; one that comes meanwhile is cleared at the next step.
   if (stops_.masterIsLate(now) && driver_.session().isEnabled()) driver_.command({}, 0.0, stampNow(), now);
 }
 
 void AesopNode::stopArm(const std::string& reason, double now) {
-  // Asked for again while it is under way, it would have to be confirmed again: a flood would never end.
+  // A repeated request would need another confirmation, so a flood of requests would never end.
   const aesop::OperatingState state = driver_.state(now);
   if (state.mode != aesop::OperatingMode::kDisabled || state.reason != reason) driver_.stop(now, reason);
 }
@@ -192,7 +194,7 @@ bool AesopNode::stepUntil(const std::function<bool()>& done, double seconds) {
 void AesopNode::shutDown(const std::function<void()>& step) {
   if (!transport_.isOpen()) return;
   driver_.disable(steadyNow());
-  // Confirmed by a status that answers it and shows that nothing moves.
+  // Confirmed by a status that answers it and reports rest.
   const auto standing = [this] { return !driver_.session().link().isUp() || !driver_.session().state().is_busy; };
   if (!repeatUntil(standing, kLastWord, step)) {
     ROS_ERROR(
@@ -201,7 +203,7 @@ void AesopNode::shutDown(const std::function<void()>& step) {
   try {
     transport_.drain(0.1);
   } catch (const aesop::TransportError& error) {
-    ROS_ERROR_STREAM(error.what());  // the line has gone in the meantime: nothing more can be said to it
+    ROS_ERROR_STREAM(error.what());  // the line was lost meanwhile: nothing can be sent any more
   }
   transport_.close();
 }
@@ -209,14 +211,14 @@ void AesopNode::shutDown(const std::function<void()>& step) {
 void AesopNode::onCommand(const ros::MessageEvent<ScopeVelocity const>& event) {
   const double now = steadyNow();
   const ScopeVelocity& message = *event.getConstMessage();
-  switch (master_.judge(event.getPublisherName(), event.getConnectionHeaderPtr(), now)) {
+  switch (command_owner_.judge(event.getPublisherName(), event.getConnectionHeaderPtr(), now)) {
     case InputOwner::Verdict::kStranger:
-      if (const auto line = stranger_lines_.take(master_.complaint(now), now)) ROS_WARN_STREAM(*line);
+      if (const auto line = stranger_lines_.take(command_owner_.complaint(now), now)) ROS_WARN_STREAM(*line);
       return;
     case InputOwner::Verdict::kNewConnection:
-      // Restarted, replaced by another process of its name, or joined by one: which of them shall move the arm is for
-      // somebody to say who sees it stand.
-      driver_.pause(master_.name() + " has connected anew; resume when it may command the arm");
+      // The publisher was restarted, replaced by another process of its name, or joined by one. An operator must
+      // confirm, with the arm at rest, which process may command it.
+      driver_.pause(command_owner_.name() + " has connected anew; resume when it may command the arm");
       return;
     case InputOwner::Verdict::kOwner:
       break;
@@ -224,7 +226,7 @@ void AesopNode::onCommand(const ros::MessageEvent<ScopeVelocity const>& event) {
   const scope::Velocity velocity = fromMessage(message);
   if (calibration_.takes(velocity, now)) return;
   const std::string refusal = driver_.command(velocity, message.header.stamp.toSec(), stampNow(), now);
-  // Commands that come before the arm is enabled are nobody's mistake, but one that is not finite is.
+  // Commands before the arm is enabled are no error, except a non-finite one.
   if (refusal.empty() || (!driver_.session().isEnabled() && velocity.isFinite())) return;
   if (const auto line = refused_lines_.take("a command was refused: " + refusal, now)) ROS_WARN_STREAM(*line);
 }
@@ -247,14 +249,14 @@ void AesopNode::publishStatus() {
 
 aesop::OperatingState AesopNode::state(double now) const {
   aesop::OperatingState state = driver_.state(now);
-  const std::string complaint = master_.complaint(now);
+  const std::string complaint = command_owner_.complaint(now);
   if (state.mode == aesop::OperatingMode::kEnabled && stops_.masterIsLate(now))
     state.reason = "held until the ROS master answers";
   if (!complaint.empty()) state.reason += (state.reason.empty() ? "" : "; ") + complaint;
   return state;
 }
 
-// A pause is none: who relies on the arm goes on after it.
+// A pause does not increment the count, so that the controller can go on after it.
 void AesopNode::countEnables() {
   const aesop::OperatingMode mode = driver_.session().state().mode;
   const bool on = mode == aesop::OperatingMode::kEnabled || mode == aesop::OperatingMode::kPaused;
@@ -264,7 +266,7 @@ void AesopNode::countEnables() {
 
 void AesopNode::publishState(double now) {
   const aesop::OperatingState state = this->state(now);
-  // Repeated, so that who relies on it notices when it ends.
+  // Published repeatedly, so that subscribers notice when it stops.
   if (state_published_ && state == last_state_ && now - state_time_ < kStatePeriod) return;
   state_time_ = now;
   last_state_ = state;
@@ -276,7 +278,7 @@ void AesopNode::publishState(double now) {
 
 void AesopNode::reportState(double now) {
   aesop::OperatingState state = driver_.state(now);
-  // Said by onCommand(), where none of them is missed.
+  // Logged by onCommand(), which misses none of them.
   if (state.mode == aesop::OperatingMode::kEnabled && state.reason.rfind("command refused: ", 0) == 0)
     state.reason.clear();
   const std::optional<StateLine> line = state_report_.take(state, driver_.session(), now);

@@ -1,6 +1,6 @@
 // The aesop node: topics, services and tf around aesop::Driver and a serial port. Their units: doc/nodes/aesop.md.
 //
-// One thread, one loop at a steady rate: neither a standing nor a jumping ROS clock touches the watchdogs.
+// One thread, one loop at a steady rate: a ROS clock that stops or jumps does not affect the watchdogs.
 #pragma once
 
 #include <diagnostic_updater/diagnostic_updater.h>
@@ -35,44 +35,44 @@ class AesopNode {
   // Throws std::invalid_argument when the parameters are not valid.
   AesopNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node, const AesopParameters& parameters);
 
-  // Runs until `stop` returns true or ROS shuts down, then disables the arm and waits a moment for it to be confirmed.
-  // The same when anything throws, which is then thrown on, and when the ROS master is not that of the start any more,
-  // for which std::runtime_error is thrown.
+  // Runs until `stop` returns true or ROS shuts down, then disables the arm and waits a moment for the confirmation.
+  // Also disables the arm before it passes on an exception, and before it throws std::runtime_error because the ROS
+  // master is not that of the start any more.
   void run(const std::function<bool()>& stop);
 
  private:
   using Response = std_srvs::Trigger::Response;
 
   void step();
-  // Bytes to and from the line, if there is one.
+  // Exchanges bytes with the line, if it is open.
   void exchange(double now);
   void connect(double now);
   void lose(const std::string& reason, double now);
   void shutDown(const std::function<void()>& step);
-  // Steps until `done` or for `seconds`; says whether it is done.
+  // Steps until `done` is true, at most for `seconds`; returns `done`.
   bool stepUntil(const std::function<bool()>& done, double seconds);
   static bool repeatUntil(const std::function<bool()>& done, double seconds, const std::function<void()>& step);
 
   void onCommand(const ros::MessageEvent<ScopeVelocity const>& event);
-  // Any publisher may stop the arm: it works without a master, over connections that are open already.
+  // Any publisher may stop the arm. Works without a ROS master, over open connections.
   void onStop(const ros::MessageEvent<std_msgs::Empty const>& event);
   void stopArm(const std::string& reason, double now);
   void watchOutside(double now);
 
-  // Each returns what the service answers.
+  // Each returns the response of the service.
   Response enable();
   Response disable();
   Response clearFault();
   Response pause();
   Response resume();
   using Action = Response (AesopNode::*)();
-  // Whether everybody may call it, or only the nodes that the configuration names.
+  // Whether every node may call a service, or only the nodes named by the configuration.
   enum class Callers { kAll, kNamed };
   void advertise(const std::string& name, Action action, Callers callers);
 
   void watchRecording();
   void publishStatus();
-  // The driver's, with what it does not know: whose commands were refused.
+  // The driver's state, with the node whose commands were refused, which the driver does not know.
   aesop::OperatingState state(double now) const;
   void publishState(double now);
   void countEnables();
@@ -81,11 +81,11 @@ class AesopNode {
 
   AesopParameters parameters_;
   Eigen::Matrix3d tip_R_optical_;
-  std::unique_ptr<aesop::WireLogFile> recording_;  // outlives the driver that it listens to; null: none
-  bool recording_ended_ = false;                   // and was reported
+  std::unique_ptr<aesop::WireLogFile> recording_;  // must outlive the driver; null: no recording
+  bool recording_ended_ = false;                   // its end was reported
   aesop::Driver driver_;
   aesop::Reconnect reconnect_;
-  InputOwner master_;
+  InputOwner command_owner_;
   ServiceCallers callers_;
   ServiceErrors service_errors_;
   aesop::SerialTransport transport_;
@@ -97,7 +97,7 @@ class AesopNode {
   StateReport state_report_;
   ExternalStops stops_;
   StatusStamp status_stamp_;
-  std::uint64_t published_ = 0;  // statuses received when the last one was published
+  std::uint64_t published_ = 0;  // number of statuses received at the last publication
   aesop::OperatingState last_state_;
   bool state_published_ = false;
   std::uint32_t enables_ = 0;  // see OperatingState.msg

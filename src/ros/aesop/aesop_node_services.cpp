@@ -1,5 +1,4 @@
-// The services of the aesop node. Each answers when the arm has confirmed what was asked for, or when it has not in
-// time.
+// The services of the aesop node. Each answers when the arm has confirmed the request, or after a timeout.
 #include <ros/ros.h>
 
 #include "ros/aesop/aesop_node.h"

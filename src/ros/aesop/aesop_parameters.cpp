@@ -14,9 +14,9 @@ using parameters::Table;
 namespace {
 
 void describe(Table& table, CalibrationParameters& c) {
-  table.text("file", c.file, "path where the result is saved; empty: nowhere, it holds until the node ends");
+  table.text("file", c.file, "path of the file for the result; empty: not saved, valid until the node ends");
   table.flag("pattern_allowed", c.pattern_allowed,
-             "the method PATTERN moves the arm, whatever a dead-man switch says; calibrate.launch says true");
+             "the method PATTERN may move the arm, without a dead-man switch; calibrate.launch sets true");
   describe(table, c.fit);
   describe(table, c.pattern);
 }
@@ -50,7 +50,7 @@ void describe(Table& table, AesopParameters& c) {
       .texts("service_callers", c.service_callers,
              "who may call enable, resume and clear_fault, start or finish a calibration; none: every node")
       .accepting(kNodeName, isNodeName);
-  table.group("optics", "how the camera looks out of the scope", [&] {
+  table.group("optics", "direction of the optical axis relative to the shaft", [&] {
     table.number("angle", c.optics_angle, {-1.3, 1.3}, "rad",
                  "between the shaft and the optical axis; 0.5236 is a 30 degree scope");
     table.number("roll", c.optics_roll, {-3.2, 3.2}, "rad",
@@ -59,23 +59,24 @@ void describe(Table& table, AesopParameters& c) {
   table.numbers("insertion_point", c.driver.insertion_point.data(), 3, parameters::Range::between(-10, 10), "m",
                 "of the trocar in aesop_base");
   table.text("insertion_point_file", c.insertion_point_file,
-             "path of a calibration that takes the place of insertion_point; empty: none");
+             "path of a calibration that replaces insertion_point; empty: none");
   table.group("kinematics", "AESOP 3000, nominal: from a public calibration demo of unknown accuracy",
               [&] { describe(table, c.driver.kinematics); });
-  table.group("motion", "where the arm is slowed, and where it is held", [&] { describe(table, c.driver.motion); });
+  table.group("motion", "limits at which the arm is slowed, and at which it stops",
+              [&] { describe(table, c.driver.motion); });
   table.group("command", "which velocities are executed", [&] {
     table
         .text("publisher", c.publisher,
-              "the one node whose commands count; without a leading slash, in the namespace of this one")
+              "the only node whose commands are accepted; without a leading slash, in the namespace of this one")
         .accepting(kNodeName, isNodeName);
     describe(table, c.driver.command);
   });
-  table.group("link", "the conversation over the line", [&] { describe(table, c.driver.session); });
+  table.group("link", "the link to the arm's controller", [&] { describe(table, c.driver.session); });
   table.group("reconnect", "to a port that could not be opened or has gone; always into DISABLED",
               [&] { describe(table, c.reconnect); });
-  table.group("wire_log", "all that goes over the line, for the tool wire_log", [&] { describe(table, c.wire_log); });
+  table.group("wire_log", "recording of the serial line, for the tool wire_log", [&] { describe(table, c.wire_log); });
   describe(table, c.external_stops);
-  table.group("monitor", "joints that do not do what they are told, by their own account, disable the arm",
+  table.group("monitor", "joints whose reported motion does not follow their commands disable the arm",
               [&] { describe(table, c.driver.monitor); });
   table.group("calibration", "of the insertion point, by the services calibrate_insertion_point/...",
               [&] { describe(table, c.calibration); });

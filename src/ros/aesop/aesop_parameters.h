@@ -16,8 +16,8 @@
 namespace laparoscope_servo {
 
 struct CalibrationParameters {
-  std::string file;              // where a calibrated insertion point is saved; empty: nowhere
-  bool pattern_allowed = false;  // the arm may be moved by it, though no dead-man switch is asked
+  std::string file;              // file in which a calibrated insertion point is saved; empty: not saved
+  bool pattern_allowed = false;  // the calibration may move the arm, without a dead-man switch
   servo::InsertionPointFitConfig fit;
   aesop::PatternConfig pattern;
 };
@@ -27,14 +27,15 @@ struct AesopParameters {
   aesop::ReconnectConfig reconnect;
   std::string port;  // required
   int baud_rate = 38400;
-  int realtime_priority = 0;           // of the loop, 0: none
-  std::string insertion_point_file;    // a calibration that takes the place of insertion_point; empty: none
-  std::string insertion_point_origin;  // where driver.insertion_point is from, in words
+  int realtime_priority = 0;           // priority of the loop, 0: none
+  std::string insertion_point_file;    // file of a calibration that replaces insertion_point; empty: none
+  std::string insertion_point_origin;  // source of driver.insertion_point, for display
   CalibrationParameters calibration;
   std::string frame_prefix = "auto";  // in front of every frame's name; auto: see frame_names.h
-  // Node whose velocity commands count; a name without a leading slash is one of the node's namespace.
+  // Node whose velocity commands are accepted; a name without a leading slash is in the node's namespace.
   std::string publisher = "controller";
-  // Nodes that may call what lets the arm move: enable, resume, clear_fault, the calibration; none: every node.
+  // Nodes that may call the services that allow motion: enable, resume, clear_fault, the calibration; empty: every
+  // node.
   std::vector<std::string> service_callers;
   aesop::WireLogConfig wire_log;
   ExternalStopsConfig external_stops;
@@ -42,15 +43,15 @@ struct AesopParameters {
   double optics_roll = 0.0;   // rad, of the camera about the shaft
 };
 
-// All parameters of the node.
+// Adds the rows of all parameters of the node.
 void describe(parameters::Table& table, AesopParameters& parameters);
 std::vector<std::string> validate(const AesopParameters& parameters);
 
-// Missing parameters keep their defaults. All errors are left in the reader.
+// Missing parameters keep their defaults. The reader collects all errors.
 AesopParameters readAesopParameters(ParameterReader& reader);
 sim::EmulatorConfig readEmulatorConfig(ParameterReader& reader);
-// Errors of what `tree` holds besides the groups `kinematics` and `emulator`: one file may describe the arm for both
-// ends, so that parameters of the aesop node are allowed, but have to be right; others are not.
+// Errors in `tree` outside of the groups `kinematics` and `emulator`. One file may describe the arm for both ends:
+// parameters of the aesop node are allowed, but must be valid; others are errors.
 std::vector<std::string> errorsBesideEmulator(const XmlRpc::XmlRpcValue& tree);
 
 }  // namespace laparoscope_servo

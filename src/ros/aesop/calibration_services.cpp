@@ -76,7 +76,7 @@ CalibrationServices::CalibrationServices(const ros::NodeHandle& private_node, co
     if (response.message.empty()) errors_.guard(response, [&] { end(calibration_.finish(steadyNow()), response); });
     return true;
   };
-  // What makes the arm stand is for everybody.
+  // Services that stop the arm may be called by every node.
   const boost::function<bool(End&)> on_cancel = [this](End& event) {
     Ending& response = event.getResponse();
     errors_.guard(response, [&] { end(calibration_.cancel(steadyNow()), response); });

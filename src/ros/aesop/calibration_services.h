@@ -18,23 +18,23 @@ namespace laparoscope_servo {
 
 class CalibrationServices {
  public:
-  // `callers`: who may start a calibration, which may move the arm, or end it with a result. `errors` takes what the
-  // services throw; it and `driver` have to outlive this.
+  // `callers`: who may start a calibration, which may move the arm, or end it with a result. `errors` keeps exceptions
+  // of the services; it and `driver` must outlive this.
   CalibrationServices(const ros::NodeHandle& private_node, const AesopParameters& parameters,
                       const ServiceCallers& callers, ServiceErrors& errors, aesop::Driver& driver);
 
-  // Call often. True when the insertion point is another one from now on.
+  // Call often. Returns true if the insertion point has changed.
   bool step(double stamp_now, double now);
-  // Whether a command of others has ended here: the arm drives its pattern.
+  // Whether a command is consumed here, because the arm moves along its pattern.
   bool takes(const scope::Velocity& command, double now);
-  // A new insertion point has not been taken over yet.
+  // Whether a new insertion point is not in use yet.
   bool waits() const { return calibration_.waits(); }
   void describe(diagnostic_updater::DiagnosticStatusWrapper& status) const;
 
  private:
   using Ending = std_srvs::Trigger::Response;
 
-  // Each fills what the service answers.
+  // Each fills in the response of the service.
   void start(const StartCalibration::Request& request, StartCalibration::Response& response);
   void end(const std::string& refusal, Ending& response);
   void publish(double now);
@@ -43,7 +43,7 @@ class CalibrationServices {
   ServiceCallers callers_;
   ServiceErrors& errors_;
   std::string frame_;
-  std::string origin_;  // of the insertion point, in words
+  std::string origin_;  // source of the insertion point, for display
   InsertionPointCalibration calibration_;
   CalibrationStage published_ = CalibrationStage::kIdle;
   double next_publication_ = 0.0;  // s, steady

@@ -79,7 +79,7 @@ std::string InsertionPointCalibration::missing() const {
   return text;
 }
 
-// Why it has not come to an end, or nothing.
+// Ends the calibration; returns why not, or an empty text.
 std::string InsertionPointCalibration::conclude() {
   const std::string problems = missing();
   if (!problems.empty()) return problems;
@@ -118,7 +118,7 @@ std::string InsertionPointCalibration::message() const {
   return method_ == Method::kHand ? "enough; finish, or go on" : "enough; the pattern goes on to its end";
 }
 
-// Why poses do not count any more, or nothing.
+// Returns why poses are not valid any more, or an empty text.
 std::string InsertionPointCalibration::lostGround(double now) const {
   const aesop::Link& link = driver_.session().link();
   if (!link.isUp() || !link.status()) return "not connected: " + link.reason();
@@ -139,7 +139,7 @@ bool InsertionPointCalibration::step(double stamp_now, double now) {
     collect(*link.status());
     if (pattern_) drive(*link.status(), stamp_now, now);
   }
-  // Judged and saved at rest: a disk may take its time.
+  // Checked and saved at rest, since the disk may be slow.
   if (stage_ == Stage::kStopping && !driver_.session().isEnabled() && !driver_.state(now).is_busy) {
     const std::string problem = conclude();
     if (!problem.empty()) fail(problem, now);
@@ -174,7 +174,7 @@ void InsertionPointCalibration::stopArm(double now) {
   if (!pattern_) return;
   pattern_.reset();
   const OperatingMode mode = driver_.state(now).mode;
-  // A fault keeps its reason; what is DISABLED is at rest.
+  // A fault keeps its reason, and a DISABLED arm is at rest.
   if (mode == OperatingMode::kEnabled || mode == OperatingMode::kPaused) driver_.disable(now);
 }
 

@@ -1,4 +1,5 @@
-// A calibrated insertion point as a YAML file: what it is, how well it is known, and the joint positions behind it.
+// The YAML file of a calibrated insertion point: the point, its uncertainty, and the joint positions from which it was
+// computed.
 #pragma once
 
 #include <string>
@@ -19,18 +20,18 @@ struct CalibratedInsertionPoint {
   std::vector<aesop::JointVector> poses;  // m, rad
 };
 
-// Now, by the machine's clock, as `date` has it.
+// The present time by the machine's clock, in the form of `date`.
 std::string utcDate();
 
 // m, root mean square distance of the shafts at `poses` from the point.
 double residual(const aesop::Kinematics& kinematics, const std::vector<aesop::JointVector>& poses,
                 const Eigen::Vector3d& point);
 
-// Replaces the file as a whole or not at all. Throws std::runtime_error: which file, and what the system says.
+// Replaces the file as a whole or not at all. Throws std::runtime_error with the file and the system's error.
 void saveInsertionPoint(const std::string& file, const CalibratedInsertionPoint& calibrated);
 
-// Throws std::runtime_error with everything that is wrong in the file, and when its poses do not give its residual:
-// then it is from an arm of other kinematics.
+// Throws std::runtime_error with all errors of the file, and also if its poses do not give its residual, since it is
+// then from an arm of other kinematics.
 CalibratedInsertionPoint loadInsertionPoint(const std::string& file, const aesop::Kinematics& kinematics);
 
 }  // namespace laparoscope_servo

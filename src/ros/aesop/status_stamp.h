@@ -1,4 +1,4 @@
-// When the arm was as a status tells it.
+// The time of the arm's state in a status.
 #pragma once
 
 #include <ros/time.h>
@@ -7,25 +7,25 @@
 
 namespace laparoscope_servo {
 
-// Gives each status its stamp. The controller says how the arm is when a request has come, and its answer, several
-// times as long as the request, is under way for longer: of what is known, the time at which the request was sent is
-// nearest to that, and what relies on the pose never takes it for younger than it is.
+// Gives each status its stamp: the time at which its request was sent. The controller reads the arm's state when the
+// request arrives; the answer is several times as long and takes longer to arrive. So that time is the best known one,
+// and the pose never looks newer than it is.
 class StatusStamp {
  public:
-  // `age`: s, since the request that the status answers was sent. Nothing for one that answers no later request than
-  // the one before: who listens refuses a stamp that comes twice.
+  // `age`: s, since the request that the status answers was sent. Empty if it answers no later request than the last
+  // status, since subscribers refuse a repeated stamp.
   std::optional<ros::Time> take(double age, double steady_now, const ros::Time& now) {
     const double at = steady_now - age;
     if (!(age >= 0.0) || !(at > last_ + kSame)) return std::nullopt;
     last_ = at;
-    // Simulated time may have begun after that.
+    // Simulated time may have begun later.
     return now.toSec() > age ? now - ros::Duration(age) : ros::Time();
   }
 
  private:
   static constexpr double kSame = 1e-6;  // s, rounding
 
-  double last_ = -1.0;  // s, steady: of the status before
+  double last_ = -1.0;  // s, steady: of the last status
 };
 
 }  // namespace laparoscope_servo

@@ -18,9 +18,9 @@ namespace {
 using validation::numberText;
 
 constexpr std::size_t kFewest = 8;
-constexpr std::size_t kMost = 40;     // more make it slow, and no better
-constexpr double kDifferent = 0.03;   // of the picture's width, that the corners have moved on average
-constexpr double kWorstError = 1.5;   // px; a sharp picture of a flat board gives some 0.2
+constexpr std::size_t kMost = 40;     // more views make it slow, but not more accurate
+constexpr double kDifferent = 0.03;   // share of the picture's width by which the corners must have moved on average
+constexpr double kWorstError = 1.5;   // px; a sharp picture of a flat board has about 0.2
 constexpr double kWorstFocal = 0.02;  // share
 constexpr int kCells = 6;
 
@@ -55,7 +55,7 @@ sensor_msgs::CameraInfo cameraInfo(const cv::Size& size, const cv::Mat& k, const
   info.D.assign(d.begin<double>(), d.begin<double>() + (rational ? 8 : 5));
   copyMatrix(k, info.K);
   info.R = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-  // As camera_calibration has it: rectified pictures show nothing from beyond the picture's edge.
+  // As in camera_calibration: rectified pictures show no pixels from beyond the picture's edge.
   const cv::Mat rectified = cv::getOptimalNewCameraMatrix(k, d, size, 0.0);
   cv::Mat p = cv::Mat::zeros(3, 4, CV_64F);
   rectified.copyTo(p.colRange(0, 3));

@@ -15,13 +15,13 @@ struct Board {
   double square = 0.004;   // m, side of a square
 };
 
-// Throws std::invalid_argument for less than 3 corners each way, more than 100, and a side that is not positive.
+// Throws std::invalid_argument for fewer than 3 or more than 100 corners each way, and for a side that is not positive.
 void checkBoard(const Board& board);
 
-// An SVG in true size, to be printed without scaling; the white margin is part of it.
+// Writes an SVG in true size, to be printed without scaling; the white margin is part of the board.
 void writeBoard(const Board& board, std::ostream& stream);
 
-// Keeps the pictures that show the board in a place or a pose of its own.
+// Keeps the pictures that show the board at a new place or in a new pose.
 class BoardViews {
  public:
   explicit BoardViews(const Board& board) : board_(board) {}
@@ -33,7 +33,7 @@ class BoardViews {
   const Board& board() const { return board_; }
   const std::vector<std::vector<cv::Point2f>>& corners() const { return corners_; }
   cv::Size size() const { return size_; }
-  // Share of the picture, cut into 6 x 6 cells, in which a corner was seen.
+  // Share of the picture's 6 x 6 cells in which a corner was seen.
   double coverage() const;
 
  private:
@@ -44,7 +44,7 @@ class BoardViews {
 
 struct BoardCalibration {
   sensor_msgs::CameraInfo info;
-  double error = 0.0;         // px, root mean square, of corners to where they should be
+  double error = 0.0;         // px, root mean square reprojection error of the corners
   double focal_stddev = 0.0;  // px
 };
 

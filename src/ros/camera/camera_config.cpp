@@ -17,20 +17,20 @@ bool isFileName(const std::string& text) {
 
 void describe(parameters::Table& table, CameraConfig& c) {
   table.text("device", c.device, "of Video4Linux; or a video file, or an address that ffmpeg understands");
-  table.number("width", c.width, {0, 16384}, "px", "asked of the device; 0: as it is");
-  table.number("height", c.height, {0, 16384}, "px", "asked of the device; 0: as it is");
-  table.number("rate", c.rate, {0, 1000}, "Hz", "asked of the device; 0: as it is");
-  table.text("pixel_format", c.pixel_format, "asked of the device, e.g. MJPG or YUYV; empty: as it is")
+  table.number("width", c.width, {0, 16384}, "px", "requested from the device; 0: its own");
+  table.number("height", c.height, {0, 16384}, "px", "requested from the device; 0: its own");
+  table.number("rate", c.rate, {0, 1000}, "Hz", "requested from the device; 0: its own");
+  table.text("pixel_format", c.pixel_format, "requested from the device, e.g. MJPG or YUYV; empty: its own")
       .accepting("four letters or nothing", [](const std::string& t) { return t.empty() || t.size() == 4; });
   table.text("name", c.name, "of the calibration: camera_info/NAME.yaml in ROS_HOME or ~/.ros")
       .accepting("letters, digits, _ and -", isFileName);
-  table.text("calibration", c.calibration, "file of the calibration, which has to be there; empty: by the name");
+  table.text("calibration", c.calibration, "file of the calibration, which must exist; empty: by the name");
   table.text("frame_id", c.frame_id, "of the images");
   table.choice("bayer", c.bayer, {"none", "rggb", "bggr", "gbrg", "grbg"},
-               "colour filter of a device that hands over what its sensor saw: pictures become colour");
+               "colour filter of a device with raw pictures, which are converted to colour");
   table.choice("interlacing", c.interlacing, {"none", "upper", "lower"},
                "the lines of one half picture are kept, those between are interpolated");
-  table.number("delay", c.delay, {0, 2}, "s", "of camera and grabber, taken off the stamps");
+  table.number("delay", c.delay, {0, 2}, "s", "delay of camera and grabber, subtracted from the stamps");
   table.number("max_silence", c.max_silence, {0.1, 60}, "s", "without a picture: an error in diagnostics");
   table.number("retry_period", c.retry_period, {0.1, 60}, "s", "between two attempts to open a device that is gone");
 }

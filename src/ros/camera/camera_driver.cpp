@@ -16,7 +16,7 @@ namespace laparoscope_servo {
 
 namespace {
 
-// A file that is named has to be there; that of the camera's name may be.
+// A file given by name must exist; the one for the camera's name need not.
 std::string existingCalibration(const CameraConfig& config) {
   if (!config.calibration.empty()) return config.calibration;
   const std::string file = calibrationFile(config.name);
@@ -65,7 +65,7 @@ void CameraDriver::run() {
         notes_ = source.notes();
       }
       play(source);
-    } catch (const std::exception& error) {  // cv::Exception is one
+    } catch (const std::exception& error) {  // includes cv::Exception
       lost(error.what());
     }
     wait(config_.retry_period);
@@ -107,7 +107,7 @@ void CameraDriver::publish(const CameraSource::Picture& picture) {
   } else if (info.width != message->width || info.height != message->height) {
     problem = "the calibration '" + calibration_file_ + "' is for pictures of " + sizeText(info.width, info.height) +
               ", but these have " + sizeText(message->width, message->height);
-    info = sensor_msgs::CameraInfo();  // so that nobody takes it for one
+    info = sensor_msgs::CameraInfo();  // all zero, so that it cannot be taken for a calibration
   }
   info.header = header;
   info.width = message->width;

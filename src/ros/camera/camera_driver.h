@@ -1,6 +1,6 @@
 // The driver of the node and nodelet `camera`. Publishes: image_raw (bgr8 or mono8) and camera_info, each picture once,
-// with the time at which it was taken; /diagnostics. A device that gives no picture any more is said and opened again,
-// until it is back; meanwhile nothing is published.
+// with the time at which it was taken; /diagnostics. A device that delivers no pictures any more is reported and opened
+// again until it is back; meanwhile nothing is published.
 #pragma once
 
 #include <diagnostic_updater/diagnostic_updater.h>
@@ -20,7 +20,7 @@ namespace laparoscope_servo {
 
 class CameraDriver {
  public:
-  // Throws std::runtime_error when the calibration that is named cannot be read.
+  // Throws std::runtime_error if the given calibration cannot be read.
   CameraDriver(ros::NodeHandle node, ros::NodeHandle private_node, const CameraConfig& config);
   // Waits for the picture that is being read.
   ~CameraDriver();
@@ -29,7 +29,7 @@ class CameraDriver {
 
  private:
   void run();
-  // Until the device is gone, or the driver's end.
+  // Runs until the device is gone, or the driver ends.
   void play(CameraSource& source);
   void publish(const CameraSource::Picture& picture);
   void wait(double seconds) const;
@@ -44,7 +44,7 @@ class CameraDriver {
   diagnostic_updater::Updater diagnostics_;
   ros::WallTimer diagnostics_timer_;
 
-  std::mutex mutex_;  // of what follows, up to the thread
+  std::mutex mutex_;  // guards the members below, up to the thread
   std::string problem_ = "no picture yet";
   std::string notes_;
   std::string size_;
@@ -53,7 +53,7 @@ class CameraDriver {
   std::uint64_t pictures_ = 0;  // since the start
   std::uint64_t repeated_ = 0;
   std::uint64_t openings_ = 0;
-  std::uint64_t told_pictures_ = 0;  // at the last diagnostics
+  std::uint64_t told_pictures_ = 0;  // number of pictures at the last diagnostics
   double told_at_;                   // s, steady
 
   std::atomic<bool> ends_{false};

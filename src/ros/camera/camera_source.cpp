@@ -11,8 +11,9 @@ namespace laparoscope_servo {
 
 namespace {
 
-constexpr double kOldest = 1.0;      // s, from a device to us; older ones come from a device that counts otherwise
-constexpr double kUsualRate = 25.0;  // Hz, of a file that does not tell its own
+// s, largest age of a picture; a larger one means that the device uses another clock
+constexpr double kOldest = 1.0;
+constexpr double kUsualRate = 25.0;  // Hz, for a file without a frame rate
 
 double monotonicNow() {
   timespec time{};
@@ -100,7 +101,7 @@ std::optional<CameraSource::Picture> CameraSource::next() {
     throw std::runtime_error("a picture of '" + config_.device + "' cannot be decoded");
   }
   picture.image = deinterlaced(colourOf(shared, config_.bayer), config_.interlacing);
-  // The capture may write the next picture to where this one is.
+  // The capture may reuse this picture's memory for the next one.
   if (picture.image.data == shared.data) picture.image = shared.clone();
   return picture;
 }

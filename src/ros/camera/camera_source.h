@@ -14,8 +14,8 @@
 
 namespace laparoscope_servo {
 
-// When a picture was taken: `captured` s, by the kernel's monotonic clock as Video4Linux says; `monotonic_now` s, by
-// the same clock; `now`: by ROS. What cannot be (from the future, older than 1 s) counts for nothing: it is `now` then.
+// Time at which a picture was taken. `captured`: s, on the kernel's monotonic clock, by Video4Linux; `monotonic_now`:
+// s, on that clock; `now`: ROS time. Returns `now` for an implausible `captured` (in the future, or older than 1 s).
 ros::Time captureStamp(double captured, double monotonic_now, const ros::Time& now);
 
 class CameraSource {
@@ -25,13 +25,12 @@ class CameraSource {
     ros::Time stamp;
   };
 
-  // Throws std::runtime_error: what cannot be opened, and what was expected. Sizes and rates that the device does not
-  // have are taken as it gives them; notes() says so.
+  // Throws std::runtime_error with what cannot be opened, and what was expected. If the device does not have the
+  // requested size or rate, its own is used, which notes() reports.
   explicit CameraSource(const CameraConfig& config);
 
-  // Waits for the next picture, at a file until it is due. Empty for one that is to be left out: its device time is
-  // that of the one before, so that it is the same picture again. Throws std::runtime_error when the device gives none
-  // any more.
+  // Waits for the next picture; with a file, until it is due. Empty if its device time is that of the last one, since
+  // it is then the same picture again. Throws std::runtime_error if the device delivers no more pictures.
   std::optional<Picture> next();
 
   const std::string& notes() const { return notes_; }
@@ -47,7 +46,7 @@ class CameraSource {
   bool is_video4linux_ = false;
   bool is_file_ = false;
   double device_time_ = -1.0;                  // ms, of Video4Linux
-  std::chrono::steady_clock::time_point due_;  // of a file's next picture
+  std::chrono::steady_clock::time_point due_;  // time of a file's next picture
 };
 
 }  // namespace laparoscope_servo

@@ -1,5 +1,5 @@
-// The two clocks of a node: ages are measured on the steady one, stamps are compared with ROS time, which may be
-// simulated, stand or jump.
+// The two clocks of a node: ages are measured on the steady one; stamps are compared with ROS time, which may be
+// simulated, stop or jump.
 #pragma once
 
 #include <ros/time.h>
@@ -7,7 +7,7 @@
 
 namespace laparoscope_servo {
 
-// s since an arbitrary moment; goes on while the machine sleeps, so that nothing looks fresh when it wakes up.
+// s since an arbitrary moment; includes the time for which the machine sleeps, so that no data looks fresh after it.
 inline double steadyNow() {
   timespec time{};
   ::clock_gettime(CLOCK_BOOTTIME, &time);

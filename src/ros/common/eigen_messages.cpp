@@ -16,7 +16,7 @@ Eigen::Quaterniond fromMessage(const geometry_msgs::Quaternion& message) {
 }
 
 Eigen::Isometry3d fromMessage(const geometry_msgs::Transform& message) {
-  // Not tf2::transformToEigen: that takes a quaternion as it is, and one of another length also scales.
+  // Not tf2::transformToEigen, which does not normalise the quaternion: one of another length would also scale.
   return Eigen::Translation3d(fromMessage(message.translation)) * fromMessage(message.rotation);
 }
 

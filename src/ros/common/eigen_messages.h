@@ -1,4 +1,4 @@
-// Between Eigen and the messages of geometry, by tf2_eigen.
+// Conversions between Eigen and geometry messages, by tf2_eigen.
 #pragma once
 
 #include <geometry_msgs/Point.h>
@@ -11,7 +11,7 @@
 namespace laparoscope_servo {
 
 Eigen::Vector3d fromMessage(const geometry_msgs::Vector3& message);
-// Of length 1, though that of a message need not be to the last digit; not finite for one of length 0.
+// Normalised to length 1, since a message's quaternion may be rounded; not finite for length 0.
 Eigen::Quaterniond fromMessage(const geometry_msgs::Quaternion& message);
 Eigen::Isometry3d fromMessage(const geometry_msgs::Transform& message);
 

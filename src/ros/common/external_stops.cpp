@@ -14,9 +14,9 @@ namespace laparoscope_servo {
 using diagnostic_msgs::DiagnosticStatus;
 
 void describe(parameters::Table& table, ExternalStopsConfig& config) {
-  table.group("master", "of ROS: without it nobody can call a service, so the arm stops until it answers again",
+  table.group("master", "of ROS; services cannot be called without it, so the arm stops until it answers again",
               [&] { describe(table, config.master); });
-  table.group("stop_line", "beside ROS: an open contact, or a broken wire, stops the arm",
+  table.group("stop_line", "a contact outside of ROS; if it opens, or its wire breaks, the arm stops",
               [&] { describe(table, config.stop_line); });
 }
 
@@ -32,7 +32,7 @@ std::string ExternalStops::takeStop(double now) {
   if (takeHaltRequest()) stop = "stopped by the signal SIGUSR1";
   const std::uint64_t stops = stop_line_.stops();
   const std::string problem = stop_line_.obstacle(now);
-  // A pulse that has gone again, or a line that has just begun to say stop.
+  // A pulse that is over already, or a line that has just changed to stop.
   if (stops != line_stops_ || (!problem.empty() && line_problem_.empty()))
     stop = problem.empty() ? stop_line_.lastStop() : problem;
   if (problem.empty() && !line_problem_.empty()) ROS_INFO("the stop line lets the arm move again");

@@ -1,5 +1,5 @@
-// What stops the arm from outside of ROS, for the node that drives it and for the node that controls it: the ROS
-// master's end, a stop line, the signal SIGUSR1. Each is said on the terminal, which works without a master.
+// Stops of the arm from outside of ROS, for the aesop node and the controller: the ROS master's end, a stop line, the
+// signal SIGUSR1. Each is printed on the terminal, which works without a master.
 //
 // One thread calls; nothing here blocks it.
 #pragma once
@@ -22,24 +22,24 @@ struct ExternalStopsConfig {
   StopLineConfig stop_line;
 };
 
-// The groups `master` and `stop_line`.
+// Adds the rows of the groups `master` and `stop_line`.
 void describe(parameters::Table& table, ExternalStopsConfig& config);
 
 class ExternalStops {
  public:
-  // After the node has registered with the master: once its first NodeHandle was made.
+  // Construct it after the first NodeHandle, when the node is registered with the master.
   explicit ExternalStops(const ExternalStopsConfig& config);
 
-  // What asks for a stop since the last call, in words: a signal, the stop line; empty: nothing. To be called at every
-  // step of the loop; also says on the terminal what has become of the master. `now`: s, steady.
+  // Reason of a stop since the last call (a signal, the stop line); empty: none. Call at every step of the loop; also
+  // prints changes of the master's state on the terminal. `now`: s, steady.
   std::string takeStop(double now);
-  // Why the arm may not move now: the stop line, the master.
+  // Why the arm may not move now (the stop line, the master); empty: it may.
   std::string obstacle(double now) const;
-  // The same for the master alone.
+  // Why the arm may not move because of the master; empty: it may.
   const std::string& masterProblem() const { return master_status_.reason; }
-  // An answer of the master is due: until it comes the arm is held, but nobody has to let it go again.
+  // Whether the master's answer is late: zero velocity meanwhile; motion resumes without a service call.
   bool masterIsLate(double now) const;
-  // Another master, or one that has forgotten this node: it can be found by nobody, and has to be started anew.
+  // Whether the node is no longer registered (another master, or one that has forgotten it): it must be restarted.
   bool mustEnd() const { return master_status_.state == MasterStatus::State::kChanged; }
 
   void describe(double now, diagnostic_updater::DiagnosticStatusWrapper& status) const;
@@ -51,8 +51,8 @@ class ExternalStops {
   StopLine stop_line_;
   MasterWatch master_;
   MasterStatus master_status_;
-  std::uint64_t line_stops_ = 0;  // that were taken
-  std::string line_problem_;      // at the last call
+  std::uint64_t line_stops_ = 0;  // number of stops of the line that takeStop() has returned
+  std::string line_problem_;      // obstacle of the line at the last call
 };
 
 }  // namespace laparoscope_servo

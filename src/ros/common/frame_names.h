@@ -1,4 +1,4 @@
-// Names of tf frames in a namespace: two carts on one master have frames of their own without being told to.
+// Names of tf frames by namespace, so that two carts on one master have different frames by default.
 #pragma once
 
 #include <string>
@@ -8,11 +8,10 @@ namespace laparoscope_servo {
 // The value of a parameter `frame_prefix` that leaves the prefix to the namespace.
 constexpr const char* kPrefixOfNamespace = "auto";
 
-// What stands in front of frames: `parameter` itself, or, when it is "auto", `name_space` as part of a frame's name:
-// "/left" gives "left/", "/" gives "".
+// The prefix of frames: `parameter`, or, if that is "auto", one from `name_space`: "/left" gives "left/", "/" gives "".
 std::string framePrefix(const std::string& parameter, const std::string& name_space);
 
-// `frame` with the prefix; one that has a slash in it is whole already.
+// `frame` with the prefix; a name with a slash is returned unchanged.
 std::string prefixedFrame(const std::string& prefix, const std::string& frame);
 
 }  // namespace laparoscope_servo

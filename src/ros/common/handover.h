@@ -1,4 +1,4 @@
-// Hands the newest value from one thread to another, which never waits for it.
+// Passes the newest value from one thread to another, which never waits.
 #pragma once
 
 #include <mutex>
@@ -10,14 +10,14 @@ template <class T>
 class Handover {
  public:
   void give(const T& value) {
-    T copy = value;  // what is long is done before anybody is locked out
+    T copy = value;  // copies before locking, so that the lock is short
     const std::lock_guard<std::mutex> lock(mutex_);
     std::swap(value_, copy);
     fresh_ = true;
   }
 
-  // Takes what was given since the last time. Neither waits nor allocates: false when there is nothing, or while
-  // something is just being given.
+  // Takes the value given since the last call. Does not wait nor allocate: returns false if there is none, or while one
+  // is being given.
   bool take(T& value) {
     const std::unique_lock<std::mutex> lock(mutex_, std::try_to_lock);
     if (!lock || !fresh_) return false;

@@ -4,7 +4,7 @@ namespace laparoscope_servo {
 
 namespace {
 
-constexpr int kReleases = 3;  // turns, as kFarewellZeros
+constexpr int kReleases = 3;  // cycles, as for kFarewellZeros
 
 }  // namespace
 

@@ -1,29 +1,30 @@
-// What a held control says on its topic, at each turn of the thread that sends.
+// Messages of a control that a hand holds, for each cycle of the publishing thread.
 #pragma once
 
 #include <vector>
 
 namespace laparoscope_servo {
 
-// Turns of 0.05 s, in which a stick that was let go says zero. A word that is lost on its way does no harm: silence
-// ends the motion as well, a moment later.
+// Cycles of 0.05 s for which zero is published after a stick was released. A lost message does no harm, since silence
+// also ends the motion, a moment later.
 constexpr int kFarewellZeros = 10;
 
-// The dead-man switch. It is silent while nobody holds it, for a false from anywhere stops who holds another one.
+// The dead-man switch. It publishes nothing while nobody holds it, because a "false" of any publisher also stops the
+// holder of another switch.
 class DeadManWords {
  public:
-  // To publish now, in this order. A false comes before the first true: the controller believes only a switch that it
-  // has seen released since it was engaged, which is so when a hand takes it anew.
+  // The messages to publish now, in this order. A "false" precedes the first "true", because the controller accepts
+  // only a switch that it has seen released since engaging.
   std::vector<bool> turn(bool held);
-  bool isHeld() const { return was_held_; }  // at the last turn
+  bool isHeld() const { return was_held_; }  // whether it was held in the last cycle
 
  private:
   bool was_held_ = false;
   int farewells_ = 0;
 };
 
-// Sliders: what they say while held, then zero for a moment, then nothing. The first word is a zero: the controller
-// obeys a stick only that it has seen at rest.
+// Sliders: their velocity while held, then zero for a moment, then nothing. The first message is zero, because the
+// controller accepts only a stick that it has seen at rest.
 class SliderWords {
  public:
   enum class Word { kNothing, kZero, kValue };

@@ -6,7 +6,7 @@ namespace laparoscope_servo {
 
 namespace {
 
-constexpr double kRemembered = 2.0;  // s, that a stranger is complained about
+constexpr double kRemembered = 2.0;  // s, for which another publisher is reported
 constexpr std::size_t kLongestName = 100;
 
 }  // namespace

@@ -1,8 +1,8 @@
-// Decides whose messages count on a topic: those of the one node that the configuration names, and of it those of one
-// connection. Where it names none, those of the connection that spoke first.
+// Decides whose messages are accepted on a topic: those of the node named by the configuration, on one connection; if
+// no node is named, those of the connection that published first.
 //
-// ROS 1 proves nobody's name (doc/network.md). What shows when two processes use the owner's is a second connection,
-// which is not trusted before the arm has stood still and somebody has said that it may go on.
+// ROS 1 does not authenticate names (doc/network.md). If two processes use the owner's name, there is a second
+// connection, which is not accepted until the arm is at rest and an operator has confirmed it.
 #pragma once
 
 #include <boost/shared_ptr.hpp>
@@ -14,31 +14,31 @@ namespace laparoscope_servo {
 
 class InputOwner {
  public:
-  // Anything of which there is one object per connection; kept, so that its address is not used again.
+  // Identifies a connection by any object that exists once for it; kept alive, so that its address is not used again.
   using Connection = boost::shared_ptr<const void>;
   enum class Verdict {
     kOwner,          // counts
-    kNewConnection,  // the owner's name, but not the connection that has spoken until now
-    kStranger,       // another name
+    kNewConnection,  // the owner's name, but not its present connection
+    kStranger,       // another node
   };
 
-  // `name`: resolved, e.g. "/controller"; empty: anybody's. `what`: the messages in words, e.g. "commands".
-  // `parameter`: where the name is from.
+  // `name`: resolved, e.g. "/controller"; empty: any node. `what`: name of the messages for texts, e.g. "commands".
+  // `parameter`: the parameter that holds the name.
   InputOwner(const std::string& name, const std::string& what, const std::string& parameter)
       : name_(name), what_(what), parameter_(parameter) {}
 
-  // `sender`: the name that came with the connection; `now`: s, steady. The first connection of the owner after a
-  // release is the one that counts.
+  // `sender`: node name of the connection; `now`: s, steady. The first connection of the owner after a release is
+  // accepted.
   Verdict judge(const std::string& sender, const Connection& connection, double now);
-  // To be called while nothing that comes can move the arm: who speaks then binds nothing.
+  // Call while messages cannot move the arm: the accepted connection is then open again.
   void release() { connection_.reset(); }
 
-  // As configured.
+  // The configured owner.
   const std::string& name() const { return name_; }
   const std::string& what() const { return what_; }
-  // Messages refused for their sender, since the start.
+  // Number of messages refused because of their sender, since the start.
   std::uint64_t refused() const { return refused_; }
-  // Whose messages are refused, and why; empty when none has come for a while.
+  // Whose messages are refused, and why; empty if none has come for a while.
   std::string complaint(double now) const;
 
  private:
@@ -46,13 +46,13 @@ class InputOwner {
   std::string what_;
   std::string parameter_;
   Connection connection_;
-  std::string bound_;  // the name that came with the connection
+  std::string bound_;  // node name of the accepted connection
   std::string stranger_;
   double stranger_at_ = -std::numeric_limits<double>::infinity();
   std::uint64_t refused_ = 0;
 };
 
-// A node's name as it came over the network, fit to be shown.
+// A node name from the network, made safe for display.
 std::string shownName(const std::string& name);
 
 }  // namespace laparoscope_servo

@@ -9,7 +9,7 @@ namespace laparoscope_servo {
 
 class JsonWriter {
  public:
-  // `digits`: of a number, at most.
+  // `digits`: largest number of digits.
   explicit JsonWriter(std::ostream& out, int digits = 9) : out_(out) { out_.precision(digits); }
 
   // Inside an object every value has a name; inside an array the name is empty.
@@ -20,7 +20,8 @@ class JsonWriter {
   void value(const std::string& name, int number);
   void value(const std::string& name, bool truth);
   void value(const std::string& name, const std::string& text);
-  void value(const std::string& name, const char* text) { value(name, std::string(text)); }  // not as a bool
+  // otherwise it would convert to bool
+  void value(const std::string& name, const char* text) { value(name, std::string(text)); }
   void values(const std::string& name, const std::vector<double>& numbers);
 
  private:
@@ -29,7 +30,7 @@ class JsonWriter {
   void write(const std::string& text);
 
   std::ostream& out_;
-  std::string closing_;  // what ends the levels that are open
+  std::string closing_;  // closing brackets of the open levels
   bool first_ = true;
 };
 

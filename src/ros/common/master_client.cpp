@@ -21,9 +21,9 @@ namespace {
 
 using Outcome = MasterClient::Outcome;
 
-constexpr double kSlice = 0.05;  // s, after which an end that was asked for is noticed
+constexpr double kSlice = 0.05;  // s, period for checking `ending`
 constexpr const char* kNoMaster = "it is no ROS master that answers";
-constexpr std::size_t kLongestAnswer = 65536;  // bytes; those of the calls made here are below a thousand
+constexpr std::size_t kLongestAnswer = 65536;  // bytes; answers to the calls made here are below a thousand
 
 struct Adopt {};
 constexpr Adopt adopt;
@@ -44,7 +44,7 @@ class Socket {
   int file_;
 };
 
-// Looks at the socket once more when the time is over: a thread that was late itself must not blame the master for it.
+// Checks the socket once more at the end, so that a delay of this thread is not taken for one of the master.
 bool waitUntilReady(int file, short events, double deadline, const std::atomic<bool>& ending) {
   while (true) {
     const double left = std::max(0.0, deadline - steadyNow());
@@ -79,7 +79,7 @@ std::string request(const std::string& address, const std::string& method, const
          "Content-Length: " + std::to_string(body.size()) + "\r\n\r\n" + body;
 }
 
-// The body of a whole HTTP answer; false while some of it is missing.
+// Takes the body of a complete HTTP answer; false while it is incomplete.
 bool takeBody(const std::string& answer, std::string& body) {
   const std::size_t head = answer.find("\r\n\r\n");
   if (head == std::string::npos) return false;
@@ -94,7 +94,7 @@ bool takeBody(const std::string& answer, std::string& body) {
   return true;
 }
 
-// Of <methodResponse><params><param><value>...; false when it is something else.
+// Parses <methodResponse><params><param><value>...; false if it is something else.
 bool parse(const std::string& body, XmlRpc::XmlRpcValue& result) {
   const std::size_t at = body.find("<value>");
   if (at == std::string::npos || body.find("<fault>") != std::string::npos) return false;
@@ -118,7 +118,7 @@ void MasterClient::lookUp() {
   hints.ai_socktype = SOCK_STREAM;
   addrinfo* found = nullptr;
   if (::getaddrinfo(host_.c_str(), std::to_string(port_).c_str(), &hints, &found) != 0) return;
-  // IPv4 first, as roscpp does, whose addresses these are.
+  // IPv4 first, as in roscpp.
   for (const int family : {AF_INET, AF_INET6}) {
     for (const addrinfo* entry = found; entry != nullptr; entry = entry->ai_next) {
       if (entry->ai_family != family) continue;
@@ -135,7 +135,7 @@ Outcome MasterClient::fail(Outcome outcome, const std::string& problem) {
   return outcome;
 }
 
-// The first of the addresses that takes a connection. `file` is open only where it is kAnswered.
+// Connects to the first address that accepts. `file` is open only for kAnswered.
 Outcome MasterClient::open(double deadline, const std::atomic<bool>& ending, int& file) {
   if (peers_.empty()) lookUp();
   if (peers_.empty()) return fail(Outcome::kSilent, "its address is not known");
@@ -161,7 +161,7 @@ Outcome MasterClient::open(double deadline, const std::atomic<bool>& ending, int
 
 Outcome MasterClient::exchange(int file, const std::string& question, double deadline, const std::atomic<bool>& ending,
                                std::string& body) {
-  // Short enough for an empty buffer to take it as a whole.
+  // Short enough to fit into an empty buffer as a whole.
   if (::send(file, question.data(), question.size(), MSG_NOSIGNAL) != static_cast<ssize_t>(question.size()))
     return fail(Outcome::kRefused, std::strerror(errno));
   std::string answer;

@@ -1,5 +1,5 @@
-// Calls of the ROS master's API on a socket of their own, each bounded in time. Those of roscpp repeat for ever when
-// the master is away, and share one thread with everything else that the node asks it.
+// Calls of the ROS master's API on a separate socket, each bounded in time. roscpp's own calls repeat for ever when the
+// master is away, and share one thread with all other calls of the node.
 #pragma once
 
 #include <XmlRpcValue.h>
@@ -16,22 +16,22 @@ class MasterClient {
  public:
   enum class Outcome {
     kAnswered,
-    kRefused,   // nobody listens there, or who listened has closed the connection without an answer
-    kSilent,    // no answer in time, or this process could not even ask
-    kNonsense,  // an answer, but not that of a ROS master
+    kRefused,   // nothing listens there, or the connection was closed without an answer
+    kSilent,    // no answer in time, or this process could not send the request
+    kNonsense,  // an answer that is not that of a ROS master
   };
 
-  // The address is looked up until it is found, and then no more. Until then every call is kSilent.
+  // The address is looked up until it is found, then kept. Until then every call returns kSilent.
   MasterClient(const std::string& host, std::uint32_t port);
 
   // Waits for at most `patience` s; less when `ending` becomes true. `result`: what the master returned, a list of
   // code, message and value.
   Outcome call(const std::string& method, const std::vector<std::string>& arguments, double patience,
                const std::atomic<bool>& ending, XmlRpc::XmlRpcValue& result);
-  // A connection on which nothing is asked: it closes when the master's process ends. -1 when there is none. The caller
+  // Opens a connection without a request, which closes when the master's process ends. -1 if there is none. The caller
   // closes it.
   int connect(double patience, const std::atomic<bool>& ending);
-  // What was wrong with the last call, in words; empty after an answer.
+  // Error of the last call; empty after an answer.
   const std::string& problem() const { return problem_; }
   const std::string& address() const { return address_; }  // host:port
 

@@ -17,10 +17,10 @@ namespace {
 using State = MasterStatus::State;
 using Outcome = MasterClient::Outcome;
 
-// s. A listener whose queue is full for a moment refuses, too.
+// s, since a listener with a full queue also refuses for a moment
 constexpr double kSecondTry = 0.1;
-constexpr double kSlice = 0.05;  // s, after which the end of the watch is noticed
-constexpr double kLate = 0.1;    // s, two slices: by more than this a thread that runs is not late
+constexpr double kSlice = 0.05;  // s, period for checking the end of the watch
+constexpr double kLate = 0.1;    // s, two slices: a running thread is not late by more
 
 int integer(XmlRpc::XmlRpcValue& value) {
   return value.getType() == XmlRpc::XmlRpcValue::TypeInt ? static_cast<int>(value) : 0;
@@ -33,9 +33,11 @@ std::string text(XmlRpc::XmlRpcValue& value) {
 }  // namespace
 
 void describe(parameters::Table& table, MasterWatchConfig& c) {
-  table.number("period", c.period, {0.05, 5}, "s", "between two questions to it");
-  table.number("hold", c.hold, {0.05, 5}, "s", "while an answer takes longer, the arm is held");
-  table.number("patience", c.patience, {0.05, 60}, "s", "after so long without an answer it is taken for dead")
+  table.number("period", c.period, {0.05, 5}, "s", "between two requests to it");
+  table.number("hold", c.hold, {0.05, 5}, "s", "if an answer takes longer, the arm stops until it comes");
+  table
+      .number("patience", c.patience, {0.05, 60}, "s",
+              "time without an answer after which it counts as silent, and motion does not resume by itself")
       .atLeast("hold");
 }
 
@@ -76,7 +78,7 @@ bool MasterWatch::wait(double seconds) {
   const double end = steadyNow() + seconds;
   while (!ending_) {
     const double left = std::max(0.0, end - steadyNow());
-    pollfd entry{lifeline_, POLLIN, 0};  // a negative descriptor is only waited for
+    pollfd entry{lifeline_, POLLIN, 0};  // with a negative descriptor poll() only waits
     if (::poll(&entry, 1, static_cast<int>(1000.0 * std::min(left, kSlice))) > 0) {
       ::close(std::exchange(lifeline_, -1));
       return true;
@@ -101,9 +103,9 @@ void MasterWatch::run() {
 MasterStatus MasterWatch::ask() {
   const double start = steadyNow();
   MasterStatus status = judge();
-  // This thread was late itself, as after a pause of the process: that is no silence of the master's.
+  // This thread itself was late, as after a pause of the process, so the master was not silent.
   if (status.state == State::kSilent && steadyNow() - start > config_.patience + kLate) status = judge();
-  if (status.state == State::kGone) asks_for_us_ = false;  // who is there next is the first question
+  if (status.state == State::kGone) asks_for_us_ = false;  // the next question is which master is there
   if (status.state == State::kGone && wait(kSecondTry)) status = judge();
   return status;
 }

@@ -1,8 +1,8 @@
-// Is the ROS master there, is it the one of the start, and does it still know this node? Without it nobody can call a
-// service of the node any more, and a new one starts a second node beside it that knows nothing of the first.
+// Watches whether the ROS master is there, is the one of the start, and still knows this node. Without a master no
+// service of the node can be called any more; with a new master a second node may be started beside this one.
 //
-// A thread of its own asks: whoever controls something only looks at the latest answer. Between two questions it keeps
-// a connection open, by which it notices at once that the master's process has ended.
+// A separate thread asks the master; status() only returns the last answer. Between questions it keeps a connection
+// open, which closes at once when the master's process ends.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +19,8 @@ namespace laparoscope_servo {
 // Defaults are those of config/aesop.yaml and config/controller.yaml, group `master`.
 struct MasterWatchConfig {
   double period = 0.1;    // s: between two questions
-  double hold = 0.25;     // s: while an answer takes longer, the arm is held
-  double patience = 0.7;  // s, hold to 60: after so long without an answer the master is taken for dead
+  double hold = 0.25;     // s: while an answer takes longer, the arm stops
+  double patience = 0.7;  // s, hold to 60: after this time without an answer the master counts as silent
 };
 
 void describe(parameters::Table& table, MasterWatchConfig& config);
@@ -28,16 +28,16 @@ std::vector<std::string> validate(const MasterWatchConfig& config);
 
 struct MasterStatus {
   enum class State {
-    kKnown,    // it answers, and knows this node; so it is taken to be until the first answer
+    kKnown,    // it answers and knows this node; also assumed until the first answer
     kSilent,   // it has not answered in time
-    kGone,     // nobody is there
-    kChanged,  // it does not know this node, at this address: another master, or another node of this name
+    kGone,     // no master
+    kChanged,  // it does not know this node at this address: another master, or another node of this name
   };
   State state = State::kKnown;
-  std::string reason;        // of what is not kKnown, in words
-  double asked_at = 0.0;     // s, steady: of the question that is not answered yet; 0: there is none
-  double answer_time = 0.0;  // s, that the last answer took
-  double longest = 0.0;      // s, that any has taken
+  std::string reason;        // reason for a state other than kKnown
+  double asked_at = 0.0;     // s, steady: time of the open question; 0: there is none
+  double answer_time = 0.0;  // s, time until the last answer
+  double longest = 0.0;      // s, longest time until an answer
 };
 
 const char* name(MasterStatus::State state);
@@ -59,17 +59,17 @@ class MasterWatch {
   MasterStatus judge();
   MasterStatus judgeProcess(XmlRpc::XmlRpcValue& answer, const std::string& master);
   MasterStatus judgeNode(XmlRpc::XmlRpcValue& answer, const std::string& master) const;
-  // Less when the master's process ends or the watch does; false when the watch does.
+  // Waits for `seconds`, or until the master's process or the watch ends; false if the watch ends.
   bool wait(double seconds);
 
   MasterWatchConfig config_;
   MasterClient client_;
   std::string node_;
   std::string uri_;
-  int pid_ = 0;               // of the master at the start; 0: not known yet
-  bool asks_for_us_ = false;  // the next question: whether it knows this node, or who it is
+  int pid_ = 0;               // process id of the master at the start; 0: not known yet
+  bool asks_for_us_ = false;  // the next question: true: whether it knows this node; false: its process id
   mutable std::mutex mutex_;
-  int lifeline_ = -1;  // the connection that is kept
+  int lifeline_ = -1;  // the connection that is kept open
   std::atomic<bool> ending_{false};
   MasterStatus status_;
   std::thread thread_;  // last: it uses all of the above

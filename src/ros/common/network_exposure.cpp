@@ -65,7 +65,7 @@ std::string variable(const char* name) {
   return value == nullptr ? "" : value;
 }
 
-// Of a socket that listens on an address beyond loopback; empty for any other descriptor.
+// Address of a socket that listens beyond loopback; empty for any other descriptor.
 std::string openAddress(int file) {
   int listens = 0;
   socklen_t size = sizeof(listens);

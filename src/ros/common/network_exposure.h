@@ -1,4 +1,5 @@
-// Does this process listen to other machines though nobody asked for it? ROS 1 asks nobody who he is: doc/network.md.
+// Checks whether this process listens to other machines without being configured for it. ROS 1 has no authentication:
+// doc/network.md.
 #pragma once
 
 #include <string>
@@ -6,17 +7,17 @@
 
 namespace laparoscope_servo {
 
-// Addresses, with ports, beyond the loopback one on which this process takes TCP connections. By /proc.
+// Addresses, with ports, other than loopback on which this process accepts TCP connections, from /proc.
 std::vector<std::string> addressesBeyondLoopback();
 
-// Whether the environment tells of other machines: ROS_HOSTNAME or ROS_IP not of loopback, or a master elsewhere.
-// `master`: the master's host.
+// Whether the environment is set for several machines: ROS_HOSTNAME or ROS_IP are not loopback, or the master is
+// elsewhere. `master`: the master's host.
 bool spreadOverMachines(const std::string& master);
 
-// What to warn of; empty when nothing listens, or when it was asked for.
+// The warning; empty if nothing listens, or if the environment is set for it.
 std::string exposureWarning(const std::string& master);
 
-// The same as a line of the log, for a node that has registered with its master.
+// Logs exposureWarning(), for a node that has registered with its master.
 void warnOfExposure();
 
 }  // namespace laparoscope_servo

@@ -16,8 +16,8 @@ namespace laparoscope_servo {
 namespace {
 
 constexpr std::size_t kQueue = 1u << 20;     // bytes: some ten thousand lines
-constexpr std::size_t kLongLine = 1u << 16;  // bytes: what is longer is passed on in parts
-constexpr int kUnfinishedLine = 20;          // ms, after which the beginning of a line is passed on alone
+constexpr std::size_t kLongLine = 1u << 16;  // bytes: longer lines are passed on in parts
+constexpr int kUnfinishedLine = 20;          // ms, after which an incomplete line is passed on
 
 std::uint64_t lines(const std::string& text) {
   return static_cast<std::uint64_t>(std::count(text.begin(), text.end(), '\n'));
@@ -53,7 +53,7 @@ void OutputChannel::collect() {
     const ssize_t count = ::read(pipe_, buffer.data(), buffer.size());
     if (count > 0) pending_ += count;
     collecting_ = false;
-    if (count == 0) return push(std::move(text));  // nobody has the other end any more
+    if (count == 0) return push(std::move(text));  // the other end is closed
     if (count < 0) continue;
     text.append(buffer.data(), static_cast<std::size_t>(count));
     const std::size_t end = text.size() > kLongLine ? text.size() : text.rfind('\n') + 1;
@@ -91,7 +91,7 @@ void OutputChannel::deliver() {
       arrived_.wait(lock, [this] { return !queue_.empty(); });
       text = std::move(queue_.front());
       queue_.pop_front();
-      // Also when no other line follows those that were dropped.
+      // Also if no further line follows the dropped ones.
       if (queue_.empty() && unsaid_ > 0) {
         queue_.push_back(notice(std::exchange(unsaid_, 0)));
         queued_ += queue_.back().size();
@@ -105,14 +105,14 @@ void OutputChannel::deliver() {
   }
 }
 
-// What cannot be written, as on a full disk or to a terminal that has gone, is dropped.
+// Drops text that cannot be written, as on a full disk or to a closed terminal.
 void OutputChannel::write(const std::string& text) {
   std::size_t done = 0;
   while (done < text.size()) {
     const ssize_t count = ::write(target_, text.data() + done, text.size() - done);
     if (count > 0) {
       done += static_cast<std::size_t>(count);
-    } else if (errno == EAGAIN) {  // somebody has made the terminal non-blocking
+    } else if (errno == EAGAIN) {  // another process has made the terminal non-blocking
       pollfd entry{target_, POLLOUT, 0};
       ::poll(&entry, 1, -1);
     } else if (errno != EINTR) {

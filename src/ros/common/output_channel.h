@@ -1,4 +1,4 @@
-// One pipe whose contents are carried to a file descriptor that may block. See UnblockedOutput.
+// Copies the contents of a pipe to a file descriptor that may block. See UnblockedOutput.
 #pragma once
 
 #include <atomic>
@@ -12,10 +12,10 @@ namespace laparoscope_servo {
 
 class OutputChannel {
  public:
-  // Both descriptors are the channel's from now on. Its two threads end with the process, so it must never be deleted.
+  // Takes over both descriptors. Its two threads end with the process, so it must never be deleted.
   OutputChannel(int pipe, int target);
 
-  // Nothing is on its way. Only atomics and a system call: a signal handler may ask.
+  // Whether no text is under way. Uses only atomics and a system call, so that signal handlers may call it.
   bool isEmpty() const;
   std::uint64_t dropped() const { return dropped_; }
 
@@ -31,10 +31,10 @@ class OutputChannel {
   std::condition_variable arrived_;
   std::deque<std::string> queue_;
   std::size_t queued_ = 0;                 // bytes
-  std::uint64_t unsaid_ = 0;               // lines dropped, and not said yet
-  std::atomic<bool> collecting_{false};    // between the pipe and pending_
+  std::uint64_t unsaid_ = 0;               // dropped lines that are not reported yet
+  std::atomic<bool> collecting_{false};    // bytes were taken from the pipe and are not in pending_ yet
   std::atomic<std::int64_t> pending_{0};   // bytes taken out of the pipe and not yet written
-  std::atomic<std::uint64_t> dropped_{0};  // lines
+  std::atomic<std::uint64_t> dropped_{0};  // dropped lines
 };
 
 }  // namespace laparoscope_servo

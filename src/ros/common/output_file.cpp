@@ -19,14 +19,14 @@ namespace {
                            (error != 0 ? std::string(": ") + std::strerror(error) : ""));
 }
 
-// What the links point to in the end, which need not exist.
+// Resolves links; the target need not exist.
 std::string withoutLinks(const std::string& name) {
   std::filesystem::path path = name;
-  for (int links = 0; links < 40; ++links) {  // as many as the kernel follows
+  for (int links = 0; links < 40; ++links) {  // the kernel's own limit
     std::error_code error;
     const std::filesystem::path to = std::filesystem::read_symlink(path, error);
     if (error) return path.string();
-    path = path.parent_path() / to;  // an absolute one stands alone
+    path = path.parent_path() / to;  // an absolute path replaces the folder
   }
   fail(name, "links that lead in a circle", 0);
 }
@@ -54,7 +54,7 @@ OutputFile::OutputFile(const std::string& name) : name_(name), target_(withoutLi
   if (exists && ::access(target_.c_str(), W_OK) != 0) fail(name_, "open", errno);
   if (exists && !S_ISREG(existing.st_mode)) return;
   path_ = target_ + ".partial";
-  // 0666 less the user's mask, as of any new file; a file that is replaced keeps its rights.
+  // 0666 without the user's mask, as for any new file; a replaced file keeps its permissions.
   const Descriptor file(path_, O_WRONLY | O_CREAT | O_TRUNC, 0666);
   if (file.value() < 0) fail(name_, "open of '" + path_ + "'", errno);
   beside_ = true;
@@ -68,7 +68,8 @@ OutputFile::~OutputFile() {
 void OutputFile::keep() {
   if (!beside_) return;
   {
-    // What the kernel could not write later is told here; and after a power cut the name must not stand for nothing.
+    // fsync: reports errors of delayed writing, and makes sure that the name does not lead to an empty file after a
+    // power cut.
     const Descriptor file(path_, O_WRONLY, 0);
     if (file.value() < 0 || ::fsync(file.value()) != 0) fail(name_, "fsync", errno);
   }

@@ -1,7 +1,7 @@
-// A file that is there under its name only when it is whole.
+// A file that gets its name only when it is complete.
 //
-// It is written beside its place, as NAME.partial, and renamed in the end: whoever reads NAME finds all of it, or what
-// was there before. What is no regular file (a pipe, a terminal, /dev/null) is written to as it is.
+// It is written as NAME.partial and renamed at the end, so that readers of NAME find the complete file or the old one.
+// Special files (a pipe, a terminal, /dev/null) are written directly.
 #pragma once
 
 #include <fstream>
@@ -13,35 +13,35 @@ namespace laparoscope_servo {
 
 class OutputFile {
  public:
-  // Makes the file beside. Throws std::runtime_error, as keep() does: which file, and what the system says.
-  // NAME.partial of an earlier run that was killed is overwritten. A link is followed: what it points to is replaced.
+  // Creates NAME.partial. Throws std::runtime_error, as keep() does, with the file and the system's error. A
+  // NAME.partial of an earlier run that was killed is overwritten. Links are followed: their target is replaced.
   explicit OutputFile(const std::string& name);
-  // Takes away what was not kept.
+  // Deletes NAME.partial unless keep() was called.
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
   const std::string& name() const { return name_; }
-  // Where to write, by any means, until keep().
+  // The file to write to until keep().
   const std::string& path() const { return path_; }
-  // Once everything is written and closed: onto the disk, then under its name.
+  // Call when everything is written and closed: flushes it to the disk and renames it.
   void keep();
 
  private:
   std::string name_;
-  std::string target_;  // name without links
+  std::string target_;  // the name with links resolved
   std::string path_;
   bool beside_ = false;
 };
 
-// The same as a stream for text.
+// OutputFile for text, with a stream.
 class TextFile {
  public:
   explicit TextFile(const std::string& name);
 
-  // Throws std::runtime_error as soon as it is known that something could not be written.
+  // Throws std::runtime_error as soon as an error of writing is known.
   void write(const std::function<void(std::ostream&)>& print);
-  // Nothing is kept without it.
+  // Without this call the file is deleted.
   void keep();
 
  private:
@@ -51,7 +51,7 @@ class TextFile {
   std::ofstream stream_;
 };
 
-// All at once.
+// Writes and keeps a text file in one call.
 void writeTextFile(const std::string& name, const std::function<void(std::ostream&)>& print);
 
 }  // namespace laparoscope_servo

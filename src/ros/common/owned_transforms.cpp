@@ -6,8 +6,8 @@ namespace laparoscope_servo {
 
 namespace {
 
-constexpr std::uint32_t kQueue = 100;     // messages, as tf2_ros has it
-constexpr double kClockCorrection = 0.1;  // s: a correction of the machine's clock by less is no jump
+constexpr std::uint32_t kQueue = 100;     // messages, as in tf2_ros
+constexpr double kClockCorrection = 0.1;  // s: a smaller correction of the machine's clock is no jump
 
 using Event = ros::MessageEvent<tf2_msgs::TFMessage const>;
 

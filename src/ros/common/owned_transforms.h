@@ -1,5 +1,5 @@
-// tf as far as it is believed: listens to /tf and /tf_static in place of tf2_ros::TransformListener, and lets in what
-// TransformGate lets in. A thread of its own takes the messages, so that a flood of them does not delay who asks.
+// Listens to /tf and /tf_static in place of tf2_ros::TransformListener, and keeps the transforms that TransformGate
+// accepts. A separate thread receives the messages, so that a flood of them does not delay the caller.
 #pragma once
 
 #include <ros/callback_queue.h>
@@ -16,7 +16,7 @@ namespace laparoscope_servo {
 
 class OwnedTransforms {
  public:
-  // What is to be said of tf now, see TransformGate.
+  // The present problems of tf, see TransformGate.
   struct Word {
     std::string problem;
     std::string complaint;
@@ -27,7 +27,7 @@ class OwnedTransforms {
 
   explicit OwnedTransforms(const TransformGateConfig& config);
 
-  // To be called in every step; `engaged`: somebody relies on it now.
+  // Call in every step; `engaged`: the transforms are in use for motion.
   Word step(bool engaged, double steady_now);
   void clear();
   void use(const std::string& frame);
@@ -43,7 +43,7 @@ class OwnedTransforms {
   ros::NodeHandle node_;
   ros::Subscriber moving_subscriber_;
   ros::Subscriber static_subscriber_;
-  ros::AsyncSpinner spinner_;  // the last one: it ends before what its thread uses
+  ros::AsyncSpinner spinner_;  // last, so that it stops before the members that its thread uses are destroyed
 };
 
 }  // namespace laparoscope_servo

@@ -1,4 +1,4 @@
-// Parameters that are names of ROS: nodes, tf frames.
+// Rows for parameters that are ROS names: nodes, tf frames.
 #pragma once
 
 #include <string>
@@ -7,12 +7,12 @@
 
 namespace laparoscope_servo {
 
-// A row whose text has to be the name of a tf frame, without a leading slash.
+// A row whose text must be the name of a tf frame, without a leading slash.
 parameters::Row& describeFrame(parameters::Table& table, const std::string& name, std::string& frame,
                                const std::string& meaning);
 // A row `frame_prefix`, see frame_names.h.
 parameters::Row& describeFramePrefix(parameters::Table& table, std::string& prefix);
-// A row whose text has to be the name of a node, or nothing.
+// A row whose text must be the name of a node, or empty.
 parameters::Row& describeOwner(parameters::Table& table, const std::string& name, std::string& node,
                                const std::string& meaning);
 

@@ -1,4 +1,4 @@
-// Where the trees of parameters.h come from.
+// Reads the trees of parameters.h from the parameter server and from files.
 #include <ros/node_handle.h>
 #include <yaml-cpp/yaml.h>
 
@@ -12,7 +12,7 @@ namespace {
 
 using XmlRpc::XmlRpcValue;
 
-// Scalars as rosparam reads them (YAML 1.1 core): a quoted scalar is a string whatever it looks like.
+// Converts scalars as rosparam does (YAML 1.1 core): a quoted scalar is always a string.
 XmlRpcValue fromScalar(const YAML::Node& node) {
   if (node.Tag() == "!") return XmlRpcValue(node.Scalar());
   int integer = 0;
@@ -27,7 +27,7 @@ XmlRpcValue fromScalar(const YAML::Node& node) {
 XmlRpcValue fromYaml(const YAML::Node& node) {
   XmlRpcValue value;
   if (node.IsMap()) {
-    value.begin();  // a struct even when the map is empty
+    value.begin();  // makes it a struct even if the map is empty
     for (const auto& entry : node) value[entry.first.as<std::string>()] = fromYaml(entry.second);
   } else if (node.IsSequence()) {
     value.setSize(static_cast<int>(node.size()));

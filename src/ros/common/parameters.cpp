@@ -12,7 +12,7 @@ namespace {
 
 using XmlRpc::XmlRpcValue;
 
-// A scalar; nothing for a group, a list, and what has no type.
+// The value of a scalar; empty for a group, a list, and a value without a type.
 std::optional<parameters::Value> fromXmlRpc(const XmlRpcValue& value) {
   using parameters::Value;
   switch (value.getType()) {
@@ -35,7 +35,7 @@ std::string typeName(const XmlRpcValue& value) {
   return value.getType() == XmlRpcValue::TypeStruct ? "a group of parameters" : "of no known type";
 }
 
-// image_transport's plugins keep theirs in <topic>/<plugin>/, and which of them to load beside that.
+// image_transport's plugins keep their parameters in <topic>/<plugin>/, and the list of plugins to load beside it.
 bool isOfImageTransport(const XmlRpcValue& group) {
   if (group.getType() != XmlRpcValue::TypeStruct) return false;
   for (const char* name : {"compressed", "compressedDepth", "theora", "zstd", "disable_pub_plugins"}) {
@@ -153,7 +153,7 @@ void ParameterReader::refuseUnknown(const std::string& group) {
       refuseUnknown(path);
     } else if (read_.count(path) == 0) {
       errors_.push_back(full(path) + " is no parameter of this program" + suggestion(path));
-      settled_.insert(path);  // said once, also when a larger group is asked about later
+      settled_.insert(path);  // reported once, also if a larger group is checked later
     }
   }
 }

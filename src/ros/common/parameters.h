@@ -1,8 +1,8 @@
 // Reads a tree of parameters, from the parameter server or from a YAML file, with the same checks for both.
 //
-// A parameter that is absent keeps the value that the configuration struct gives it; one that is there must have the
-// right type and lie in its range. Every error is kept, so that a user sees all of them at once; the node then refuses
-// to start.
+// A parameter that is absent keeps its default from the configuration struct, unless it is required; one that is set
+// must have the right type and lie in its range. Every error is kept, so that a user sees all of them at once; the node
+// then refuses to start.
 #pragma once
 
 #include <XmlRpcValue.h>
@@ -22,15 +22,14 @@ namespace laparoscope_servo {
 
 class ParameterReader {
  public:
-  // `tree` is a struct of parameters or invalid (none are set); `name` is what its root is called in errors, e.g.
-  // "/tracker".
+  // `tree` is a struct of parameters, or invalid if none are set; `name`: name of its root in errors, e.g. "/tracker".
   explicit ParameterReader(const XmlRpc::XmlRpcValue& tree, const std::string& name);
 
-  // All that the table tells of; what is absent stays as it is, unless it is required. Ranges are judged, but not how
-  // parameters lie to each other: that is left to validate(), of all of them.
+  // Reads all parameters of the table; absent ones keep their values, unless they are required. Checks ranges;
+  // relations between parameters are left to validate().
   void read(const parameters::Table& table);
-  // All parameters of a node: reads them, judges them together by the configuration's own validate(), and refuses
-  // others in its namespace.
+  // Reads all parameters of a node, checks them with the configuration's validate(), and refuses unknown ones in its
+  // namespace.
   template <class Config>
   void readAll(Config& config) {
     parameters::Table table;
@@ -40,29 +39,30 @@ class ParameterReader {
     addJudgement(validate(config));
   }
 
-  // What the table tells of is known, though nobody here reads it.
+  // Marks the parameters of the table as known without reading them.
   void allow(const parameters::Table& table);
 
   // Paths are relative to the root, with slashes: "tracking/levels".
   bool has(const std::string& path) const;
-  // Adds an error for each parameter under `group` that nobody has read, with the nearest name that was: a typing error
-  // in a file must not go unnoticed. An empty `group` stands for the root.
+  // Adds an error for each parameter under `group` that was not read, with the nearest known name, so that typing
+  // errors are noticed. An empty `group` stands for the root.
   void refuseUnknown(const std::string& group);
-  // The same for all that a node has in its namespace, but for what libraries read there: diagnostic_updater's period,
-  // and what image_transport's plugins keep under the names of topics.
+  // refuseUnknown() for the whole namespace of a node, except parameters of libraries: diagnostic_updater's period, and
+  // those of image_transport's plugins under the names of topics.
   void refuseUnknownOfNode();
   void addError(const std::string& error) { errors_.push_back(error); }
-  // Errors of validate(), which begin with the parameter's path; what was said already is not said again.
+  // Adds errors of validate(), which begin with the parameter's path; parameters that have an error already are
+  // skipped.
   void addJudgement(const std::vector<std::string>& errors);
 
   const std::vector<std::string>& errors() const { return errors_; }
-  // All errors, one a line, with a heading; empty when there are none.
+  // All errors, one per line, with a heading; empty if there are none.
   std::string report() const;
 
  private:
   void read(const parameters::Row& row, const XmlRpc::XmlRpcValue& value);
   void take(const parameters::Row& row, const parameters::Value& value);
-  // "; is X meant?" of the name that was read and is most like it, or nothing.
+  // "; is X meant?" with the most similar known name, or empty.
   std::string suggestion(const std::string& path) const;
   const XmlRpc::XmlRpcValue* find(const std::string& path) const;
   // The value at `path`, marked as read; null when absent.
@@ -73,18 +73,18 @@ class ParameterReader {
   XmlRpc::XmlRpcValue tree_;
   std::string name_;
   std::set<std::string> read_;
-  std::set<std::string> settled_;  // of which nothing more is to be said, a library's or refused already
+  std::set<std::string> settled_;  // paths that need no further error: of libraries, or refused already
   std::vector<std::string> errors_;
 };
 
-// All parameters under the handle's namespace, as a struct; invalid when there are none.
+// All parameters in the handle's namespace, as a struct; invalid if there are none.
 XmlRpc::XmlRpcValue parametersOf(const ros::NodeHandle& node);
 
 // The parameters of a YAML file, as rosparam would load them. Throws std::runtime_error that names the file, and the
 // line where it cannot be parsed.
 XmlRpc::XmlRpcValue parametersFromYaml(const std::string& file);
 
-// `overlay` laid over `base`: structs are merged key by key, everything else is replaced.
+// Merges `overlay` into `base`: structs key by key; all else is replaced.
 XmlRpc::XmlRpcValue mergeParameters(const XmlRpc::XmlRpcValue& base, const XmlRpc::XmlRpcValue& overlay);
 
 }  // namespace laparoscope_servo

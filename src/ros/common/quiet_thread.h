@@ -1,4 +1,4 @@
-// A thread that takes no signals: those are for the main thread, whose system calls they are to interrupt.
+// A thread with all signals blocked, so that they go to the main thread and interrupt its system calls.
 #pragma once
 
 #include <signal.h>

@@ -28,7 +28,7 @@ std::string takePriority(int priority) {
   return text.str();
 }
 
-// Only without a limit: with one, memory that is asked for later would be refused.
+// Only without a limit: with one, later allocations would fail.
 std::string lockMemory() {
   rlimit limit{};
   ::getrlimit(RLIMIT_MEMLOCK, &limit);

@@ -1,4 +1,4 @@
-// Priority of real time for a loop that has to keep its rhythm on a busy machine.
+// Real-time priority, for a loop that must keep its period on a busy machine.
 #pragma once
 
 #include <string>
@@ -6,7 +6,7 @@
 namespace laparoscope_servo {
 
 // Gives the calling thread (and no thread or process that it starts later) SCHED_FIFO at `priority`, 1 to 99, and keeps
-// the process's memory from being paged out. Returns what was not permitted, and the cure; empty when all of it was.
+// the process's memory from being paged out. Returns what was not permitted, and how to permit it; empty if all was.
 std::string goRealtime(int priority);
 
 }  // namespace laparoscope_servo

@@ -12,8 +12,8 @@ class RecentValues {
   explicit RecentValues(double span = 60.0) : span_(span) {}
 
   void add(double now, double value);
-  // Of the values that are not older than the span; both 0 when there are none. `share`: 0 to 1, 0.95 is the value that
-  // 95 % of them do not exceed.
+  // Statistics of the values that are not older than the span; both 0 if there are none. `share`: 0 to 1; for 0.95 the
+  // value that 95 % of them do not exceed.
   double percentile(double now, double share);
   double sum(double now);
   std::size_t count(double now);

@@ -29,7 +29,7 @@ const char* typeOf(const Row& row) {
   }
 }
 
-// Lists are not for this protocol: none of them may change while a node runs.
+// The protocol has no lists; none of them may change while a node runs.
 void add(Config& config, const Row& row, const Value& value) {
   const std::string name = reconfigureName(row.name);
   if (const auto* flag = std::get_if<bool>(&value)) appendTo(config.bools, name, *flag);
@@ -60,7 +60,7 @@ class Setter {
   explicit Setter(const Table& table) : table_(table) {}
 
   void set(const std::string& name, const Value& value) {
-    constexpr std::size_t kLongest = 200;  // of a name that is worth repeating
+    constexpr std::size_t kLongest = 200;  // longest name that is repeated in an error
     if (name.size() > kLongest) {
       errors_.push_back("a name of " + std::to_string(name.size()) + " characters is no parameter of this node");
       return;

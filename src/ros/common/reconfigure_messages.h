@@ -1,6 +1,6 @@
-// A table of parameters in the messages of dynamic_reconfigure: those that may change while the node runs.
+// Converts the parameters of a table that may change while the node runs to messages of dynamic_reconfigure.
 //
-// The tools of dynamic_reconfigure want names that are C identifiers: a slash is written as two underscores,
+// The tools of dynamic_reconfigure need names that are C identifiers, so a slash is written as two underscores:
 // tracking__quality__min_zncc.
 #pragma once
 
@@ -25,19 +25,19 @@ void appendTo(List& list, const std::string& name, const T& value) {
 }
 
 std::string reconfigureName(const std::string& path);
-// Takes names with slashes, too.
+// Accepts names with slashes too.
 std::string pathOfReconfigureName(const std::string& name);
 
 // Names, types, ranges and meanings; the values of the table are the defaults.
 dynamic_reconfigure::ConfigDescription describeForReconfigure(const parameters::Table& table);
 dynamic_reconfigure::Config valuesForReconfigure(const parameters::Table& table);
 
-// Sets in the configuration of the table what `wanted` asks for. Returns every error, and then has changed nothing: a
-// name that is unknown, twice there, or of a parameter that may not change while the node runs; a wrong type; a value
-// that cannot be taken.
+// Sets the values of `wanted` in the configuration of the table. Returns all errors, and then changes nothing: a name
+// that is unknown, given twice, or of a parameter that may not change while the node runs; a wrong type; a refused
+// value.
 std::vector<std::string> setFromReconfigure(const parameters::Table& table, const dynamic_reconfigure::Config& wanted);
 
-// Values of what may change, by their paths.
+// Values of the parameters that may change, by their paths.
 std::map<std::string, parameters::Value> changeable(const parameters::Table& table);
 void restore(const parameters::Table& table, const std::map<std::string, parameters::Value>& values);
 

@@ -56,7 +56,7 @@ ReconfigureServer::~ReconfigureServer() {
   spinner_.stop();
 }
 
-// roscpp hands what is thrown to who has called, as the service's error.
+// roscpp passes exceptions to the caller as the error of the service.
 bool ReconfigureServer::onSet(Event& event) {
   const std::map<std::string, parameters::Value> before = changeable(table_);
   std::vector<std::string> errors = setFromReconfigure(table_, event.getRequest().config);
@@ -65,7 +65,7 @@ bool ReconfigureServer::onSet(Event& event) {
     restore(table_, before);
     const std::string text = joined(errors);
     ROS_WARN_STREAM("parameters of " << event.getCallerName() << " refused: " << text);
-    updates_.publish(valuesForReconfigure(table_));  // tools show what was asked for until they are told
+    updates_.publish(valuesForReconfigure(table_));  // tools show the requested values until they receive an update
     std_msgs::String refusal;
     refusal.data = text;
     refusals_.publish(refusal);

@@ -2,10 +2,10 @@
 //
 // Service `~set_parameters` (dynamic_reconfigure/Reconfigure); topics `~parameter_descriptions`
 // (dynamic_reconfigure/ConfigDescription) and `~parameter_updates` (dynamic_reconfigure/Config), both latched. A set is
-// taken or refused as a whole; who asked is told every error as the error of the service, which roscpp keeps from its
-// clients: it also comes on `~parameters_refused` (std_msgs/String). What counts is logged,
-// published, and put on the parameter server. All of that happens in a thread of its own: what the node does goes on
-// meanwhile, and takes the new configuration when it likes.
+// accepted or refused as a whole. The caller gets all errors as the error of the service; since roscpp hides that from
+// its clients, they are also published on `~parameters_refused` (std_msgs/String). Accepted values are logged,
+// published, and put on the parameter server. All of this happens in a separate thread; the node takes the new
+// configuration at a time of its choice.
 #pragma once
 
 #include <dynamic_reconfigure/Reconfigure.h>
@@ -24,7 +24,8 @@ namespace laparoscope_servo {
 
 class ReconfigureServer {
  public:
-  // `table` is of a configuration that only this server uses; `validate` judges it, `commit` hands a copy of it on.
+  // `table` belongs to a configuration that only this server uses; `validate` checks it, `commit` passes on a copy of
+  // it.
   ReconfigureServer(const ros::NodeHandle& private_node, const parameters::Table& table,
                     const std::function<std::vector<std::string>()>& validate, const std::function<void()>& commit);
   ~ReconfigureServer();
@@ -41,7 +42,7 @@ class ReconfigureServer {
   std::function<std::vector<std::string>()> validate_;
   std::function<void()> commit_;
   ros::CallbackQueue queue_;
-  ros::NodeHandle node_;  // private, with that queue
+  ros::NodeHandle node_;  // private handle with that queue
   ros::Publisher descriptions_;
   ros::Publisher updates_;
   ros::Publisher refusals_;
@@ -49,7 +50,7 @@ class ReconfigureServer {
   ros::AsyncSpinner spinner_;
 };
 
-// The parameters of a node, of which some change while it runs. Config has describe() and validate().
+// The parameters of a node that may change while it runs. Config has describe() and validate().
 template <class Config>
 class LiveParameters {
  public:
@@ -59,7 +60,7 @@ class LiveParameters {
         server_(
             private_node, table_, [this] { return validate(config_); }, [this] { handover_.give(config_); }) {}
 
-  // What was set since the last time. Neither waits nor allocates.
+  // Takes the configuration set since the last call. Does not wait nor allocate.
   bool take(Config& config) { return handover_.take(config); }
 
  private:
@@ -69,7 +70,7 @@ class LiveParameters {
     return table;
   }
 
-  Config config_;  // of the server's thread
+  Config config_;  // used by the server's thread only
   const parameters::Table table_;
   Handover<Config> handover_;
   ReconfigureServer server_;  // last: its thread uses all of the above

@@ -9,8 +9,8 @@
 
 namespace laparoscope_servo {
 
-// Its exit status: that of `run`, 1 when it throws, 2 for options that are wrong, 0 after --help, which prints `usage`
-// and the options. What is no option is a value of `positional`. `run` may throw program_options::error, too.
+// Returns the exit status: that of `run`, 1 if it throws, 2 for wrong options, 0 after --help, which prints `usage` and
+// the options. Arguments that are no options are values of `positional`. `run` may also throw program_options::error.
 template <class Run>
 int runTool(int argc, char** argv, const std::string& name, const std::string& usage,
             const boost::program_options::options_description& description, const char* positional, const Run& run) {

@@ -1,6 +1,6 @@
 // Who may call the services that lead to motion: the nodes that the configuration names, or every node.
 //
-// A caller's name is what it says it is, as in all of ROS 1: this keeps out mistakes, not malice (doc/network.md).
+// A caller's name is not authenticated in ROS 1, so this prevents mistakes, not attacks (doc/network.md).
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
-// What services throw. roscpp would only log it, and the node would go on as if nothing had happened: it is kept for
-// the loop, which ends the node with it.
+// Keeps exceptions of services for the node's loop, which ends the node with them. roscpp would only log them, and the
+// node would go on.
 #pragma once
 
 #include <exception>
@@ -8,8 +8,7 @@ namespace laparoscope_servo {
 
 class ServiceErrors {
  public:
-  // Calls `serve`. What it throws is kept, the first of several, and is the service's answer: no success, and its
-  // words.
+  // Calls `serve`. Keeps its exception (the first of several) and answers the service with success false and its text.
   template <class Response, class Serve>
   void guard(Response& response, const Serve& serve) {
     try {
@@ -21,7 +20,7 @@ class ServiceErrors {
     }
   }
 
-  // Throws what was kept, if anything was.
+  // Throws the kept exception, if there is one.
   void rethrow() const {
     if (first_) std::rethrow_exception(first_);
   }

@@ -4,7 +4,7 @@ namespace laparoscope_servo {
 
 namespace {
 
-// As many in a row are no outliers any more.
+// As many in a row are no outliers.
 constexpr int kLasting = 3;
 
 }  // namespace
@@ -38,7 +38,7 @@ bool StampGate::isAhead(const ros::Time& stamp, const ros::Time& now) {
   return ahead;
 }
 
-// The stream has begun anew: several in a row, each newer than the one before.
+// Whether the stream has begun anew: several in a row, each newer than the last.
 bool StampGate::isBehind(const ros::Time& stamp) {
   if ((newest_ - stamp).toSec() <= tolerance_) return false;
   behind_in_a_row_ = behind_in_a_row_ > 0 && stamp > behind_ ? behind_in_a_row_ + 1 : 1;

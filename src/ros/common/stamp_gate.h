@@ -1,5 +1,5 @@
-// Which of the stamps of a stream count. Single ones that are doubled, out of order, zero or from the future are left
-// out, and change nothing for those that follow; only a stream that stays behind where it was has begun anew.
+// Decides which stamps of a stream are accepted. Single stamps that are repeated, out of order, zero or in the future
+// are refused and do not affect later ones; a stream whose stamps stay earlier than before has begun anew.
 #pragma once
 
 #include <ros/time.h>
@@ -13,25 +13,25 @@ class StampGate {
   enum class Verdict {
     kCounts,
     kUnset,       // zero
-    kRepeated,    // the last one again
-    kLate,        // older than one that has counted
-    kAhead,       // further ahead of now than clocks may differ
-    kJumpedBack,  // counts: the stream goes on from an earlier time
+    kRepeated,    // equal to the last one
+    kLate,        // older than an accepted one
+    kAhead,       // further ahead of now than the tolerance
+    kJumpedBack,  // accepted: the stream goes on from an earlier time
   };
 
-  // `tolerance`: s, by which clocks may differ, and stamps be out of order.
+  // `tolerance`: s, allowed difference of clocks, and of stamps out of order.
   explicit StampGate(double tolerance) : tolerance_(tolerance) {}
 
   Verdict judge(const ros::Time& stamp, const ros::Time& now);
-  // Ahead alone, for streams whose order does not matter.
+  // Checks for kAhead only, for streams whose order does not matter.
   bool isAhead(const ros::Time& stamp, const ros::Time& now);
-  // Whatever comes next counts, unless it is unset or ahead.
+  // Accepts any next stamp that is not unset or ahead.
   void clear();
-  // Nothing else has come for a few messages.
+  // Whether the last few stamps were all ahead.
   bool onlyAhead() const;
   bool onlyUnset() const;
 
-  // Left out since the start.
+  // Numbers of refused stamps since the start.
   std::uint64_t unset() const { return unset_; }
   std::uint64_t repeated() const { return repeated_; }
   std::uint64_t late() const { return late_; }
@@ -42,7 +42,7 @@ class StampGate {
 
   double tolerance_;
   ros::Time newest_;  // zero: none
-  ros::Time behind_;  // the last of those in a row that lie further back than the tolerance
+  ros::Time behind_;  // the last of the present row of stamps that are further back than the tolerance
   int behind_in_a_row_ = 0;
   int ahead_in_a_row_ = 0;
   int unset_in_a_row_ = 0;

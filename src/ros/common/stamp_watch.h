@@ -1,8 +1,8 @@
-// How old stamped data is, on two clocks at once.
+// Age of stamped data, by two clocks.
 //
-// The steady clock says how long ago something new came: it notices a sender that stopped, or that repeats itself,
-// whatever ROS time does (paused, looped, simulated). ROS time says how old the data was when it was sent: it notices
-// data that waited in a queue. The age is the larger of the two.
+// The steady clock measures the time since new data came: it detects a sender that stopped or repeats itself, also if
+// ROS time is paused, looped or simulated. ROS time measures the age since the stamp: it detects data that waited in a
+// queue. The age is the larger of both.
 #pragma once
 
 #include <ros/time.h>
@@ -15,19 +15,19 @@ class StampWatch {
  public:
   enum class Arrival { kNew, kRepeated, kBack };
 
-  // Data with this stamp arrived. Repeated data counts as none; data older than the last one is taken as the new start.
+  // Call when data with this stamp arrived. Repeated data is ignored; data older than the last one is a new start.
   Arrival arrived(const ros::Time& stamp, double steady_now);
 
   bool empty() const { return empty_; }
   void clear() { empty_ = true; }
 
-  // s, never negative. Only when not empty.
+  // s, never negative. Call only if not empty.
   double age(const ros::Time& now, double steady_now) const;
-  // Its two parts: since something new came, and since the stamp.
+  // The two parts of the age: since new data came, and since the stamp.
   double silence(double steady_now) const;
   double stampAge(const ros::Time& now) const;
 
-  // The stamp lies more than `tolerance` s ahead of ROS time: the clocks of two machines differ.
+  // Whether the stamp is more than `tolerance` s ahead of ROS time, because clocks of two machines differ.
   bool isAhead(const ros::Time& now, double tolerance) const;
 
  private:

@@ -7,7 +7,7 @@ using aesop::OperatingMode;
 
 namespace {
 
-// s. A controller that is there answers the first question at once; until then nothing is wrong.
+// s, for the controller's first answer, which usually comes at once
 constexpr double kFirstAnswer = 1.0;
 
 }  // namespace
@@ -22,7 +22,7 @@ Severity severityOf(const aesop::OperatingState& state, const aesop::Session& se
 bool StateReport::isAwaited(const aesop::Session& session, double now) {
   const LinkState link = session.link().state();
   if (link == LinkState::kIdentifying && link_ == LinkState::kClosed) opened_at_ = now;
-  // A link that was lost without its port is lost, and said so.
+  // If the link was lost while the port stays open, it is reported as lost at once.
   if (link == LinkState::kIdentifying && link_ == LinkState::kUp) opened_at_ = now - kFirstAnswer;
   link_ = link;
   return link == LinkState::kIdentifying && now - opened_at_ < kFirstAnswer;

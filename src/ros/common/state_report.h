@@ -1,5 +1,4 @@
-// What the screen says of the operating state: every change of the state or of its reason, at the level that it
-// deserves.
+// Lines on the terminal about the operating state: every change of the state or of its reason, with a log level.
 #pragma once
 
 #include <optional>
@@ -18,12 +17,12 @@ struct StateLine {
 };
 
 // ERROR: FAULT, no connection, a disable that the arm does not confirm. WARNING: PAUSED, DISABLED by something else
-// than a request, ENABLED but not doing what was commanded. INFO: the rest.
+// than a request, ENABLED but not executing the command. INFO: the rest.
 Severity severityOf(const aesop::OperatingState& state, const aesop::Session& session);
 
 class StateReport {
  public:
-  // To be called at every step. `state`: the session's, perhaps with more words. `now`: s, steady.
+  // Call at every step. `state`: the session's, perhaps with a longer reason. `now`: s, steady.
   std::optional<StateLine> take(const aesop::OperatingState& state, const aesop::Session& session, double now);
 
  private:
@@ -31,7 +30,7 @@ class StateReport {
 
   SaidLines lines_;
   aesop::LinkState link_ = aesop::LinkState::kClosed;
-  double opened_at_ = 0.0;  // s: the port, where no answer has come since
+  double opened_at_ = 0.0;  // s: when the port was opened, if no answer has come since
 };
 
 }  // namespace laparoscope_servo

@@ -37,7 +37,7 @@ std::string unreadable(const StopLineConfig& config, const std::string& why) {
          ", cannot be read: " + why;
 }
 
-// Opened anew each time: a file that was replaced, or has gone, is noticed.
+// Opened anew each time, so that a replaced or deleted file is noticed.
 std::string readFile(const StopLineConfig& config) {
   const int file = ::open(config.path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
   if (file < 0) return unreadable(config, std::strerror(errno));
@@ -70,7 +70,7 @@ void describe(parameters::Table& table, StopLineConfig& c) {
                "of a serial port; empty: the file's first character, 0 or 1");
   table.number("release", c.release, {0, 1}, "level", "at which the arm may move; anything else stops it");
   table.number("rate", c.rate, {10, 1000}, "Hz", "at which it is read");
-  table.number("patience", c.patience, {0.05, 5}, "s", "without a reading for so long the arm stops");
+  table.number("patience", c.patience, {0.05, 5}, "s", "longest time without a reading; then the arm stops");
 }
 
 std::vector<std::string> validate(const StopLineConfig& config) {
@@ -83,7 +83,7 @@ std::string readStopLine(const StopLineConfig& config, int& file) {
 
 struct StopLine::Shared {
   std::atomic<bool> ending{false};
-  std::mutex mutex;  // never held while something is read
+  std::mutex mutex;  // never held during a reading
   std::string obstacle;
   std::string last_stop;
   std::uint64_t stops = 0;

@@ -15,7 +15,7 @@ namespace laparoscope_servo {
 
 namespace {
 
-constexpr std::chrono::milliseconds kFarewell{1500};  // for the master to hear that the node ends
+constexpr std::chrono::milliseconds kFarewell{1500};  // for unregistering from the master
 
 volatile std::sig_atomic_t stop_requested = 0;
 volatile std::sig_atomic_t halt_requested = 0;
@@ -28,7 +28,7 @@ void onHaltSignal(int) {
   halt_requested = 1;
 }
 
-// What `rosnode kill` calls, and the master when a second node takes this one's name.
+// Called by `rosnode kill`, and by the master when a second node takes this one's name.
 void onShutdownCall(XmlRpc::XmlRpcValue&, XmlRpc::XmlRpcValue& result) {
   stop_requested = 1;
   result = ros::xmlrpc::responseInt(1, "", 0);

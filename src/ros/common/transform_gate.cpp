@@ -12,11 +12,11 @@ namespace laparoscope_servo {
 namespace {
 
 constexpr std::size_t kMostFrames = 1000;  // an arm has ten
-constexpr double kFarthest = 1000.0;       // m: nothing in a room is as far from anything
-constexpr double kRotationError = 1e-3;    // of a quaternion's length: those of tf users are rounded, not scaled
-constexpr double kSilent = 2.0;            // s: a frame of which nothing was heard for so long is anybody's
-constexpr double kTold = 2.0;              // s, that a stranger is complained about
-constexpr double kStill = 1e-6;            // m, and of a quaternion's elements
+constexpr double kFarthest = 1000.0;       // m: larger than any distance in a room
+constexpr double kRotationError = 1e-3;    // tolerance of a quaternion's length: published ones are rounded, not scaled
+constexpr double kSilent = 2.0;            // s: after this time of silence another publisher may take over a frame
+constexpr double kTold = 2.0;              // s, for which another publisher is reported
+constexpr double kStill = 1e-6;            // m, and tolerance of a quaternion's elements, for equal transforms
 
 std::string stripped(const std::string& frame) {
   return !frame.empty() && frame.front() == '/' ? frame.substr(1) : frame;
@@ -96,7 +96,7 @@ void TransformGate::takeOne(const geometry_msgs::TransformStamped& transform, co
   if (news.is_static ? takesStatic(news) : !is_known || takesStamp(known->second, news)) believe(news);
 }
 
-// Its connection is gone, or it is silent and nobody relies on it.
+// Whether the frame's connection is gone, or it is silent while not engaged.
 bool TransformGate::mayReplace(const Frame& known, const Frame& news) const {
   const auto connection = known.connection.lock();
   if (!connection) return true;
@@ -123,9 +123,9 @@ bool TransformGate::takesStamp(const Frame& known, const Frame& news) {
   const ros::Time& last = known.transform.header.stamp;
   const ros::Time& stamp = news.transform.header.stamp;
   if (stamp > last) return true;
-  if (stamp == last && isSame(known.transform, news.transform)) return false;  // told again
+  if (stamp == last && isSame(known.transform, news.transform)) return false;  // a repetition
   ++refused_;
-  // A recording that begins again: the old stamps will not come back.
+  // Earlier stamps are accepted only after a silence and while not engaged: a recording has then begun again.
   if (engaged_ || !(news.heard - known.heard > kSilent)) return false;
   clear();
   return true;
@@ -150,7 +150,7 @@ void TransformGate::believe(const Frame& news) {
     ++refused_;
     return;
   }
-  if (!news.is_static && engaged_ && known_static_.count(child) != 0) {  // was static at engaging
+  if (!news.is_static && engaged_ && known_static_.count(child) != 0) {  // the frame was static at engaging
     ++refused_;
     changed_ = child;
     return;
@@ -201,7 +201,7 @@ void TransformGate::clear() {
   rebuild();
 }
 
-// What is static cannot be taken out of a buffer of tf2.
+// Static transforms cannot be removed from a tf2 buffer, so a new buffer is built.
 void TransformGate::rebuild() {
   buffer_ = std::make_shared<tf2::BufferCore>();
   for (const auto& frame : frames_) {
@@ -230,7 +230,8 @@ void TransformGate::complain(const Frame& news, bool is_doubtful) {
   stranger.at = news.heard;
 }
 
-// A static transform is sent once and stays with whoever else listens.
+// A static transform is sent once but stays in the buffers of other listeners, so it is reported while its connection
+// is open.
 bool TransformGate::isTold(const Stranger& stranger, double steady_now) const {
   return stranger.is_static ? !stranger.connection.expired() : steady_now - stranger.at <= kTold;
 }

@@ -1,12 +1,12 @@
-// Decides which transforms that come over the network are believed.
+// Decides which transforms from the network are accepted.
 //
-// Each frame has one publisher: the node that the configuration names, or, where it names none, the one that was first
-// to publish the frame; and of it one connection, as long as that lives. What anybody else says of a frame is left out
-// and told. So is what cannot be: numbers that are not finite, rotations that are none, a frame with two parents, one
-// that is static and moving, stamps from the future, stamps that go back or that stand while the content changes.
+// Each frame has one publisher: the node named by the configuration, or, if none is named, the first one to publish the
+// frame; and one connection of it, while that is open. Transforms of other publishers are refused and reported. So are
+// impossible ones: non-finite numbers, invalid rotations, a frame with two parents, a frame that is both static and
+// moving, stamps in the future, stamps that go back or that do not change while the content does.
 //
-// Static transforms last as long as the connection that brought them. While engaged they may not change: another one
-// is told and waits until nobody is engaged. Plain logic: no clock, no thread; time is an argument.
+// Static transforms are valid while their connection is open. While engaged they may not change: a new one is reported
+// and waits until the controller is not engaged. No clock, no thread; time is an argument.
 #pragma once
 
 #include <geometry_msgs/TransformStamped.h>
@@ -26,46 +26,45 @@
 namespace laparoscope_servo {
 
 struct TransformGateConfig {
-  std::string owner;                // the one node that publishes them, its full name; empty: whoever is the first
-  std::string parameter;            // that names it, for what is told
-  std::vector<std::string> frames;  // in use: these, and all between them and the root
-  double max_ahead = 0.25;          // s, of a stamp to ROS time
+  std::string owner;                // full name of the node that publishes them; empty: the first publisher
+  std::string parameter;            // name of the parameter that holds the owner, for texts
+  std::vector<std::string> frames;  // frames in use, with all between them and the root
+  double max_ahead = 0.25;          // s, by which a stamp may be ahead of ROS time
 };
 
 class TransformGate {
  public:
-  // Anything of which there is one object per connection, which dies with it.
+  // Identifies a connection by any object that exists once for it and is destroyed with it.
   using Connection = boost::shared_ptr<const void>;
   using Transforms = std::vector<geometry_msgs::TransformStamped>;
 
   explicit TransformGate(const TransformGateConfig& config);
 
-  // `sender`: the name that came with the connection; `now`: ROS time; `steady_now`: s.
+  // `sender`: node name of the connection; `now`: ROS time; `steady_now`: s.
   void take(const Transforms& transforms, const std::string& sender, const Connection& connection, bool is_static,
             const ros::Time& now, double steady_now);
 
-  // To be called in every step of whoever relies on it: forgets what came over connections that are gone.
+  // Call in every step: removes transforms of connections that are closed.
   void step(bool engaged, const ros::Time& now, double steady_now);
 
-  // ROS time jumped back: only what is static holds.
+  // Call when ROS time jumped back: keeps only static transforms.
   void clear();
 
-  // `frame` is in use from now on.
+  // Marks `frame` as in use.
   void use(const std::string& frame);
 
-  // What is believed. Another object after something was forgotten: ask again each time.
+  // The accepted transforms. A new object replaces it when transforms are removed, so get it for each use.
   std::shared_ptr<const tf2::BufferCore> buffer() const { return buffer_; }
 
-  // Why what is believed must not be relied on: the newest word about a frame in use was nonsense, or nobody can tell
-  // which of two publishers is right. Empty: nothing.
+  // Why the accepted transforms must not be used: the last transform of a frame in use was invalid, or it is undecided
+  // which of two publishers is right. Empty: they may be used.
   std::string problem(double steady_now) const;
-  // Who else publishes frames in use; empty: nobody.
+  // Which other nodes publish frames in use; empty: none.
   std::string complaint(double steady_now) const;
-  // A static frame in use that is another one than it was, once; empty: none.
+  // A static frame in use that has changed; returned once; empty: none.
   std::string takeChangedFrame();
 
-  // Transforms since the start: of others than the owner, about frames in use; and what was not believed of the
-  // owner's.
+  // Numbers of refused transforms since the start: of other nodes, for frames in use; and of the owner.
   std::uint64_t strange() const { return strange_; }
   std::uint64_t refused() const { return refused_; }
 
@@ -81,7 +80,8 @@ class TransformGate {
     std::string name;
     boost::weak_ptr<const void> connection;
     bool is_static = false;
-    bool is_doubtful = false;                              // nobody can tell whether this one is right or the other
+    // it is undecided whether this publisher or the present one is right
+    bool is_doubtful = false;
     double at = -std::numeric_limits<double>::infinity();  // s, steady
   };
 
@@ -103,10 +103,11 @@ class TransformGate {
   std::shared_ptr<tf2::BufferCore> buffer_;
   bool engaged_ = false;
   std::map<std::string, Frame> frames_;                                  // by the child's name
-  std::map<std::string, geometry_msgs::TransformStamped> known_static_;  // also of connections that are gone
-  std::map<std::string, Frame> waiting_;                                 // static, until they may be taken
-  std::map<std::string, std::string> nonsense_;                          // in words, of frames in use
-  std::map<std::string, Stranger> strangers_;                            // the latest, of each frame in use
+  std::map<std::string, geometry_msgs::TransformStamped> known_static_;  // also those of closed connections
+  std::map<std::string, Frame> waiting_;                                 // new static transforms, until not engaged
+  std::map<std::string, std::string> nonsense_;                          // error texts of frames in use
+  // the latest other publisher of each frame in use
+  std::map<std::string, Stranger> strangers_;
   std::set<std::string> in_use_;
   std::string changed_;
   std::uint64_t strange_ = 0;

@@ -18,8 +18,9 @@ namespace laparoscope_servo {
 
 namespace {
 
-constexpr int kPipe = 1 << 20;     // bytes, what the kernel gives to anybody: room while the threads do not run
-constexpr double kFlush = 1.0;     // s, for the last lines at an ordinary end
+// bytes, the kernel's limit for unprivileged users: a buffer while the threads do not run
+constexpr int kPipe = 1 << 20;
+constexpr double kFlush = 1.0;     // s, for the last lines at a normal end
 constexpr double kLastGasp = 0.3;  // s, in a crash
 
 std::array<OutputChannel*, 2> channels{};  // never deleted: their threads run until the process is no more
@@ -48,7 +49,7 @@ bool sameFile(int a, int b) {
          first.st_ino == second.st_ino;
 }
 
-// Puts a pipe in the place of the descriptors `from`, all of which go where the first one goes. False when it cannot.
+// Replaces the descriptors `from`, which all have the target of the first one, by a pipe. Returns false on failure.
 bool divert(OutputChannel*& channel, std::initializer_list<int> from) {
   const int target = ::fcntl(*from.begin(), F_DUPFD_CLOEXEC, 3);
   if (target < 0) return false;
@@ -73,7 +74,7 @@ UnblockedOutput::UnblockedOutput() {
                         ? divert(channels[0], {STDOUT_FILENO, STDERR_FILENO})
                         : divert(channels[0], {STDOUT_FILENO}) && divert(channels[1], {STDERR_FILENO});
   if (!done) std::fprintf(stderr, "what is printed may block: no pipe for it (%s)\n", std::strerror(errno));
-  // To a pipe it would go in blocks of 4 KiB otherwise, and appear long after it was printed.
+  // By default output to a pipe is buffered in blocks of 4 KiB and would appear late.
   std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
   std::atexit(flushOutput);
   for (const int signal : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL}) ::signal(signal, onCrash);

@@ -1,13 +1,13 @@
-// What the process prints never makes it wait: a terminal stopped by Ctrl-S, a pipe that nobody reads and a slow ssh
-// connection would otherwise hold whoever logs, and with it the loop that controls the arm.
+// Makes printing non-blocking: a terminal stopped by Ctrl-S, a pipe that nobody reads or a slow ssh connection would
+// otherwise block the thread that logs, and with it the loop that controls the arm.
 //
-// Standard output and standard error become pipes. One thread takes what is printed out of the pipe into a bounded
-// queue, another one writes the queue to where it belongs and may wait for ever. This catches every writer in the
-// process, also roscpp's own and the libraries'. What finds the queue full is dropped, in whole lines, counted, and
-// said when there is room again. The order of lines is kept, across both streams where they go to the same place.
+// Standard output and standard error become pipes. One thread moves the text from the pipe to a bounded queue, another
+// one writes the queue to the original target and may block. This covers all output of the process, also of roscpp and
+// other libraries. If the queue is full, whole lines are dropped and counted, and the number is printed when there is
+// room again. The order of lines is kept, also across both streams if they have the same target.
 //
-// What is printed last comes out, too: the end of the scope, exit() and the signals of a crash wait until all is
-// written, but not longer than a second. SIGKILL loses what was printed in the last milliseconds.
+// The last lines are printed too: the destructor, exit() and the handlers of crash signals wait until all is written,
+// but not longer than a second. SIGKILL loses what was printed in the last milliseconds.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,7 @@ namespace laparoscope_servo {
 
 class UnblockedOutput {
  public:
-  // To be made once, first thing in main(). Where it cannot be had, everything stays as it was, and stderr says so.
+  // Construct it once, first in main(). On failure output stays as it was, with a message on stderr.
   UnblockedOutput();
   ~UnblockedOutput();
   UnblockedOutput(const UnblockedOutput&) = delete;
@@ -27,7 +27,7 @@ class UnblockedOutput {
 // Waits until all is written, but not longer than a second.
 void flushOutput();
 
-// Since the start.
+// Number of dropped lines since the start.
 std::uint64_t droppedLogLines();
 
 }  // namespace laparoscope_servo

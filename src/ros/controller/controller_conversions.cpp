@@ -48,7 +48,7 @@ servo::DepthInput fromTransforms(const geometry_msgs::Transform& camera_T_insert
   const Eigen::Quaterniond camera_R_insertion_point = fromMessage(camera_T_insertion_point.rotation);
   depth.camera_R_shaft = fromMessage(camera_T_shaft.rotation).toRotationMatrix();
   const Eigen::Vector3d in_camera = fromMessage(camera_T_insertion_point.translation);
-  const Eigen::Vector3d along = depth.camera_R_shaft.transpose() * in_camera;  // O_A from O_C, in the shaft's axes
+  const Eigen::Vector3d along = depth.camera_R_shaft.transpose() * in_camera;  // from O_C to O_A, in the shaft's axes
   depth.d2 = -along.z();
   depth.lateral_offset = along.head<2>().norm();
   Eigen::Isometry3d tip = Eigen::Isometry3d::Identity();

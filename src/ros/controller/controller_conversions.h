@@ -1,4 +1,4 @@
-// Between the controller's messages and the core's types.
+// Conversions between the controller's messages and core types.
 #pragma once
 
 #include <geometry_msgs/Transform.h>
@@ -14,23 +14,23 @@ namespace laparoscope_servo {
 
 std::string taskName(servo::Task task);
 
-// As it is, finite or not.
+// Converts without checks; the result may be non-finite.
 scope::Velocity servoVelocity(const ScopeVelocity& message);
 
-// The ages are left to the caller.
+// The caller fills in the ages.
 servo::TaskErrorInput fromMessage(const TaskError& message);
 servo::RobotFacts fromMessage(const OperatingState& message);
 
-// From the insertion point in the camera's frame, and the shaft's frame in the camera's, whose axes count: d2, the
-// lateral offset, the optics, and the pose of the tip. `problem` and `age` are left to the caller.
+// Computes d2, lateral offset, optics and the tip's pose from the insertion point in the camera's frame, and from the
+// axes of the shaft's frame in the camera's. The caller fills in `problem` and `age`.
 servo::DepthInput fromTransforms(const geometry_msgs::Transform& camera_T_insertion_point,
                                  const geometry_msgs::Transform& camera_T_shaft);
 
-// The scope's velocity from the camera's, both expressed in the frame from which `shaft_R_frame` leads to the shaft's
-// axes.
+// The scope's velocity from the camera's twist, given in a frame from which `shaft_R_frame` takes coordinates to the
+// shaft's axes.
 scope::Velocity fromTwist(const geometry_msgs::Twist& twist, const Eigen::Quaterniond& shaft_R_frame);
 
-// The header is left to the caller.
+// The caller fills in the header.
 ScopeVelocity toMessage(const scope::Velocity& velocity);
 ControllerState toMessage(const servo::ControllerOutput& output);
 

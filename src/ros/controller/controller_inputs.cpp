@@ -10,23 +10,23 @@ namespace laparoscope_servo {
 
 namespace {
 
-// Messages of one topic. Only the owner's newest one counts, but others must not push it out of the queue: 0.1 s of a
-// stranger that floods the topic with 10 kHz.
+// Messages of one topic. Only the owner's newest one counts, but those of others must not push it out of the queue: 0.1
+// s of another publisher that floods the topic at 10 kHz.
 constexpr std::uint32_t kQueue = 1000;
 constexpr double kWarningPeriod = 5.0;  // s
-// s. A velocity that was measured so long before has no place among the commands.
+// s; an older measured velocity cannot be related to the commands any more
 constexpr double kOldestReport = 0.3;
 
 std::string resolved(const ros::NodeHandle& node, const std::string& name) {
   return name.empty() ? name : node.resolveName(name, false);
 }
 
-// s; what was not stamped has come without delay.
+// Age by the stamp [s]; 0 without a stamp.
 double stampAge(const ros::Time& stamp) {
   return stamp.isZero() ? 0.0 : (ros::Time::now() - stamp).toSec();
 }
 
-// As it came over the network, fit to be shown.
+// A state from the network, made safe for display.
 std::string shownState(const std::string& state) {
   for (const char* known : {"DISABLED", "FAULT"}) {
     if (state == known) return state;
@@ -55,7 +55,7 @@ ControllerInputs::ControllerInputs(ros::NodeHandle& node, ros::NodeHandle& priva
       dead_man_input_(resolved(node, config.owners.dead_man), "words of the dead-man switch", "owners/dead_man",
                       config.control.safety.max_clock_difference),
       dead_man_(config.control.safety.max_dead_man_age) {
-  // It must not wait for a full packet.
+  // tcpNoDelay: a message must not wait for a full packet.
   const ros::TransportHints at_once = ros::TransportHints().tcpNoDelay();
   using Self = ControllerInputs;
   task_error_input_.subscriber = node.subscribe("task_error", kQueue, &Self::onTaskError, this, at_once);
@@ -77,7 +77,7 @@ ControllerInputs::ControllerInputs(ros::NodeHandle& node, ros::NodeHandle& priva
 void ControllerInputs::know(bool engaged, servo::Task task) {
   engaged_ = engaged;
   task_ = task;
-  // Who has gone since it spoke last keeps nobody else from driving.
+  // Releases the ownership when the owner has been silent for max_manual_age.
   const bool silent = !(steadyNow() - manual_arrival_ <= config_.control.safety.max_manual_age);
   if (silent && !manualMatters()) manual_input_.owner.release();
 }
@@ -92,7 +92,8 @@ void ControllerInputs::end(const std::string& why) {
   if (engaged_) ended_ = why;
 }
 
-// `matters`: the input can move the arm now. Where it cannot, whoever has spoken last is the one that counts.
+// `matters`: the input can move the arm now. If it cannot, ownership is released, so that the publisher of the last
+// message is accepted.
 template <typename Message>
 bool ControllerInputs::counts(Input& input, const ros::MessageEvent<Message const>& event, bool matters) {
   if (!matters) input.owner.release();
@@ -101,7 +102,7 @@ bool ControllerInputs::counts(Input& input, const ros::MessageEvent<Message cons
     case InputOwner::Verdict::kOwner:
       return true;
     case InputOwner::Verdict::kNewConnection:
-      // Restarted, replaced by another process of its name, or joined by one.
+      // The publisher was restarted, replaced by another process of its name, or joined by one.
       end("the node of the " + input.owner.what() + ", " + shownName(event.getPublisherName()) +
           ", has connected anew");
       return false;
@@ -132,11 +133,11 @@ void ControllerInputs::onTaskError(const ros::MessageEvent<TaskError const>& eve
   if (verdict != StampGate::Verdict::kCounts && verdict != StampGate::Verdict::kJumpedBack) return;
   task_error_watch_.arrived(message.header.stamp, steadyNow());
   task_error_ = fromMessage(message);
-  // Once for each image: the two clocks need not agree on it later.
+  // Converts the stamp to steady time once per image, since the clocks may drift.
   task_error_.image_time = steadyNow() - task_error_watch_.stampAge(now);
 }
 
-// A stop counts whatever its stamp says.
+// A stop is accepted with any stamp.
 void ControllerInputs::onOperatingState(const ros::MessageEvent<OperatingState const>& event) {
   if (!counts(operating_state_input_, event, engaged_)) return;
   const OperatingState& message = *event.getConstMessage();
@@ -151,13 +152,13 @@ void ControllerInputs::onOperatingState(const ros::MessageEvent<OperatingState c
 
 void ControllerInputs::onDeadMan(const ros::MessageEvent<std_msgs::Bool const>& event) {
   const InputOwner::Connection connection = event.getConnectionHeaderPtr();
-  // Without an owner each connection counts, once it was seen released.
+  // Without a configured owner each connection may press, once it was seen released.
   const bool may_press = dead_man_input_.owner.name().empty() || counts(dead_man_input_, event, engaged_);
   dead_man_.said({connection.get(), [connection](const void*) {}}, event.getConstMessage()->data != 0, may_press,
                  steadyNow());
 }
 
-// Sliders and command lines set no stamp. One that is set tells what waited on its way.
+// Sliders and command lines set no stamp. If there is one, it shows a delay on the way.
 void ControllerInputs::onManual(const ros::MessageEvent<ScopeVelocity const>& event) {
   if (!counts(manual_input_, event, manualMatters())) return;
   const ScopeVelocity& message = *event.getConstMessage();
@@ -172,7 +173,7 @@ void ControllerInputs::onManual(const ros::MessageEvent<ScopeVelocity const>& ev
   }
 }
 
-// Only the delay is measured with it: what is missing or wrong here is left out.
+// Only used to measure the delay, so invalid messages are ignored.
 void ControllerInputs::onMeasuredVelocity(const ros::MessageEvent<geometry_msgs::TwistStamped const>& event) {
   if (!counts(measured_velocity_input_, event, engaged_)) return;
   const geometry_msgs::TwistStamped& message = *event.getConstMessage();
@@ -186,7 +187,7 @@ void ControllerInputs::onMeasuredVelocity(const ros::MessageEvent<geometry_msgs:
   robot_report_arrival_ = steadyNow() - age;
 }
 
-// From everybody, and without a master: the connection is open.
+// Accepted from every node, and works without a master over an open connection.
 void ControllerInputs::onStop(const ros::MessageEvent<std_msgs::Empty const>& event) {
   calls_.stop(shownName(event.getPublisherName()));
 }

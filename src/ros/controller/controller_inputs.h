@@ -1,8 +1,8 @@
-// What other nodes tell the controller, and which of it counts.
+// The messages from other nodes, and which of them the controller accepts.
 //
-// Each topic has one owner (input_owner.h), each stamp its range (stamp_gate.h). What does not count is left out,
-// counted and named. While engaged, the owner's name on another connection ends the engagement, and so does a robot
-// that says that it was stopped, whatever comes after it before the next step.
+// Each topic has one owner (input_owner.h), each stamp its range (stamp_gate.h). Refused messages are counted and
+// reported. While engaged, the owner's name on another connection ends the engagement, and so does a report that the
+// robot was stopped, even if a later report precedes the next step.
 #pragma once
 
 #include <diagnostic_updater/DiagnosticStatusWrapper.h>
@@ -30,9 +30,9 @@ namespace laparoscope_servo {
 class ControllerInputs {
  public:
   struct Calls {
-    std::function<void()> check_time;                     // before a stamp is compared with ROS time
-    std::function<void(const std::string& sender)> stop;  // somebody stops the arm
-    // Rotation from a frame's axes to the shaft's; nothing: unknown.
+    std::function<void()> check_time;                     // called before a stamp is compared with ROS time
+    std::function<void(const std::string& sender)> stop;  // called when a node stops the arm
+    // Rotation from a frame's axes to the shaft's; empty: unknown.
     std::function<std::optional<Eigen::Quaterniond>(const std::string& frame)> shaft_from;
   };
 
@@ -40,22 +40,22 @@ class ControllerInputs {
   ControllerInputs(ros::NodeHandle& node, ros::NodeHandle& private_node, const ControllerNodeConfig& config,
                    const Calls& calls);
 
-  // After each step of the controller, and each request to it: what it does.
+  // Call after each step of the controller and each request to it.
   void know(bool engaged, servo::Task task);
-  // Somebody engages.
+  // Call when engaging.
   void engaging() { dead_man_.engaging(); }
-  // ROS time jumped back: what was known has stamps of another time.
+  // Call when ROS time jumped back: old stamps are not comparable any more.
   void forgetStamps();
 
-  // All but depth and clocks; adds what has happened since the last taken().
+  // Fills in all but depth and clocks, with the events since the last taken().
   void fill(servo::ControllerInput& input, double steady_now) const;
   void taken();
 
-  // Owners, publishers, and what was left out. WARN where somebody else publishes.
+  // Diagnostics: owners, publishers, and numbers of refused messages. WARN if other nodes publish.
   void describe(diagnostic_updater::DiagnosticStatusWrapper& status);
 
  private:
-  // A topic, by whom it may be published, and what was left out of it for its stamp.
+  // A topic, its owner, and its stamp gate.
   struct Input {
     Input(const std::string& name, const std::string& what, const std::string& parameter, double tolerance)
         : owner(name, what, parameter), stamps(tolerance) {}
@@ -63,7 +63,7 @@ class ControllerInputs {
     StampGate stamps;
     ros::Subscriber subscriber;
     double next_complaint = 0.0;  // s, steady
-    bool several = false;         // publishers; it was said
+    bool several = false;         // several publishers were reported
   };
 
   template <typename Message>
@@ -83,8 +83,8 @@ class ControllerInputs {
   Calls calls_;
   bool engaged_ = false;
   servo::Task task_ = servo::Task::kHoldView;
-  std::string ended_;       // the engagement, since taken()
-  std::string clock_jump_;  // the same
+  std::string ended_;       // reason that has ended the engagement since taken()
+  std::string clock_jump_;  // clock jump since taken()
 
   Input task_error_input_;
   Input operating_state_input_;
@@ -102,7 +102,7 @@ class ControllerInputs {
   double manual_arrival_ = -std::numeric_limits<double>::infinity();  // s, steady
   servo::DeadManSwitch dead_man_;
   servo::RobotReport robot_report_;
-  double robot_report_arrival_ = 0.0;  // s, steady, of what it tells
+  double robot_report_arrival_ = 0.0;  // s, steady, arrival of that report
 };
 
 }  // namespace laparoscope_servo

@@ -15,7 +15,7 @@ namespace laparoscope_servo {
 
 namespace {
 
-constexpr double kCautionPause = 1.0;  // s, between two of them on the screen
+constexpr double kCautionPause = 1.0;  // s, between two cautions on the terminal
 
 const char* doing(servo::Task task) {
   return task == servo::Task::kManual ? "is driven by hand" : "follows the region of interest";
@@ -43,7 +43,7 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
   engage_service_ = private_node.advertiseService("engage", &ControllerNode::onEngage, this);
   tick_timer_ =
       node.createSteadyTimer(ros::WallDuration(1.0 / config_.rate), [this](const ros::SteadyTimerEvent&) { onTick(); });
-  // Not Updater::update(): it waits for ROS time, which may have jumped back.
+  // Not Updater::update(), which waits for ROS time, and that may have jumped back.
   diagnostics_timer_ = node.createSteadyTimer(ros::WallDuration(diagnostics_.getPeriod()),
                                               [this](const ros::SteadyTimerEvent&) { diagnostics_.force_update(); });
 }
@@ -63,7 +63,7 @@ int ControllerNode::run(const std::function<bool()>& stop) {
   return stops_.mustEnd() ? 1 : 0;
 }
 
-// Without the controller, which may be what has failed.
+// Does not use the controller, which may have failed.
 void ControllerNode::fail(const std::string& what) {
   servo::ControllerOutput output;
   output.state = servo::ControllerState::kFault;
@@ -71,7 +71,7 @@ void ControllerNode::fail(const std::string& what) {
   publish(output);
 }
 
-// A fault stays, it is for somebody to look at.
+// Has no effect in FAULT, which stays until an operator disengages.
 void ControllerNode::onStop(const std::string& sender) {
   if (!controller_.engaged()) return;
   controller_.stop("stopped by " + sender, steadyNow());
@@ -82,7 +82,7 @@ void ControllerNode::watchOutside() {
   const double now = steadyNow();
   std::string stop = stops_.takeStop(now);
   if (stop.empty()) stop = stops_.obstacle(now);
-  // After a pause of this process the master seems to have been silent: that it was paused is the reason.
+  // After a pause of this process the master looks silent; the pause is then the reason.
   if (!stop.empty()) controller_.stop(stop, now);
 }
 
@@ -97,7 +97,7 @@ void ControllerNode::onTick() {
   inputs_.know(controller_.engaged(), controller_.task());
 }
 
-// A looped bag, a restarted simulation: nothing that was known holds, and nobody expects the arm to go on.
+// A looped bag or a restarted simulation: earlier data is invalid, and the arm must not go on.
 void ControllerNode::checkTime() {
   const ros::Time now = ros::Time::now();
   const bool back = (last_now_ - now).toSec() > config_.control.safety.max_clock_difference;

@@ -31,8 +31,8 @@ class ControllerNode {
   // Throws std::invalid_argument when the configuration is not valid.
   ControllerNode(ros::NodeHandle node, ros::NodeHandle private_node, const ControllerNodeConfig& config);
 
-  // Calls all callbacks until `stop` says so, and leaves the arm with a command of zero, also when one of them throws:
-  // then the state is FAULT. Returns the exit status of the process; publishers are still open.
+  // Calls all callbacks until `stop` returns true, and leaves the arm with a command of zero, also if a callback
+  // throws: then the state is FAULT. Returns the exit status of the process; publishers are still open.
   int run(const std::function<bool()>& stop);
 
  private:
@@ -44,7 +44,7 @@ class ControllerNode {
   void selectTask(const std::string& task, SelectTask::Response& response);
   void onTick();
   void checkTime();
-  // Ends what is engaged when something outside of ROS, or the end of its master, stops the arm.
+  // Disengages if a stop from outside of ROS, or the end of its master, stops the arm.
   void watchOutside();
   servo::ControllerInput input();
   void publish(const servo::ControllerOutput& output);
@@ -54,16 +54,16 @@ class ControllerNode {
 
   ControllerNodeConfig config_;
   servo::Controller controller_;
-  ControllerNodeConfig changed_;  // by live_
+  ControllerNodeConfig changed_;  // buffer for live_.take()
   ExternalStops stops_;
   ServiceErrors service_errors_;
   ScopePose scope_pose_;
   ros::Time last_now_;
-  std::string clock_jump_;  // since the last step, in words
+  std::string clock_jump_;  // clock jump since the last step; empty: none
   servo::ControllerInput last_input_;
   servo::ControllerOutput last_output_;
   bool state_published_ = false;
-  std::string said_caution_;   // on the screen
+  std::string said_caution_;   // last caution on the terminal
   double next_caution_ = 0.0;  // s, steady
 
   ControllerInputs inputs_;

@@ -1,4 +1,4 @@
-// The services of the controller. Each steps the control at once: its answer is what the arm does from now on.
+// The services of the controller. Each runs a step of the control at once, so that its answer is the new state.
 #include "ros/common/clocks.h"
 #include "ros/controller/controller_conversions.h"
 #include "ros/controller/controller_node.h"

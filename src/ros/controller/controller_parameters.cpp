@@ -18,16 +18,18 @@ void describe(Table& table, ControllerNodeConfig& c) {
     describeFrame(table, "camera", c.camera, "of the camera, O_C: x right, y down, z forward");
     describeFrame(table, "shaft", c.shaft, "with z along the shaft, into the body; velocities are in its axes");
   });
-  table.group(
-      "owners",
-      "whose messages count; without a leading slash, in the namespace of this node; empty: whoever speaks first", [&] {
-        describeOwner(table, "tf", c.tf_owner, "of the frames above");
-        describeOwner(table, "task_error", c.owners.task_error,
-                      "a tracker in a nodelet manager has the manager's name");
-        describeOwner(table, "operating_state", c.owners.operating_state, "also of measured_cv");
-        describeOwner(table, "manual", c.owners.manual, "of ~manual");
-        describeOwner(table, "dead_man", c.owners.dead_man, "whose true counts; false counts from everybody");
-      });
+  table.group("owners",
+              "nodes whose messages are accepted; without a leading slash, in the namespace of this node; empty: the "
+              "first publisher",
+              [&] {
+                describeOwner(table, "tf", c.tf_owner, "of the frames above");
+                describeOwner(table, "task_error", c.owners.task_error,
+                              "a tracker in a nodelet manager has the manager's name");
+                describeOwner(table, "operating_state", c.owners.operating_state, "also of measured_cv");
+                describeOwner(table, "manual", c.owners.manual, "of ~manual");
+                describeOwner(table, "dead_man", c.owners.dead_man,
+                              "whose true is accepted; false is accepted from every node");
+              });
   describe(table, c.control);
   describe(table, c.external_stops);
 }

@@ -40,7 +40,7 @@ servo::DepthInput ScopePose::depth(bool engaged, double steady_now) {
   } else if (!depth.problem.empty() && !word_.complaint.empty()) {
     depth.problem += "; " + word_.complaint;
   }
-  // Poses are counted in this frame, and d2 from it.
+  // Poses and d2 are relative to this frame.
   if (word_.changed_frame == insertion_point_) {
     fault_ = "the insertion point is another one";
   } else if (!word_.changed_frame.empty()) {
@@ -57,12 +57,12 @@ servo::DepthInput ScopePose::lookUp(const tf2::BufferCore& tf, bool engaged, dou
     depth = fromTransforms(transform.transform, shaft);
     if (!depth.problem.empty()) return depth;
     if (transform.header.stamp.isZero()) {
-      // d2 changes when the scope is inserted: a transform that cannot change says nothing about the arm.
+      // d2 changes when the scope is inserted, so a static transform cannot come from the arm.
       depth.problem = "tf from " + camera_ + " to " + insertion_point_ + " is static, expected the robot's";
       return depth;
     }
     return judged(depth, shaft, transform.header.stamp, engaged, steady_now);
-  } catch (const tf2::ExtrapolationException&) {  // its text holds times, which change with every step
+  } catch (const tf2::ExtrapolationException&) {  // the exception's own text has times, which change with every step
     depth.problem = "tf from " + camera_ + " to " + insertion_point_ + " has no common time";
   } catch (const tf2::TransformException& error) {
     depth.problem = std::string("depth d2 is unknown: ") + error.what();

@@ -1,4 +1,4 @@
-// Where the scope is, as the controller needs it: d2, the optics and the tip's pose by tf, and why they cannot be used.
+// The scope's pose from tf for the controller: d2, the optics and the tip's pose, or why they cannot be used.
 #pragma once
 
 #include <diagnostic_updater/DiagnosticStatusWrapper.h>
@@ -18,16 +18,16 @@ namespace laparoscope_servo {
 
 class ScopePose {
  public:
-  // Frames and owner by their full names, see resolveNames().
+  // Names of frames and owner must be resolved, see resolveNames().
   explicit ScopePose(const ControllerNodeConfig& config);
 
-  // To be called once in every step.
+  // Call once in every step.
   servo::DepthInput depth(bool engaged, double steady_now);
-  // What is wrong with the pose so that somebody has to look, of the last depth(); empty: nothing.
+  // Fault of the pose at the last depth(), for which an operator must look at the arm; empty: none.
   const std::string& fault() const { return fault_; }
-  // Rotation from a frame's axes to the shaft's; nothing: unknown.
+  // Rotation from a frame's axes to the shaft's; empty: unknown.
   std::optional<Eigen::Quaterniond> shaftFrom(const std::string& frame) const;
-  // ROS time jumped back.
+  // Call when ROS time jumped back.
   void clear();
   void describe(diagnostic_updater::DiagnosticStatusWrapper& status) const;
 

@@ -42,7 +42,7 @@ void JoystickDevice::wait(double seconds) const {
 }
 
 std::vector<std::uint8_t> JoystickDevice::read() const {
-  std::vector<std::uint8_t> bytes(64 * sizeof(js_event));  // as many as the kernel keeps for a reader
+  std::vector<std::uint8_t> bytes(64 * sizeof(js_event));  // as many events as the kernel keeps for a reader
   const ssize_t count = ::read(file_, bytes.data(), bytes.size());
   if (count == 0) throw std::runtime_error("'" + path_ + "' has ended");
   if (count < 0 && errno != EAGAIN && errno != EINTR)

@@ -9,17 +9,17 @@ namespace laparoscope_servo {
 
 class JoystickDevice {
  public:
-  // Throws std::runtime_error that names the file, and says why it cannot be opened and what to do.
+  // Throws std::runtime_error with the file, why it cannot be opened, and what to do.
   explicit JoystickDevice(const std::string& path);
   ~JoystickDevice();
   JoystickDevice(const JoystickDevice&) = delete;
   JoystickDevice& operator=(const JoystickDevice&) = delete;
 
-  // As the device calls itself, else its path.
+  // The device's own name, or else its path.
   const std::string& name() const { return name_; }
-  // Until there is something to read, at most `seconds`.
+  // Waits until there is data, at most `seconds`.
   void wait(double seconds) const;
-  // What has come, possibly nothing. Throws std::runtime_error when the device is gone.
+  // The bytes received, possibly none. Throws std::runtime_error if the device is gone.
   std::vector<std::uint8_t> read() const;
 
  private:

@@ -1,4 +1,4 @@
-// What the Linux joystick API (/dev/input/js*, struct js_event) says, taken out of a stream of bytes.
+// Decodes events of the Linux joystick API (/dev/input/js*, struct js_event) from a stream of bytes.
 #pragma once
 
 #include <cstddef>
@@ -11,17 +11,17 @@ namespace laparoscope_servo {
 struct JoystickEvent {
   enum class Kind { kButton, kAxis };
   Kind kind = Kind::kButton;
-  bool initial = false;     // not a hand's: how it stood when the device was opened
-  std::uint8_t number = 0;  // of the button or axis, from 0
-  std::int16_t value = 0;   // of a button 0 or 1; of an axis -32767 to 32767, right and down are positive
+  bool initial = false;     // initial state when the device was opened, not caused by a hand
+  std::uint8_t number = 0;  // number of the button or axis, from 0
+  std::int16_t value = 0;   // button: 0 or 1; axis: -32767 to 32767, right and down are positive
 };
 
 class JoystickEvents {
  public:
-  // Bytes may end within an event; the rest of it may come later.
+  // Bytes may end within an event; the rest may come later.
   void add(const std::uint8_t* bytes, std::size_t count) { bytes_.insert(bytes_.end(), bytes, bytes + count); }
-  // Empty when the next event is not all there. Throws std::runtime_error for bytes that are no event: nothing behind
-  // them can be believed.
+  // Empty if the next event is incomplete. Throws std::runtime_error for bytes that are no event, since the following
+  // bytes cannot be decoded.
   std::optional<JoystickEvent> next();
   void clear() { bytes_.clear(); }
 

@@ -38,7 +38,7 @@ JoystickNode::JoystickNode(ros::NodeHandle node, ros::NodeHandle private_node, c
       diagnostics_(node, private_node, ros::this_node::getName()) {
   diagnostics_.setHardwareID(config.device);
   diagnostics_.add("joystick", this, &JoystickNode::diagnose);
-  // By the wall clock, whatever happens to a simulated one.
+  // Uses the wall clock, which does not depend on simulated time.
   diagnostics_timer_ =
       node.createWallTimer(ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) { diagnostics_.force_update(); });
 }
@@ -95,7 +95,7 @@ void JoystickNode::close(const std::string& why) {
 }
 
 void JoystickNode::say(double now) {
-  const Stick::Words words = stick_.turn(now);
+  const Stick::Words words = stick_.cycle(now);
   for (const bool pressed : words.dead_man) {
     std_msgs::Bool message;
     message.data = static_cast<std::uint8_t>(pressed);
@@ -113,7 +113,7 @@ void JoystickNode::say(double now) {
   tellProblem();
 }
 
-// Each change once.
+// Logs each change once.
 void JoystickNode::tellProblem() {
   const std::string problem = device_ ? stick_.problem() : why_closed_;
   if (problem == told_) return;

@@ -1,7 +1,7 @@
 // The node `joystick`: a joystick of the Linux joystick API as dead-man switch and as stick of the task MANUAL.
 //
-// Publishes: dead_man (std_msgs/Bool) and controller/manual (ScopeVelocity) as Stick says, /diagnostics. A device that
-// is not there, or goes away, is looked for again once a second; meanwhile the node is silent.
+// Publishes: dead_man (std_msgs/Bool) and controller/manual (ScopeVelocity) by Stick, /diagnostics. A device that is
+// missing is looked for once a second; meanwhile the node publishes neither.
 #pragma once
 
 #include <diagnostic_updater/diagnostic_updater.h>
@@ -21,11 +21,11 @@ namespace laparoscope_servo {
 
 struct JoystickNodeConfig {
   std::string device = "/dev/input/js0";
-  double rate = 20.0;  // Hz, 10 to 100, of what is published
+  double rate = 20.0;  // Hz, 10 to 100, of the messages
   StickConfig stick;
 };
 
-// The private parameters.
+// Adds the rows of the private parameters.
 void describe(parameters::Table& table, JoystickNodeConfig& config);
 std::vector<std::string> validate(const JoystickNodeConfig& config);
 
@@ -33,12 +33,12 @@ class JoystickNode {
  public:
   JoystickNode(ros::NodeHandle node, ros::NodeHandle private_node, const JoystickNodeConfig& config);
 
-  // Until the node's end.
+  // Runs until the node's end.
   void run();
 
  private:
   void open(double now);
-  // Whether something was let go.
+  // Returns whether a control was released.
   bool read(double now);
   void close(const std::string& why);
   void say(double now);
@@ -54,9 +54,9 @@ class JoystickNode {
   diagnostic_updater::Updater diagnostics_;
   ros::WallTimer diagnostics_timer_;
   double next_open_ = 0.0;   // s, steady
-  std::string why_closed_;   // while there is no device
-  std::string told_;         // the problem that the log has been told
-  std::uint64_t count_ = 0;  // of events since the start
+  std::string why_closed_;   // why there is no device
+  std::string told_;         // the last problem in the log
+  std::uint64_t count_ = 0;  // number of events since the start
 };
 
 }  // namespace laparoscope_servo

@@ -58,7 +58,8 @@ bool Stick::deflected() const {
   return false;
 }
 
-// What is used and has not been reported: the device has no such thing, or has not told all yet.
+// Axes and buttons that are used but have not been reported: the device does not have them, or has not reported them
+// yet.
 std::string Stick::missing() const {
   for (const int axis :
        {config_.pan.axis, config_.tilt.axis, config_.spin.axis, config_.insertion.axis, config_.pedal_axis}) {
@@ -87,7 +88,7 @@ std::string Stick::judge(double now) {
   return ready_ ? "" : "held or deflected from the start: release everything once";
 }
 
-Stick::Words Stick::turn(double now) {
+Stick::Words Stick::cycle(double now) {
   problem_ = judge(now);
   const bool held = ready_ && pressed();
   const bool has_axes =
@@ -98,7 +99,7 @@ Stick::Words Stick::turn(double now) {
   return words;
 }
 
-// The first word is a zero: the controller obeys a stick only that it has seen at rest.
+// The first message is zero, because the controller accepts only a stick that it has seen at rest.
 std::optional<scope::Velocity> Stick::manualWord(bool active) {
   if (drives_ && !active) manual_farewells_ = kFarewellZeros;
   drives_ = active && ((was_active_ && drives_) || !deflected());

@@ -1,8 +1,9 @@
-// What a joystick says to the controller: a dead-man switch and four velocities.
+// Computes a joystick's messages to the controller: a dead-man switch and four velocities.
 //
-// It fails towards silence, on which the arm stands: until every axis and button that is used has been reported and was
-// seen released once; when nothing comes for long although something is held or deflected, for a hand is never so still
-// and a pad out of reach is; and when the device is gone. What is held or deflected at the start counts for nothing.
+// On any doubt it publishes nothing, so that the arm stops: until every axis and button in use has been reported and
+// was seen released once; if no event comes for long although a control is held or deflected, since a hand is never
+// that still, but a pad out of radio range is; and if the device is gone. Controls that are held or deflected at the
+// start have no effect.
 #pragma once
 
 #include <map>
@@ -19,27 +20,27 @@ namespace laparoscope_servo {
 
 class Stick {
  public:
-  // To be published now.
+  // Messages to publish now.
   struct Words {
-    std::vector<bool> dead_man;  // in this order, see DeadManWords
+    std::vector<bool> dead_man;  // dead_man messages in this order, see DeadManWords
     std::optional<scope::Velocity> manual;
   };
 
   explicit Stick(const StickConfig& config) : config_(config) {}
 
-  // True when something was let go, which is to be said at once. `now`: s, steady.
+  // Takes an event. Returns true if a control was released, which must be published at once. `now`: s, steady.
   bool event(const JoystickEvent& event, double now);
-  // The device is not there any more.
+  // Call when the device is gone.
   void gone();
-  // To be called 20 times a second or more.
-  Words turn(double now);
+  // Call at least 20 times a second.
+  Words cycle(double now);
 
-  // Why nothing may be said; empty when all is well.
+  // Why nothing may be published; empty: it may.
   const std::string& problem() const { return problem_; }
   bool isHeld() const { return dead_man_.isHeld(); }
 
  private:
-  // -1 to 1, 0 up to the bound of neutral; of one that is not used 0.
+  // Deflection from -1 to 1; 0 up to the bound of neutral, and for an unused axis.
   double shareOf(const StickConfig::Axis& axis) const;
   bool pressed() const;
   bool deflected() const;
@@ -51,10 +52,10 @@ class Stick {
   std::map<int, int> axes_;  // -32767 to 32767, by number
   std::map<int, bool> buttons_;
   double last_event_ = 0.0;  // s
-  bool ready_ = false;       // everything was seen released
+  bool ready_ = false;       // all controls were seen released
   DeadManWords dead_man_;
   bool was_active_ = false;
-  bool drives_ = false;  // it was active and at rest
+  bool drives_ = false;  // the stick was active and at rest
   int manual_farewells_ = 0;
   std::string problem_ = "no joystick";
 };

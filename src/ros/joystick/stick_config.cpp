@@ -23,20 +23,21 @@ void describe(parameters::Table& table, StickConfig& c) {
   describeAxis(table, "tilt", c.tilt, 1, "rad/s", "positive: the view goes up");
   describeAxis(table, "spin", c.spin, 1, "rad/s", "positive: the camera turns clockwise");
   describeAxis(table, "insertion", c.insertion, 0.1, "m/s", "positive: deeper");
-  table.number("neutral", c.neutral, {0.01, 0.9}, "share", "of an axis' way up to which it counts as released");
+  table.number("neutral", c.neutral, {0.01, 0.9}, "share", "of an axis' travel up to which it counts as released");
   table.group("dead_man", "the switch at the hand", [&] {
     table.number("button", c.dead_man_button, kNumber, "", "that is held while the scope may move; -1: none");
   });
   table.group("pedal", "a switch at the foot, which does the same", [&] {
     table.number("button", c.pedal_button, kNumber, "", "of a pedal that is a button; -1: none");
     table.number("axis", c.pedal_axis, kNumber, "", "of a pedal that is an axis; -1: none");
-    table.flag("reversed", c.pedal_reversed, "the axis is at its upper end when nobody treads on the pedal");
-    table.number("pressed", c.pedal_pressed, {0.1, 1}, "share", "of the pedal's way from which on it is held");
+    table.flag("reversed", c.pedal_reversed, "the axis is at its upper end while the pedal is not pressed");
+    table.number("pressed", c.pedal_pressed, {0.1, 1}, "share",
+                 "of the pedal's travel from which it counts as pressed");
   });
-  table.flag("only_while_held", c.only_while_held, "the axes speak only while button or pedal is held");
-  table.number(
-      "max_silence", c.max_silence, {0.5, 3600}, "s",
-      "without any event while something is held or deflected: out of reach, and silent until all was released");
+  table.flag("only_while_held", c.only_while_held, "axes are published only while button or pedal is held");
+  table.number("max_silence", c.max_silence, {0.5, 3600}, "s",
+               "without any event while something is held or deflected; the device then counts as out of reach, and "
+               "nothing is published until all was released");
 }
 
 std::vector<std::string> validate(const StickConfig& config) {

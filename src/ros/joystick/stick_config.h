@@ -1,4 +1,4 @@
-// Which axes and buttons of a joystick mean what.
+// Assignment of a joystick's axes and buttons.
 #pragma once
 
 #include <string>
@@ -19,14 +19,14 @@ struct StickConfig {
   Axis tilt{1, true, 0.1};
   Axis spin{3, false, 0.1};
   Axis insertion{4, true, 0.02};
-  double neutral = 0.1;         // share of the way, from where on a deflection counts
-  int dead_man_button = 5;      // held: the scope may move
-  int pedal_button = -1;        // of a pedal that is a button: does the same
-  int pedal_axis = -1;          // of a pedal that is an axis: does the same
-  bool pedal_reversed = false;  // it is at its upper end when nobody treads on it
-  double pedal_pressed = 0.75;  // share of its way from which on the pedal is trodden on
-  bool only_while_held = true;  // the stick speaks only while button or pedal is held
-  double max_silence = 5.0;     // s, a deflection or a hold without any event for longer: out of reach
+  double neutral = 0.1;         // share of the full deflection below which it counts as neutral
+  int dead_man_button = 5;      // while held, the scope may move
+  int pedal_button = -1;        // button of a pedal with the same function
+  int pedal_axis = -1;          // axis of a pedal with the same function
+  bool pedal_reversed = false;  // the pedal's axis is at its upper end when it is not pressed
+  double pedal_pressed = 0.75;  // share of its travel from which the pedal counts as pressed
+  bool only_while_held = true;  // the stick publishes only while button or pedal is held
+  double max_silence = 5.0;     // s: a deflection or a hold without any event for longer means out of radio range
 };
 
 void describe(parameters::Table& table, StickConfig& config);

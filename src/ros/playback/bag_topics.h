@@ -1,4 +1,4 @@
-// Which topics of a bag have the images and the intrinsics. What is thrown is a SourceError that lists the topics.
+// Finds the topics of a bag with the images and the intrinsics. Errors are SourceErrors that list the topics.
 #pragma once
 
 #include <map>
@@ -8,15 +8,16 @@ namespace laparoscope_servo {
 
 using Topics = std::map<std::string, std::string>;  // name to type
 
-// `wanted`, or the only one with images when it is empty. `path`: of the bag, for errors.
+// Returns `wanted`, or if it is empty the only topic with images. `path`: of the bag, for errors.
 std::string chooseImageTopic(const Topics& topics, const std::string& path, const std::string& wanted);
 
-// As a camera driver names it: beside the image's topic; that of a compressed image has the transport's name appended.
+// The name that a camera driver uses: beside the image's topic (for a compressed image, that without the transport's
+// name).
 std::string usualCameraInfoTopic(const Topics& topics, const std::string& image_topic);
-// `wanted`, or the usual one when it is empty. Empty when there is none.
+// Returns `wanted`, or if it is empty the usual name. Empty if there is none.
 std::string chooseCameraInfoTopic(const Topics& topics, const std::string& path, const std::string& image_topic,
                                   const std::string& wanted);
-// What a user may have meant when there is no camera_info where it is looked for: names, with commas.
+// Other topics with camera_info, separated by commas, for the error that the expected one is missing.
 std::string otherCameraInfoTopics(const Topics& topics);
 
 }  // namespace laparoscope_servo

@@ -24,7 +24,7 @@ bool looksLikeBag(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return std::tolower(c); });
-  // By its name, too, so that a damaged bag is not taken for a video.
+  // Also by its name, so that a damaged bag is not taken for a video.
   return start == kMagic || extension == ".bag" || extension == ".active";
 }
 

@@ -18,7 +18,7 @@ namespace laparoscope_servo {
 
 namespace {
 
-constexpr std::size_t kMostWithoutStamp = 100;  // images at the beginning: more are not read twice
+constexpr std::size_t kMostWithoutStamp = 100;  // largest number of images at the beginning that are read twice
 
 void decode(const sensor_msgs::CompressedImage& message, SourceImage& image) {
   image.header = message.header;
@@ -54,7 +54,7 @@ class BagSource : public ImageSource {
   std::optional<SourceImage> next() override {
     try {
       return read();
-    } catch (const ros::Exception& error) {  // of rosbag, and of the messages' deserialisation
+    } catch (const ros::Exception& error) {  // from rosbag and from deserialisation
       throw SourceError("bag '" + name_ + "' is damaged behind image " + std::to_string(frame_) + " (" + error.what() +
                         "); 'rosbag reindex' may repair it");
     }
@@ -91,7 +91,7 @@ class BagSource : public ImageSource {
     bags_.push_back(std::move(bag));
   }
 
-  // Their messages in the order of time.
+  // The messages of these topics in the order of time.
   std::unique_ptr<rosbag::View> view(const std::vector<std::string>& topics) const {
     auto view = std::make_unique<rosbag::View>();
     for (const auto& bag : bags_) view->addQuery(*bag, rosbag::TopicQuery(topics));
@@ -121,7 +121,7 @@ class BagSource : public ImageSource {
     const std::string camera_info_topic = chooseCameraInfoTopic(topics, name_, image_topic_, options.camera_info_topic);
     if (!camera_info_topic.empty()) {
       read_topics.push_back(camera_info_topic);
-      // A driver sends it after the image it belongs to; the first image should have it, too.
+      // A driver sends camera_info after its image; the first image must have it too.
       const auto infos = view({camera_info_topic});
       if (infos->size() > 0) camera_info_ = infos->begin()->instantiate<sensor_msgs::CameraInfo>();
     } else if (const std::string others = otherCameraInfoTopics(topics); !others.empty()) {
@@ -133,7 +133,7 @@ class BagSource : public ImageSource {
     position_ = view_->begin();
   }
 
-  // Images without a stamp at the beginning take theirs from the first that has one.
+  // Images without a stamp at the beginning get theirs from the first that has one.
   void learnStamps(rosbag::View& images) {
     std::size_t looked_at = 0;
     for (const rosbag::MessageInstance& instance : images) {
@@ -201,7 +201,7 @@ class BagSource : public ImageSource {
   std::unique_ptr<rosbag::View> view_;
   rosbag::View::iterator position_;
   std::size_t frame_ = 0;
-  sensor_msgs::CameraInfoConstPtr camera_info_;  // newest that no image has taken along
+  sensor_msgs::CameraInfoConstPtr camera_info_;  // newest one that is not passed on yet
   UsableStamps stamps_;
   std::vector<std::string> notes_;
 };

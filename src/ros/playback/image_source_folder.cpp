@@ -18,7 +18,7 @@ namespace laparoscope_servo {
 
 namespace {
 
-// Turned as EXIF says, of the depth that the file has, without alpha.
+// Rotated by EXIF, with the depth of the file, without alpha.
 constexpr int kAsShown = cv::IMREAD_ANYDEPTH | cv::IMREAD_ANYCOLOR;
 
 SourceImage imageAt(std::size_t frame, double rate) {
@@ -37,7 +37,7 @@ bool isImage(const std::filesystem::path& path) {
   return kExtensions.count(extension) > 0 && path.filename().string().front() != '.';
 }
 
-// A JPEG without its end: libjpeg makes the rest grey and calls it an image.
+// Whether a JPEG is truncated: libjpeg fills the rest with grey and reports success.
 bool isCutOff(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(file), {}};

@@ -17,7 +17,7 @@ std::string withDigits(double value) {
   return text;
 }
 
-// Seconds from the first picture on that only grow.
+// Strictly increasing seconds since the first picture.
 class PictureTimes {
  public:
   explicit PictureTimes(double period) : period_(period) {}
@@ -26,7 +26,7 @@ class PictureTimes {
     if (!first_ && picture.time) first_ = picture.time;
     double time = picture.time ? *picture.time - *first_ + shift_ : last_ + period_;
     const bool behind = any_ && !(time > last_);
-    // What is missing may be noticed late; that is no reason to shift the others.
+    // A missing picture may be detected late; it must not shift the others.
     if (!picture.frame) return behind ? last_ : time;
     if (behind) {
       shift_ += last_ + period_ - time;
@@ -121,7 +121,7 @@ class VideoSource : public ImageSource {
   PictureConverter converter_;
   PictureTimes times_;
   std::size_t frame_ = 0;
-  bool decoded_ = false;  // at least one picture
+  bool decoded_ = false;  // at least one picture was decoded
 };
 
 }  // namespace

@@ -28,13 +28,13 @@ bool isJpeg(const std::string& bytes) {
 bool hasJpegEnd(const std::string& bytes) {
   for (std::size_t k = 2; k + 1 < bytes.size();) {
     const unsigned char marker = at(bytes, k + 1);
-    if (at(bytes, k) != 0xFF || marker == 0x00 || marker == 0xFF) {  // of a scan, or filling
+    if (at(bytes, k) != 0xFF || marker == 0x00 || marker == 0xFF) {  // data of a scan, or fill bytes
       ++k;
       continue;
     }
     if (marker == kEnd) return true;
     k += 2;
-    // A header, skipped with all that is in it; a scan's data follow without a length.
+    // Skips a header with its contents; the data of a scan follow without a length.
     if (hasLength(marker) && k + 1 < bytes.size()) k += 256U * at(bytes, k) + at(bytes, k + 1);
   }
   return false;

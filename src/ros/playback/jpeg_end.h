@@ -1,4 +1,4 @@
-// Whether a JPEG is all there.
+// Checks whether a JPEG is complete.
 #pragma once
 
 #include <string>
@@ -6,8 +6,8 @@
 namespace laparoscope_servo {
 
 bool isJpeg(const std::string& bytes);
-// Whether the marker of the end comes behind the image, also behind several scans; that of a preview inside does not
-// count. What follows it does not matter.
+// Whether the end marker follows the image, also after several scans; that of an embedded preview is ignored. Bytes
+// after it do not matter.
 bool hasJpegEnd(const std::string& bytes);
 
 }  // namespace laparoscope_servo

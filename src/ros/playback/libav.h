@@ -1,5 +1,5 @@
-// What the sources that use libav share: its objects with an owner, and its errors in words. Only what both ffmpeg 4.2
-// (Ubuntu 20.04) and 5.1 (Debian 12) have is used.
+// Shared by the sources that use libav: owners of its objects, and texts of its errors. Uses only the API common to
+// ffmpeg 4.2 (Ubuntu 20.04) and 5.1 (Debian 12).
 #pragma once
 
 extern "C" {
@@ -35,7 +35,7 @@ inline std::string errorText(int code) {
   return av_strerror(code, text.data(), text.size()) == 0 ? text.data() : "error " + std::to_string(code);
 }
 
-// A name like 10:00:00.mp4 is a file, no address.
+// A name such as 10:00:00.mp4 is a file, not an address.
 inline std::string fileUrl(const std::string& path) {
   return "file:" + path;
 }

@@ -11,7 +11,7 @@ bool isDigit(char c) {
   return std::isdigit(static_cast<unsigned char>(c)) != 0;
 }
 
-// The number from `at` on, without zeros in front; `at` goes behind it.
+// Takes the number at `at`, without leading zeros; moves `at` behind it.
 std::string takeNumber(const std::string& text, std::size_t& at) {
   while (at < text.size() && text[at] == '0') ++at;
   const std::size_t begin = at;

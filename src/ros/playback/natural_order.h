@@ -1,11 +1,11 @@
-// Names with numbers in them in the order of the numbers.
+// Orders names by the numbers in them.
 #pragma once
 
 #include <string>
 
 namespace laparoscope_servo {
 
-// frame2 before frame10. Of equal numbers the one with fewer zeros in front comes first; otherwise byte by byte.
+// frame2 before frame10. For equal numbers, the one with fewer leading zeros comes first; otherwise byte by byte.
 bool comesBefore(const std::string& left, const std::string& right);
 
 }  // namespace laparoscope_servo

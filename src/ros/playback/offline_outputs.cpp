@@ -53,14 +53,14 @@ BagOutput::~BagOutput() {
   try {
     bag_->close();
   } catch (const std::exception&) {
-    // Its destructor would try once more, and end the process.
+    // Its destructor would try again and end the process.
     static_cast<void>(bag_.release());
   }
 }
 
 void BagOutput::write(const ros::Time& record_time, const Processed& processed) {
   if (!bag_) return;
-  // rosbag takes no time of zero, which the first image of a video has.
+  // rosbag does not accept time zero, which the first image of a video has.
   const ros::Time time = std::max(record_time, ros::TIME_MIN);
   try {
     bag_->write("/tracker/homography", time, homographyMessage(processed));

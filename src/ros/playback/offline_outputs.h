@@ -1,6 +1,6 @@
-// The files that the offline tool writes. Each is made before the work begins, does nothing when its name is empty, and
-// is there under its name once it is kept; until then an earlier one of that name stays. All throw std::runtime_error
-// that names the file.
+// The files that the offline tool writes. Each is created before the work begins, does nothing if its name is empty,
+// and gets its name when it is kept; until then an earlier file of that name stays. All throw std::runtime_error with
+// the file's name.
 #pragma once
 
 #include <ros/time.h>
@@ -54,7 +54,7 @@ class OverlayOutput {
   std::optional<OutputFile> file_;
   double rate_;
   cv::Size size_;
-  std::unique_ptr<VideoWriter> writer_;  // its size is known with the first image
+  std::unique_ptr<VideoWriter> writer_;  // created with the first image, which gives the size
 };
 
 }  // namespace laparoscope_servo

@@ -6,7 +6,7 @@ namespace laparoscope_servo {
 
 namespace {
 
-constexpr std::int64_t kMostReordered = 64;  // pictures: codecs hold back 16 at most
+constexpr std::int64_t kMostReordered = 64;  // pictures; codecs reorder at most 16
 
 using Sent = PendingPictures::Sent;
 
@@ -19,7 +19,7 @@ void sort(std::vector<Sent>& pictures) {
 std::vector<Sent> PendingPictures::came(std::int64_t index, Time time) {
   waiting_.erase(index);
   std::vector<Sent> lost;
-  // Only those that went in before it: behind a place where two recordings were joined, times may be smaller.
+  // Only pictures sent before it: after a place where two recordings were joined, times may be smaller.
   for (auto it = waiting_.begin(); it != waiting_.end() && it->first < index;) {
     const bool earlier = it->second.time && time && *it->second.time < *time;
     if (earlier || it->first < index - kMostReordered) {

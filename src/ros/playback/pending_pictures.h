@@ -1,5 +1,5 @@
-// Which pictures of a video went into the decoder and never came out of it. libav has no word for that: what cannot be
-// decoded is left out, and a decoder that runs in several threads tells an error with another picture's turn.
+// Finds pictures that were sent to the decoder but were never returned. libav does not report them: it skips pictures
+// that cannot be decoded, and a decoder with several threads reports errors with other pictures.
 #pragma once
 
 #include <cstdint>
@@ -11,17 +11,18 @@ namespace laparoscope_servo {
 
 class PendingPictures {
  public:
-  using Time = std::optional<std::int64_t>;  // of presentation, where the container has one
+  using Time = std::optional<std::int64_t>;  // presentation time, if the container has one
   struct Sent {
     Time time;
-    bool key = false;  // it needs no other picture
+    bool key = false;  // can be decoded without other pictures
   };
 
-  // Indices count up with each picture that goes in.
+  // Call when a picture is sent. Indices increase.
   void sent(std::int64_t index, const Sent& picture) { waiting_[index] = picture; }
-  // Picture `index` came out, which is to be shown at `time`: those that should have come before it, in their order.
+  // Call when picture `index`, to be shown at `time`, is returned: returns the missing pictures before it, in their
+  // order.
   std::vector<Sent> came(std::int64_t index, Time time);
-  // Nothing comes any more: what is missing.
+  // Call at the end: returns all missing pictures.
   std::vector<Sent> end();
 
  private:

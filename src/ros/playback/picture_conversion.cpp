@@ -8,14 +8,14 @@ namespace laparoscope_servo {
 
 namespace {
 
-constexpr int kAlignment = 32;  // pixels: swscale's kernels write rows in blocks of no more
+constexpr int kAlignment = 32;  // pixels: largest block in which swscale's kernels write rows
 
 std::string formatName(int format) {
   const char* name = av_get_pix_fmt_name(static_cast<AVPixelFormat>(format));
   return name != nullptr ? name : "number " + std::to_string(format);
 }
 
-// What swscale takes a picture for by itself: BT.601, and a range that the pixel format alone tells.
+// Sets colour matrix and range, for which swscale by default takes BT.601 and the range of the pixel format.
 void tellColours(SwsContext* scaler, const AVFrame& picture) {
   int* from = nullptr;
   int* to = nullptr;
@@ -25,7 +25,7 @@ void tellColours(SwsContext* scaler, const AVFrame& picture) {
   int contrast = 0;
   int saturation = 0;
   if (sws_getColorspaceDetails(scaler, &from, &from_full, &to, &to_full, &brightness, &contrast, &saturation) < 0) {
-    return;  // not a format with a matrix: RGB
+    return;  // RGB: a format without a matrix
   }
   const bool full = from_full != 0 || picture.color_range == AVCOL_RANGE_JPEG;
   const int* matrix = from;

@@ -1,4 +1,4 @@
-// From a decoded picture of a video to the pixels that a player shows: 8 bit blue-green-red, upright.
+// Converts a decoded picture of a video to the pixels that a player shows: 8 bit blue-green-red, upright.
 #pragma once
 
 #include <array>
@@ -10,22 +10,22 @@
 
 namespace laparoscope_servo {
 
-// How a stored picture has to be laid: first transposed, then mirrored left-right, then top-bottom.
+// Orientation of a stored picture: first transposed, then mirrored left-right, then top-bottom.
 struct Orientation {
   bool transposed = false;
   bool mirrored_x = false;
   bool mirrored_y = false;
 };
 
-// Of a display matrix as libavutil/display.h has it. Angles between the right ones go to the nearest.
+// From a display matrix of libavutil/display.h. Other angles are rounded to the nearest right angle.
 Orientation orientationOf(const std::array<std::int32_t, 9>& display_matrix);
 
 class PictureConverter {
  public:
   explicit PictureConverter(const Orientation& orientation) : orientation_(orientation) {}
 
-  // A matrix of its own each time, of the picture's size. Colours by the picture's tags: BT.601, as ffmpeg takes it,
-  // where it has none; limited or full range. Throws std::runtime_error for a pixel format that swscale does not know.
+  // Returns a new matrix of the picture's size. Uses the colour matrix and range of the picture's tags; BT.601, as in
+  // ffmpeg, without tags. Throws std::runtime_error for a pixel format that swscale does not know.
   cv::Mat convert(const AVFrame& picture);
 
  private:

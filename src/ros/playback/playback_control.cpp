@@ -15,7 +15,7 @@ std::string PlaybackControl::command(const std::string& command, double position
     steps_ = 0;
     if (command == "AGAIN") {
       state_ = State::kPlaying;
-    } else if (state_ != State::kPlaying) {  // one image, to be looked at
+    } else if (state_ != State::kPlaying) {  // plays one image, to be shown
       state_ = State::kPaused;
       steps_ = 1;
     }
@@ -33,7 +33,7 @@ void PlaybackControl::begin(bool hold) {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (state_ != State::kWaiting) return;
   state_ = hold ? State::kHolding : State::kPlaying;
-  steps_ = hold ? 1 : 0;  // the image to be held at
+  steps_ = hold ? 1 : 0;  // plays the image at which it holds
 }
 
 void PlaybackControl::end() {

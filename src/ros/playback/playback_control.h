@@ -1,4 +1,4 @@
-// Whether a recording goes on, and where: what somebody wants, from any thread, for the thread that plays. No ROS here.
+// Commands of playback (play, pause, step, seek), from any thread to the thread that plays. Has no ROS.
 #pragma once
 
 #include <mutex>
@@ -11,17 +11,18 @@ class PlaybackControl {
  public:
   enum class State { kWaiting, kHolding, kPlaying, kPaused, kEnded };
 
-  // Any thread. Commands are those of ControlPlayback.srv. Returns why it is not done; empty: it is.
+  // May be called from any thread. Commands are those of ControlPlayback.srv. Returns why it is refused, or an empty
+  // text.
   std::string command(const std::string& command, double position);
 
-  // The player's. begin(): after those who are waited for have come.
+  // The functions below are for the player. begin(): call when the awaited subscribers are there.
   void begin(bool hold);
   void end();
   // A region was selected.
   void releaseHold();
-  // Where to go on from, once [s]; 0 is the beginning.
+  // Takes a requested position [s]; 0 is the beginning.
   std::optional<double> takeSeek();
-  // Whether the next image is to be played; takes a step that was asked for.
+  // Whether to play the next image; takes a requested step.
   bool takeImage();
 
   State state() const;

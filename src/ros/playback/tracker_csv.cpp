@@ -13,7 +13,7 @@ std::string exact(double value) {
   return text;
 }
 
-// As RFC 4180 has it: a comma or a quote in the text ends no field.
+// Quoted by RFC 4180, so that a comma or a quote in the text does not end the field.
 std::string quoted(const std::string& text) {
   std::string result = "\"";
   for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);

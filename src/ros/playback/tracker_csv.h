@@ -1,4 +1,4 @@
-// The table that the offline tool writes: a header line and one line per image.
+// The CSV table of the offline tool: a header line and one line per image.
 #pragma once
 
 #include <cstddef>
@@ -13,8 +13,8 @@ namespace laparoscope_servo {
 void writeCsvHeader(std::ostream& stream);
 
 // `frame` counts from 0; stamp and processing_time in s, errors in px (inf when unknown), bias in grey levels, the
-// state as in Homography.msg, g with determinant 1, the reason in quotes. Numbers have 17 digits: read back they are
-// the same doubles.
+// state as in Homography.msg, g with determinant 1, the reason in quotes. Numbers have 17 digits, so that they read
+// back as the same doubles.
 void writeCsvRow(std::ostream& stream, std::size_t frame, const Processed& processed);
 
 }  // namespace laparoscope_servo

@@ -15,7 +15,8 @@ namespace laparoscope_servo {
 
 namespace {
 
-constexpr double kAnyGap = 1e6;  // s: a recording has its pauses, and no clock that could be wrong for one image
+// s: a recording may have long pauses, and its stamps are not checked for single errors
+constexpr double kAnyGap = 1e6;
 
 void refuseToOverwriteInput(const OfflineOptions& options) {
   for (const std::string& output : {options.csv, options.bag, options.overlay}) {
@@ -45,7 +46,7 @@ TrackerParameters withAnyGap(TrackerParameters parameters) {
   return parameters;
 }
 
-// What is written, as one.
+// All outputs together.
 class Outputs {
  public:
   Outputs(const OfflineOptions& options, double rate)
@@ -89,7 +90,7 @@ class OfflineRun {
         take(*image);
       }
     } catch (const SourceError& error) {
-      // What could be read before is as good as if the input had ended there.
+      // The images before are valid, as if the input ended here.
       if (summary_.images == 0) throw;
       summary_.source_error = error.what();
     }
@@ -117,7 +118,7 @@ class OfflineRun {
     try {
       processed = process(session_, image);
     } catch (const std::exception& error) {
-      // Without the reference nothing that follows means anything.
+      // Without the reference there are no results for later images.
       if (summary_.images == 0) throw std::runtime_error("image " + std::to_string(image.frame) + ": " + error.what());
       summary_.refused += image.lost;
       report_(image.frame, error.what());
@@ -151,7 +152,7 @@ class OfflineRun {
   std::unique_ptr<ImageSource> source_;
   std::unique_ptr<RecordedResults> recorded_;
   std::optional<Outputs> outputs_;
-  std::string camera_note_;  // what the results lack for the camera's sake
+  std::string camera_note_;  // what is missing in the results because of the camera
   OfflineSummary summary_;
 };
 

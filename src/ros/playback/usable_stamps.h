@@ -1,5 +1,5 @@
-// Stamps that can stand for an image: not zero, and not that of the image before. One that cannot is replaced by the
-// time of recording, less what recordings are later than stamps in this bag.
+// Makes the stamps of a bag unique: a stamp of zero, or one equal to the last image's, is replaced by the time of
+// recording minus this bag's usual delay between stamp and recording.
 #pragma once
 
 #include <ros/time.h>
@@ -10,17 +10,17 @@ namespace laparoscope_servo {
 
 class UsableStamps {
  public:
-  // Of an image that has a stamp.
+  // Takes the delay of an image that has a stamp.
   void learn(const ros::Time& stamp, const ros::Time& recorded) { latency_ = recorded - stamp; }
-  // Of each image in turn.
+  // The stamp to use; call for each image in turn.
   ros::Time of(const ros::Time& stamp, const ros::Time& recorded);
   std::size_t replaced() const { return replaced_; }
 
  private:
   ros::Duration latency_;
   bool any_ = false;
-  ros::Time given_;  // of the image before
-  ros::Time last_;   // what was made of it
+  ros::Time given_;  // original stamp of the last image
+  ros::Time last_;   // stamp used for it
   std::size_t replaced_ = 0;
 };
 

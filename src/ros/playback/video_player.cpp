@@ -20,8 +20,8 @@ constexpr std::chrono::milliseconds kClockPeriod(10);
 constexpr std::chrono::milliseconds kCameraInfoTimeout(500);
 constexpr std::chrono::milliseconds kStatePeriod(200);
 constexpr std::chrono::milliseconds kHeldPeriod(200);
-const ros::Duration kHeldStep(0, 1000);            // of stamps: 40,000 fit between two images of a film
-constexpr std::chrono::seconds kResultTimeout(2);  // a tracker that gives none must not stop the video
+const ros::Duration kHeldStep(0, 1000);            // step of repeated stamps; 40,000 fit between two images of a film
+constexpr std::chrono::seconds kResultTimeout(2);  // a tracker without results must not stop the video
 
 }  // namespace
 
@@ -69,7 +69,7 @@ VideoPlayer::VideoPlayer(ros::NodeHandle node, const VideoPlayerConfig& config)
       answered_ = answered_ || result->header.stamp == awaited_;
     });
   }
-  // A queue long enough that a burst after a slow read loses nothing.
+  // The queue is long enough for a burst of images after a slow read.
   image_publisher_ = transport_.advertise("image_raw", 50);
   const std::string info_topic = image_transport::getCameraInfoTopic(node.resolveName("image_raw"));
   camera_info_publisher_ = node.advertise<sensor_msgs::CameraInfo>(info_topic, 50);
@@ -106,7 +106,7 @@ void VideoPlayer::run() {
   } while (ros::ok());
 }
 
-// At the end: false when that is all.
+// Waits at the end for another command; returns false if playback is over.
 bool VideoPlayer::waitForAgain() {
   control_.end();
   tellState();
@@ -148,7 +148,7 @@ void VideoPlayer::tellState() {
   state_publisher_.publish(state);
 }
 
-// Waits while it is not to go on.
+// Waits while playback is paused.
 bool VideoPlayer::mayPlay() {
   while (ros::ok()) {
     tellState();
@@ -195,7 +195,7 @@ void VideoPlayer::waitForSubscribers() const {
     }
     std::this_thread::sleep_for(kClockPeriod);
   }
-  // Who listens to the images mostly listens to the intrinsics, too, and needs them with the first image.
+  // Most subscribers of the images also subscribe to the intrinsics, and need them with the first image.
   const auto end = Clock::now() + kCameraInfoTimeout;
   while (ros::ok() && waited > 0 && camera_info_publisher_.getNumSubscribers() == 0 && Clock::now() < end) {
     std::this_thread::sleep_for(kClockPeriod);
@@ -255,7 +255,7 @@ void VideoPlayer::waitForResult(const ros::Time& time) {
     ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.001));
   }
   if (!answered_ && ros::ok()) ++unanswered_;
-  // What comes late does not make the next ones hurry.
+  // After a delay the following images keep their normal rate.
   const auto late = Clock::now() - dueTime(time + ros::Duration(1.0 / source_->rate()));
   if (late > Clock::duration::zero()) begin_due_ += late;
 }

@@ -2,16 +2,15 @@
 // time that goes with them as `rosbag play --clock` would.
 //
 // Subscribes: homography (laparoscope_servo/Homography), in lockstep only. Publishes: image_raw (sensor_msgs/Image),
-// camera_info (sensor_msgs/CameraInfo; all zero when no calibration is known, so that nobody takes it for one), and
-// /clock; of a bag with results of a tracker also recorded_homography, just before the image they belong to. A bag's
-// images keep their headers, but for stamps that are 0 or repeated: a result is known by its image's
-// stamp. Stamps of a video are first_stamp + time of presentation, whatever the speed at which it is played. Everything
-// is paced by a steady clock. At a loop, time jumps back as with a looped bag. Of a bag, only images, their
-// camera_info and those results are played: nothing that was recorded can move an arm.
+// camera_info (sensor_msgs/CameraInfo; all zero if no calibration is known), and /clock. Of a bag with results of a
+// tracker, also recorded_homography, just before the image of each. A bag's images keep their headers, except for
+// stamps that are 0 or repeated, since a result is identified by its image's stamp. Stamps of a video are first_stamp +
+// presentation time, at any playback speed. A steady clock sets the pace. At a loop, time jumps back as with a looped
+// bag. Only images, camera_info and those results of a bag are played, so that no recorded message can move an arm.
 //
 // Service ~control (ControlPlayback): pause, step, seek, again. Topic ~state (PlaybackState), latched. While it holds
-// at an image and nothing is tracked, that image comes again and again, each a microsecond later than the one before,
-// so that a region can be selected in it.
+// at an image and nothing is tracked, that image is published repeatedly, with stamps a microsecond apart, so that a
+// region can be selected in it.
 #pragma once
 
 #include <image_transport/image_transport.h>
@@ -35,25 +34,25 @@ namespace laparoscope_servo {
 
 struct VideoPlayerConfig {
   std::string video;              // bag, video file, or folder of images; several bags: see inputsOf
-  std::string image_topic;        // of a bag; may be empty when it has only one with images
+  std::string image_topic;        // of a bag; may be empty if it has only one topic with images
   std::string camera_info_topic;  // of a bag; empty: camera_info beside the images
   std::string camera_info;        // file of camera_calibration (YAML or INI); empty: intrinsics unknown
   std::string frame_id = "laparoscope_optical";
-  double fps = 25.0;             // Hz, 0.1 to 1000, of a folder and of a video that does not tell its own
+  double fps = 25.0;             // Hz, 0.1 to 1000, for a folder and for a video without a rate
   double speed = 1.0;            // 0.01 to 100: 2 plays twice as fast
-  double start = 0.0;            // s, >= 0: what comes before is skipped
-  double first_stamp = 1.0;      // s, > 0, of the video's first image: 0 means `no time` to ROS
-  bool loop = false;             // begin again at the end
-  bool stay = false;             // at the end the node goes on, so that its last image can be looked at
+  double start = 0.0;            // s, >= 0: images before are skipped
+  double first_stamp = 1.0;      // s, > 0, of the video's first image; 0 means "no time" in ROS
+  bool loop = false;             // starts again at the end
+  bool stay = false;             // the node does not end with the video, so that the last image stays visible
   bool restart_time = true;      // false: stamps go on at a loop instead of jumping back
-  bool clock = true;             // publish /clock
-  bool lockstep = false;         // the next image waits for the tracker's result, so that a slow one misses none
-  bool hold = false;             // at the first image, until a region is selected or it is told to play
-  bool wait_for_screen = false;  // wait for a subscriber of ~state before the first image
-  int subscribers = 1;           // 0 to 100: wait for so many of image_raw before the first image
+  bool clock = true;             // publishes /clock
+  bool lockstep = false;         // the next image waits for the tracker's result, so that a slow tracker misses none
+  bool hold = false;             // holds at the first image until a region is selected or the command to play comes
+  bool wait_for_screen = false;  // waits for a subscriber of ~state before the first image
+  int subscribers = 1;           // 0 to 100: waits for this number of subscribers of image_raw before the first image
 };
 
-// The private parameters.
+// Adds the rows of the private parameters.
 void describe(parameters::Table& table, VideoPlayerConfig& config);
 std::vector<std::string> validate(const VideoPlayerConfig& config);
 
@@ -63,7 +62,7 @@ class VideoPlayer {
   // for images of another size.
   VideoPlayer(ros::NodeHandle node, const VideoPlayerConfig& config);
 
-  // Plays until the end, or the node's. Throws SourceError when the video is damaged or has no image at all.
+  // Plays until the end of the video or of the node. Throws SourceError if the video is damaged or has no images.
   void run();
 
   std::size_t published() const { return published_; }
@@ -73,7 +72,7 @@ class VideoPlayer {
 
   void waitForSubscribers() const;
   void playOnce();
-  // False when the place in the recording is another one from now on.
+  // Returns false if the position in the recording has changed.
   bool mayPlay();
   void reopen(double start);
   void repeatHeld();
@@ -86,7 +85,7 @@ class VideoPlayer {
   void publishClock(const ros::Time& time);
   void waitForResult(const ros::Time& time);
   void tellNotes() const;
-  // The time on /clock that the image belongs to.
+  // The time on /clock for the image.
   ros::Time timeOf(const SourceImage& image) const;
 
   VideoPlayerConfig config_;
@@ -95,7 +94,7 @@ class VideoPlayer {
   std::unique_ptr<RecordedResults> recorded_;
   sensor_msgs::CameraInfo camera_info_;
   image_transport::ImageTransport transport_;
-  // Not a CameraPublisher, which cannot tell whether it is the images that somebody listens to.
+  // Not a CameraPublisher, which does not count the subscribers of the images alone.
   image_transport::Publisher image_publisher_;
   ros::Publisher camera_info_publisher_;
   ros::Publisher clock_publisher_;
@@ -111,18 +110,18 @@ class VideoPlayer {
   Clock::time_point told_at_;
   double position_ = 0.0;       // s
   sensor_msgs::ImagePtr held_;  // the image that was published last
-  ros::Time held_time_;         // of /clock
-  Clock::time_point held_due_;  // when it comes again
-  bool sought_ = false;         // no image since then
+  ros::Time held_time_;         // its time on /clock
+  Clock::time_point held_due_;  // when it is published again
+  bool sought_ = false;         // no image since a change of position
   bool rebase_ = false;         // the next image is due at once
-  bool tracked_ = false;        // there is a region
-  ros::Time awaited_;           // stamp of the image that was published last ...
+  bool tracked_ = false;        // a region is tracked
+  ros::Time awaited_;           // stamp of the last published image ...
   bool answered_ = false;       // ... and whether its result has come
   std::size_t published_ = 0;
-  std::size_t unanswered_ = 0;   // images that waited for a result in vain
+  std::size_t unanswered_ = 0;   // number of images for which no result came
   ros::Duration offset_;         // added to the stamps of the source
-  ros::Time begin_;              // time on /clock that was due ...
-  Clock::time_point begin_due_;  // ... then
+  ros::Time begin_;              // start of the pace: time on /clock ...
+  Clock::time_point begin_due_;  // ... and steady time
   ros::Time last_;               // time on /clock of the last image
 };
 

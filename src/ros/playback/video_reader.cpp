@@ -13,11 +13,13 @@ namespace laparoscope_servo {
 
 namespace {
 
-constexpr unsigned kMostThreads = 16;         // of the decoder: each holds a picture back
-constexpr std::int64_t kMostFailures = 1000;  // of reading or decoding, one behind the other: it does not get better
-// A video may end before its header says by so many of its longest periods, as the last one is not always known.
+constexpr unsigned kMostThreads = 16;  // of the decoder; each thread delays the output by one picture
+// failures of reading or decoding in a row, after which the video counts as damaged
+constexpr std::int64_t kMostFailures = 1000;
+// A video may end this many of its longest periods before the end given in its header, since the last period is not
+// always known.
 constexpr double kMissingPeriods = 1.5;
-constexpr std::int64_t kLargestNothing = 19;  // bytes: an MPEG-4 picture that says `as before`
+constexpr std::int64_t kLargestNothing = 19;  // bytes: largest size of an MPEG-4 picture without changes
 
 double toDouble(AVRational value) {
   return value.num > 0 && value.den > 0 ? av_q2d(value) : 0.0;
@@ -31,7 +33,7 @@ std::int64_t indexEntries(AVStream* stream) {
 #endif
 }
 
-// Matroska's tag 00:00:03.200000000; 0 when there is none.
+// Parses Matroska's tag 00:00:03.200000000; 0 if there is none.
 double durationTag(const AVStream& stream) {
   const AVDictionaryEntry* tag = av_dict_get(stream.metadata, "DURATION", nullptr, 0);
   int hours = 0;
@@ -47,7 +49,7 @@ std::string timeText(double seconds) {
   return text;
 }
 
-// What a container is damaged by is only to be had as a message; it comes in the thread that reads.
+// libav reports damage of a container only by log messages, in the thread that reads.
 thread_local const void* listening_to = nullptr;
 thread_local bool complained = false;
 
@@ -55,8 +57,8 @@ void onMessage(void* object, int level, const char* /*format*/, va_list /*argume
   if (object != nullptr && object == listening_to && level <= AV_LOG_ERROR) complained = true;
 }
 
-// Where libav has no other word for damage than its messages, which go for errors then; no other picture rests on
-// these.
+// Codecs for which libav reports damage only by log messages, which then count as errors; no other picture depends on
+// these pictures.
 bool standsAlone(AVCodecID id) {
   const AVCodecDescriptor* descriptor = avcodec_descriptor_get(id);
   const bool intra = descriptor != nullptr && (descriptor->props & AV_CODEC_PROP_INTRA_ONLY) != 0;
@@ -66,7 +68,7 @@ bool standsAlone(AVCodecID id) {
 }  // namespace
 
 VideoReader::VideoReader(const std::string& path) : path_(path), packet_(av_packet_alloc()) {
-  av_log_set_callback(onMessage);  // what matters of a video's damage is told in words of our own
+  av_log_set_callback(onMessage);  // damage of a video is reported by this class instead
   const std::string refused = "'" + path + "' cannot be opened as a video (";
   const std::string expected = "), expected a bag, a folder of images or a whole video that libav can decode";
   AVDictionary* options = nullptr;
@@ -112,15 +114,15 @@ void VideoReader::learnLength() {
   double duration = stream_->duration != AV_NOPTS_VALUE ? seconds(stream_->duration) : 0.0;
   const std::string name = format_->iformat->name;
   if (name.find("mp4") != std::string::npos && indexEntries(stream_) > 0) {
-    // It lacks what an edit list cuts off, and is what has to come.
+    // The index does not have the pictures that an edit list cuts off, so its size is the number of pictures to come.
     promised_ = size_ = static_cast<std::size_t>(indexEntries(stream_));
   } else if (name == "avi" && size_ > 0) {
-    // Counts pictures that were left out, too, for which nothing comes. Each takes one unit of time.
+    // Also counts omitted pictures, which have no packet; each takes one unit of time.
     promised_end_ = seconds(stream_->nb_frames);
     every_period_is_there_ = true;
   } else if (name.find("matroska") != std::string::npos) {
     promised_end_ = durationTag(*stream_);
-    // Of several streams any may be the longest.
+    // With several streams, any may be the longest.
     const bool alone = format_->nb_streams == 1 && format_->duration_estimation_method == AVFMT_DURATION_FROM_STREAM;
     if (!(promised_end_ > 0.0) && alone) promised_end_ = static_cast<double>(format_->duration) / AV_TIME_BASE;
   }
@@ -166,14 +168,14 @@ std::optional<Picture> VideoReader::next() {
   return picture;
 }
 
-// Whether it stands for a picture of its own that is to be shown.
+// Whether the packet holds a picture that is to be shown.
 bool VideoReader::isPicture(const AVPacket& packet) const {
   if ((packet.flags & AV_PKT_FLAG_DISCARD) != 0) return false;
   if (codec_->codec_id == AV_CODEC_ID_VP8) return (packet.data[0] & 0x10) != 0;
   return codec_->codec_id != AV_CODEC_ID_MPEG4 || packet.size > kLargestNothing;
 }
 
-// False when there are no more.
+// Returns false at the end.
 bool VideoReader::readPacket() {
   for (;;) {
     av_packet_unref(packet_.get());
@@ -194,7 +196,7 @@ bool VideoReader::readPacket() {
     const std::int64_t time = packet_->pts != AV_NOPTS_VALUE ? packet_->pts : packet_->dts;
     const double period = packet_->duration > 0 ? seconds(packet_->duration) : rate_ > 0.0 ? 1.0 / rate_ : 0.0;
     if (time != AV_NOPTS_VALUE) end_ = std::max(end_, seconds(time) + period);
-    // Some recorders write an empty one where nothing has changed; to the decoder it would mean the end.
+    // Some recorders write an empty packet if nothing has changed; for the decoder it would mean the end.
     if (packet_->size > 0) return true;
   }
 }
@@ -212,8 +214,8 @@ void VideoReader::send() {
     picture.key = (packet_->flags & AV_PKT_FLAG_KEY) != 0;
     pending_.sent(index, picture);
   }
-  // A transport stream calls a packet corrupt where its counter jumps, also where two of them were joined: there the
-  // decoder knows better.
+  // In a transport stream a packet is marked corrupt if its counter jumps, also where two streams were joined; there
+  // only the decoder can tell.
   const bool transport = std::strcmp(format_->iformat->name, "mpegts") == 0;
   if ((packet_->flags & AV_PKT_FLAG_CORRUPT) != 0 && !transport) damaged_[index] = "its data are damaged or cut off";
   codec_->reordered_opaque = index;
@@ -245,8 +247,8 @@ void VideoReader::take(libav::Frame frame) {
   ready_.push_back(std::move(picture));
 }
 
-// A gap in the times where the container is damaged: the pictures in it never came. Without damage a gap is nothing
-// wrong: some cameras leave out pictures.
+// Reports a gap in the times at a damaged place of the container: its pictures are missing. A gap without damage is no
+// error, since some cameras omit pictures.
 void VideoReader::tellHidden(std::int64_t index, const std::optional<double>& time, std::size_t told) {
   if (!complaint_ || index < *complaint_) return;
   complaint_.reset();
@@ -274,7 +276,7 @@ void VideoReader::addLost(const std::vector<PendingPictures::Sent>& pictures) {
   }
 }
 
-// The end of the file: whether it is the end of the video, too.
+// At the end of the file, checks whether the video is complete.
 void VideoReader::finish() {
   ended_ = true;
   addLost(pending_.end());

@@ -1,4 +1,4 @@
-// The pictures of a video file in the order in which they are shown, and the places where some are missing.
+// Reads the pictures of a video file in display order, and finds missing ones.
 #pragma once
 
 #include <cstddef>
@@ -15,24 +15,25 @@ namespace laparoscope_servo {
 
 struct Picture {
   libav::Frame frame;          // null: lost
-  std::optional<double> time;  // s, of presentation, from an origin of the file's own; not known to all containers
-  std::string error;           // why it is lost, or of no use
-  std::size_t count = 1;       // so many in a row
+  std::optional<double> time;  // s, presentation time, from the file's own origin; not all containers have it
+  std::string error;           // why it is lost or unusable
+  std::size_t count = 1;       // number of lost pictures in a row
 };
 
 class VideoReader {
  public:
-  // Reads local files alone, whatever the file itself refers to. Throws SourceError: which file, and why not.
+  // Reads local files only, even if the file refers to others. Throws SourceError with the file and the reason.
   explicit VideoReader(const std::string& path);
 
-  // Empty at the end. Damage is told by pictures with an error.
+  // Empty at the end. Damage is reported by pictures with an error.
   std::optional<Picture> next();
 
   double rate() const { return rate_; }       // Hz, on average; 0: not known
-  std::size_t size() const { return size_; }  // as the file says; 0: it does not
-  Orientation orientation() const;            // of all pictures
+  std::size_t size() const { return size_; }  // number of pictures by the file; 0: not known
+  Orientation orientation() const;            // orientation of all pictures
   double pixelAspect() const;                 // width of a pixel / height, 1 when not known
-  // In front of the first picture shown, which rest on others that a cut took away; no player shows them.
+  // Number of pictures before the first one shown, which depend on pictures that a cut has removed; no player shows
+  // them.
   std::size_t leading() const { return leading_; }
 
  private:
@@ -57,23 +58,23 @@ class VideoReader {
   AVStream* stream_ = nullptr;
   libav::Codec codec_;
   libav::Packet packet_;
-  double base_num_ = 1.0;  // of the stream's time base, s
+  double base_num_ = 1.0;  // numerator of the stream's time base [s]
   double base_den_ = 1.0;
   double rate_ = 0.0;
   std::size_t size_ = 0;
-  std::size_t promised_ = 0;            // packets that have to come; 0: not known
+  std::size_t promised_ = 0;            // number of packets to come; 0: not known
   double promised_end_ = 0.0;           // s, in the file's time; 0: not known
-  bool every_period_is_there_ = false;  // the promise is exact
+  bool every_period_is_there_ = false;  // promised_end_ is exact
 
   PendingPictures pending_;
   std::deque<Picture> ready_;
-  std::map<std::int64_t, std::string> damaged_;  // packets that came incomplete
+  std::map<std::int64_t, std::string> damaged_;  // incomplete packets
   std::int64_t packets_ = 0;
-  std::optional<std::int64_t> complaint_;  // packet in front of which the container is damaged
-  std::optional<double> last_time_;        // s, of the last picture that came out
+  std::optional<std::int64_t> complaint_;  // packet before which the container is damaged
+  std::optional<double> last_time_;        // s, time of the last picture returned
   double longest_period_ = 0.0;            // s, between two pictures
-  std::int64_t failures_ = 0;              // of reading, in a row
-  double end_ = 0.0;                       // s, of what has been read
+  std::int64_t failures_ = 0;              // failures of reading in a row
+  double end_ = 0.0;                       // s, end of the packets read so far
   std::string read_error_;
   std::string decode_error_;
   std::size_t leading_ = 0;

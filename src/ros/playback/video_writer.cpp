@@ -11,7 +11,7 @@ namespace laparoscope_servo {
 namespace {
 
 constexpr int kQuality = 3;              // quantiser, 1 (best) to 31
-constexpr int kLargestTimeBase = 65535;  // that MPEG-4 can write
+constexpr int kLargestTimeBase = 65535;  // largest time base of MPEG-4
 
 std::string endingOf(const std::string& name) {
   std::string ending = std::filesystem::path(name).extension().string();

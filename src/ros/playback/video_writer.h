@@ -1,4 +1,4 @@
-// A video file, written so that whatever goes wrong is known. (OpenCV's writer does not tell that the disk is full.)
+// Writes a video file and reports all errors. (OpenCV's writer does not report a full disk.)
 #pragma once
 
 #include <cstdint>
@@ -15,15 +15,16 @@ class VideoWriter {
   // Whether the name ends in .mp4, .mkv, .mov (MPEG-4) or .avi (Motion JPEG).
   static bool knows(const std::string& name);
 
-  // Writes to `path` what the ending of `name` stands for. Throws std::runtime_error, as all do: what libav says.
+  // Writes to `path` in the format of the extension of `name`. All functions throw std::runtime_error with libav's
+  // error.
   VideoWriter(const std::string& name, const std::string& path, const cv::Size& size, double rate);
   ~VideoWriter();
   VideoWriter(const VideoWriter&) = delete;
   VideoWriter& operator=(const VideoWriter&) = delete;
 
-  // CV_8UC3 of the size given.
+  // `image`: CV_8UC3 of the given size.
   void write(const cv::Mat& image);
-  // Nothing is whole without it.
+  // Without this call the file is incomplete.
   void close();
 
  private:

@@ -1,4 +1,4 @@
-// The rows of the table of reasons, a file for each speaker.
+// The rows of the table of reasons, one file for each node.
 #pragma once
 
 #include <vector>

@@ -13,9 +13,10 @@ namespace laparoscope_servo {
 namespace {
 
 constexpr double kMegabyte = 1e6;
-constexpr double kEnoughAgain = 1.1;  // times min_free: what was stopped for want of it does not start and stop
+// times min_free: hysteresis, so that recording does not start and stop repeatedly
+constexpr double kEnoughAgain = 1.1;
 
-// By the wall clock, so that names are what a person looks for also when time is simulated.
+// Uses the wall clock, so that names are meaningful also with simulated time.
 std::string dateText() {
   const time_t now = ::time(nullptr);
   tm local{};
@@ -33,8 +34,8 @@ std::size_t Recorded::bytes() const {
   return std::get<std_msgs::StringConstPtr>(message)->data.size();
 }
 
-// A topic of tf_static has several publishers, each with frames of its own, so one message does not stand for it. Each
-// is kept by its sender.
+// A topic such as tf_static has several publishers, each with its own frames, so the last message of each sender is
+// kept.
 bool Recorded::isLatched() const {
   if (!header) return false;
   const auto latching = header->find("latching");
@@ -51,7 +52,7 @@ CaseFile::CaseFile(const RecorderConfig& config) : config_(config) {
 CaseFile::~CaseFile() {
   try {
     close();
-  } catch (const std::exception&) {  // what was written before stays, under the name of a file that was cut off
+  } catch (const std::exception&) {  // the part written before stays under the name of an unfinished file
   }
 }
 
@@ -72,7 +73,7 @@ const std::string& CaseFile::look() {
 
 bool CaseFile::isFull(const ros::Time& time) const {
   if (!bag_) return true;
-  const bool jumped = time < begin_;  // simulated time that began again
+  const bool jumped = time < begin_;  // simulated time started again
   return jumped || static_cast<double>(bag_->getSize()) > config_.split_size * kMegabyte ||
          (time - begin_).toSec() > config_.split_duration;
 }
@@ -111,12 +112,12 @@ void CaseFile::write(const Recorded& recorded) {
     if (isFull(recorded.time)) {
       close();
       open(recorded.time);
-      if (recorded.isLatched()) return;  // it is among those that begin the file
+      if (recorded.isLatched()) return;  // it was written at the beginning of the file
     }
     put(recorded, recorded.time);
   } catch (const std::exception& error) {
     bag_.reset();
-    problem_ = "'" + name_ + "' cannot be written: " + error.what();  // until the next look
+    problem_ = "'" + name_ + "' cannot be written: " + error.what();  // valid until the next look()
     throw std::runtime_error(problem_);
   }
 }

@@ -1,7 +1,7 @@
-// The files of a recording: bags that follow each other, each of which can be replayed without the others.
+// The files of a recording: consecutive bags, each of which can be replayed alone.
 //
-// A file is NAME.bag.active while it is written. One that was cut off keeps that name; what was written until then is
-// there again after `rosbag reindex`.
+// A file is NAME.bag.active while it is written. An unfinished file keeps that name; `rosbag reindex` recovers its
+// contents.
 #pragma once
 
 #include <ros/time.h>
@@ -24,7 +24,8 @@ namespace laparoscope_servo {
 struct Recorded {
   std::string topic;
   ros::Time time;
-  boost::shared_ptr<ros::M_string> header;  // of the connection; latched topics begin each file
+  // connection header; latched topics are written at the beginning of each file
+  boost::shared_ptr<ros::M_string> header;
   std::variant<topic_tools::ShapeShifter::ConstPtr, sensor_msgs::CompressedImageConstPtr, std_msgs::StringConstPtr>
       message;
   std::size_t bytes() const;
@@ -33,17 +34,17 @@ struct Recorded {
 
 class CaseFile {
  public:
-  // Makes the folder. Throws std::runtime_error when it cannot be made.
+  // Creates the folder. Throws std::runtime_error on failure.
   explicit CaseFile(const RecorderConfig& config);
   // Closes the file.
   ~CaseFile();
   CaseFile(const CaseFile&) = delete;
   CaseFile& operator=(const CaseFile&) = delete;
 
-  // Why nothing can be written at present; empty when it can be. To be asked once in a while: it looks at the disk.
+  // Why nothing can be written at present; empty if writing is possible. Checks the disk; call now and then.
   const std::string& look();
-  // Begins a file when there is none, or the one before is full. Throws std::runtime_error when it cannot be written;
-  // the file is closed then.
+  // Starts a new file if there is none, or if the last one is full. Throws std::runtime_error on failure; the file is
+  // then closed.
   void write(const Recorded& recorded);
   void close();
 
@@ -61,7 +62,7 @@ class CaseFile {
   RecorderConfig config_;
   std::unique_ptr<rosbag::Bag> bag_;
   std::string name_;  // without .active
-  ros::Time begin_;   // of the file
+  ros::Time begin_;   // time of the file's first message
   std::map<std::string, Recorded> latched_;
   std::string problem_;
   double free_ = 0.0;  // MB

@@ -1,4 +1,4 @@
-// Encodes images in threads of its own, as image_transport's plugin `compressed` would name and publish them.
+// Encodes images in separate threads, in the form of image_transport's plugin `compressed`.
 #pragma once
 
 #include <sensor_msgs/CompressedImage.h>
@@ -15,28 +15,28 @@
 
 namespace laparoscope_servo {
 
-// A JPEG of 8 bit, colour or grey. Throws ImageError for an image that cannot be used, e.g. a Bayer pattern.
+// Encodes as a JPEG of 8 bit, colour or grey. Throws ImageError for an unusable image, e.g. a Bayer pattern.
 sensor_msgs::CompressedImagePtr compressed(const sensor_msgs::Image& image, int jpeg_quality);
 
 class ImageEncoders {
  public:
   using Done = std::function<void(const sensor_msgs::CompressedImagePtr&, const ros::Time&)>;
 
-  // `most`: images that may wait. `done`: called in one of the threads, with the time given to add().
+  // `most`: largest number of waiting images. `done`: called in one of the threads, with the time given to add().
   ImageEncoders(int threads, int most, int jpeg_quality, const Done& done);
-  // Images that wait are encoded first.
+  // Encodes waiting images first.
   ~ImageEncoders();
   ImageEncoders(const ImageEncoders&) = delete;
   ImageEncoders& operator=(const ImageEncoders&) = delete;
 
-  // Never waits: false when too many wait already, and the image is dropped.
+  // Never blocks. Returns false, and drops the image, if too many are waiting.
   bool add(const sensor_msgs::ImageConstPtr& image, const ros::Time& time);
 
   struct Counts {
     std::uint64_t dropped = 0;
     std::uint64_t refused = 0;
-    std::string refusal;  // why the last one was
-    double time = 0.0;    // s, of the last encoding
+    std::string refusal;  // why the last image was refused
+    double time = 0.0;    // s, duration of the last encoding
   };
   Counts counts() const;
 

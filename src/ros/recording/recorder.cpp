@@ -14,8 +14,8 @@ namespace laparoscope_servo {
 namespace {
 
 constexpr double kLookPeriod = 1.0;        // s
-constexpr std::uint32_t kQueue = 1000;     // messages of one topic that wait to be taken over, a moment
-constexpr std::uint32_t kImageQueue = 30;  // the same of images
+constexpr std::uint32_t kQueue = 1000;     // messages of one topic in the subscriber's queue
+constexpr std::uint32_t kImageQueue = 30;  // images in the subscriber's queue
 constexpr double kMegabyte = 1e6;
 
 }  // namespace
@@ -47,7 +47,7 @@ Recorder::Recorder(ros::NodeHandle node, ros::NodeHandle private_node, const Rec
 
 Recorder::~Recorder() {
   subscribers_.clear();
-  encoders_.reset();  // what waits comes out
+  encoders_.reset();  // encodes the waiting images
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     ends_ = true;
@@ -121,12 +121,12 @@ void Recorder::run() {
   }
 }
 
-// Of the disk, and a note of how things stand.
+// Checks the disk, and updates the figures for diagnostics.
 void Recorder::look(double now) {
   if (now < next_look_) return;
   next_look_ = now + kLookPeriod;
   const std::string problem = file_.look();
-  if (!problem.empty()) file_.close();  // whole, while there is still room for its index
+  if (!problem.empty()) file_.close();  // closes it while there is still space for its index
   if (problem.empty() == stands_still_) {
     stands_still_ = !problem.empty();
     if (problem.empty()) ROS_INFO("recorder: it goes on");

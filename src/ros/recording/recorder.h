@@ -1,8 +1,8 @@
 // The node `recorder`: writes a case into bags. Subscribes: image (sensor_msgs/Image), which is recorded as
-// <image>/compressed, and the topics of its configuration, of any type. Writes besides: session (std_msgs/String), with
+// <image>/compressed, and the topics of its configuration, of any type. Also writes session (std_msgs/String), with
 // versions, parameters and calibration files. Publishes: /diagnostics.
 //
-// Nobody waits for it: what comes faster than processor and disk take it is dropped, and counted.
+// It never blocks publishers: messages that come faster than processor and disk can handle are dropped and counted.
 #pragma once
 
 #include <diagnostic_updater/diagnostic_updater.h>
@@ -27,9 +27,9 @@ namespace laparoscope_servo {
 
 class Recorder {
  public:
-  // Throws std::runtime_error when the folder cannot be made.
+  // Throws std::runtime_error if the folder cannot be created.
   Recorder(ros::NodeHandle node, ros::NodeHandle private_node, const RecorderConfig& config);
-  // Writes what waits, closes the file, and copies the log of the arm's serial line beside it.
+  // Writes the waiting messages, closes the file, and copies the log of the arm's serial line beside it.
   ~Recorder();
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
@@ -46,20 +46,20 @@ class Recorder {
 
   RecorderConfig config_;
   ros::NodeHandle node_;
-  CaseFile file_;  // of the writer's thread alone
+  CaseFile file_;  // used by the writer's thread only
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<Recorded> waiting_;
   double waiting_bytes_ = 0.0;
   bool ends_ = false;
-  struct Told {  // of the writer, for diagnostics
+  struct Told {  // figures of the writer, for diagnostics
     std::string problem, file;
     double free = 0.0;  // MB
     std::uint64_t written = 0, dropped = 0, unwritten = 0, bytes = 0;
     int files = 0;
   } told_;
   double next_look_ = 0.0;     // s, steady
-  bool stands_still_ = false;  // as the log was told
+  bool stands_still_ = false;  // state of the last line in the log
 
   std::unique_ptr<ImageEncoders> encoders_;
   std::thread thread_;

@@ -20,7 +20,7 @@ constexpr std::uintmax_t kLargestFile = 65536;  // bytes; a calibration has some
 
 using Files = std::map<std::string, std::string>;
 
-// As package.xml says, which is beside what is installed, too.
+// From package.xml, which is installed too.
 std::string packageVersion() {
   std::ifstream stream(ros::package::getPath("laparoscope_servo") + "/package.xml");
   const std::string text{std::istreambuf_iterator<char>(stream), {}};

@@ -1,4 +1,4 @@
-// What a recording needs besides its messages: versions, parameters, and the files that these name.
+// Facts of a session that a recording needs besides its messages: versions, parameters, and the files named by these.
 #pragma once
 
 #include <XmlRpcValue.h>
@@ -7,8 +7,8 @@
 
 namespace laparoscope_servo {
 
-// As YAML: versions, parameters, files. Of the parameters' texts that are names of small text files, the content is
-// there, too: calibrations of camera and insertion point. What looks like a password is left out.
+// YAML with versions, parameters and files. Includes the contents of small text files that are named by parameters:
+// calibrations of camera and insertion point. Omits values that look like passwords.
 std::string sessionFacts(const XmlRpc::XmlRpcValue& parameters);
 
 }  // namespace laparoscope_servo

@@ -1,4 +1,4 @@
-// The node `demo_director`: plays the surgeon and the nurse of the simulated cart once, and judges the loop.
+// The node `demo_director`: plays the surgeon and the nurse of the simulated cart once, and measures the loop.
 //
 // It waits for camera, tracker, controller and arm; selects a ROI in the middle of the image; moves the disabled arm by
 // hand away from there, the tracker following; enables and engages; waits until the ROI has come back and stays; lets
@@ -37,9 +37,9 @@ struct DemoConfig {
   double spin = 0.0;              // rad
   double deeper = 0.02;           // m
   double hand_time = 6.0;         // s: how long the hand takes
-  double settled_error = 2.0;     // px: the ROI's centre is back
-  double settled_scale = 0.02;    // relative: and its size
-  double settled_time = 2.0;      // s: and stays
+  double settled_error = 2.0;     // px: error of the ROI's centre within which it counts as back
+  double settled_scale = 0.02;    // relative error of its size
+  double settled_time = 2.0;      // s, for which both must stay within
   bool cross_instrument = true;   // once it has settled
   double startup_timeout = 60.0;  // s: for the nodes to be there
   double timeout = 90.0;          // s: for each of the loop's tasks
@@ -56,11 +56,11 @@ class DemoDirector {
  public:
   DemoDirector(ros::NodeHandle node, const DemoConfig& config);
 
-  // Plays the whole. What goes wrong is in the summary's reason.
+  // Runs the whole demo. The summary's reason holds an error.
   DemoSummary run();
 
  private:
-  // The demo cannot go on.
+  // An error that ends the demo.
   class Failed : public std::runtime_error {
    public:
     using std::runtime_error::runtime_error;
@@ -75,7 +75,7 @@ class DemoDirector {
   void crossInstrument();
   void finish();
 
-  // Handles messages until the condition holds. Throws Failed: `what` did not come about within `timeout` s.
+  // Handles messages until the condition holds. Throws Failed if `what` did not happen within `timeout` s.
   void waitFor(const std::string& what, double timeout, const std::function<bool()>& condition);
   void onHomography(const Homography& message);
   Eigen::Isometry3d truePose();

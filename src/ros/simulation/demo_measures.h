@@ -1,4 +1,4 @@
-// What the demo measures of the closed loop.
+// Measurements of the closed loop in the demo.
 #pragma once
 
 #include <laparoscope_servo/Homography.h>
@@ -10,16 +10,16 @@
 
 namespace laparoscope_servo {
 
-// How far the ROI in the image is from where it was in the reference image.
+// Error of the ROI in the image relative to the reference image.
 struct ViewError {
   double centre = 0.0;  // px
   double scale = 0.0;   // >= 0: relative, of the square root of the area
 };
 
-// From g of the message, which has to be in the state TRACKING.
+// Computed from g of the message, which must have the state TRACKING.
 ViewError viewError(const Homography& message, const geometry::Rectangle& roi);
 
-// How far the camera is from another pose.
+// Difference of the camera's pose from another one.
 struct PoseError {
   double angle = 0.0;    // rad, between the optical axes
   double depth = 0.0;    // m, of d2, the distance from the insertion point; positive: deeper
@@ -30,7 +30,7 @@ struct PoseError {
 PoseError poseError(const Eigen::Isometry3d& base_T_reference, const Eigen::Isometry3d& base_T_camera,
                     const Eigen::Vector3d& insertion_point);
 
-// Says when the error has become small and stays so.
+// Detects when the error has become small and stays so.
 class Settling {
  public:
   // Inside means centre <= `centre` px and scale <= `scale`; settled when inside for `hold` s without a break.
@@ -51,7 +51,7 @@ class Settling {
   double since_ = 0.0;
 };
 
-// What demo/summary.json says.
+// Contents of demo/summary.json.
 struct DemoSummary {
   bool converged = false;
   std::string reason;              // why not; empty when converged
@@ -59,14 +59,14 @@ struct DemoSummary {
   int tracked_frames = 0;          // of these, in the state TRACKING
   double start_error_px = 0.0;     // when the loop was closed ...
   double start_scale_error = 0.0;  // relative
-  PoseError start_truth;           // ... by the emulator's word
+  PoseError start_truth;           // ... true pose error, by the emulator
   double settling_time = 0.0;      // s, from engaging until the error was inside the limits for good
   double final_error_px = 0.0;
   double final_scale_error = 0.0;          // relative
-  PoseError final_truth;                   // by the emulator's word
+  PoseError final_truth;                   // true pose error, by the emulator
   bool crossed = false;                    // the instrument crossed while the loop was closed
-  double crossing_visible_fraction = 1.0;  // the least, 0 to 1
-  double crossing_error_px = 0.0;          // the most, of the images tracked
+  double crossing_visible_fraction = 1.0;  // least visible fraction, 0 to 1
+  double crossing_error_px = 0.0;          // largest error of the tracked images
   int crossing_frames = 0;
   int crossing_tracked_frames = 0;
 };

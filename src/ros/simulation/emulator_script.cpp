@@ -29,7 +29,7 @@ std::string text(XmlRpcValue value) {
   return stream.str();
 }
 
-// One entry and its errors, without the entry's number in front.
+// One entry and its errors, which do not contain the entry's number yet.
 class Entry {
  public:
   Entry(const XmlRpcValue& value, double previous) : value_(value) {

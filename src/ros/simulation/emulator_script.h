@@ -10,11 +10,11 @@
 
 namespace laparoscope_servo {
 
-// `tree`: a struct with the one member `script`, a list of entries. Errors name the entry, counted from 1; with any,
-// what is returned is of no use.
+// `tree`: a struct with the single member `script`, a list of entries. Errors name the entry, counted from 1; the
+// result is valid only without errors.
 std::vector<sim::ScheduledFault> readScript(const XmlRpc::XmlRpcValue& tree, std::vector<std::string>& errors);
 
-// The same from a file. Throws std::runtime_error with all errors, naming the file.
+// Reads the script from a file. Throws std::runtime_error with the file's name and all errors.
 std::vector<sim::ScheduledFault> scriptFromYaml(const std::string& file);
 
 }  // namespace laparoscope_servo

@@ -11,7 +11,7 @@ namespace {
 
 using visualization_msgs::Marker;
 
-constexpr int kCells = 96;  // of the tissue's mesh, along its width
+constexpr int kCells = 96;  // cells of the tissue's mesh along its width
 
 void setPose(Marker& marker, const Eigen::Isometry3d& pose) {
   marker.pose.position = pointMessage(pose.translation());
@@ -61,7 +61,7 @@ Marker tissueMarker(const std::string& frame, const Eigen::Isometry3d& frame_T_t
   };
   for (int row = 0; row < rows; ++row) {
     for (int column = 0; column < kCells; ++column) {
-      // Turning so that the normals point out of the tissue, to the camera.
+      // In the order for which the normals point out of the tissue, to the camera.
       add(row, column), add(row + 1, column), add(row, column + 1);
       add(row, column + 1), add(row + 1, column), add(row + 1, column + 1);
     }

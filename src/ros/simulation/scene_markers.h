@@ -13,14 +13,14 @@
 
 namespace laparoscope_servo {
 
-// A name and a place for a marker; the rest is left at its defaults.
+// A marker with a name and a frame; the rest has its defaults.
 visualization_msgs::Marker marker(const std::string& frame, const std::string& name, int id, int type);
 
 // The texture on its plane, `width` m wide, as a mesh of coloured triangles in `frame`.
 visualization_msgs::Marker tissueMarker(const std::string& frame, const Eigen::Isometry3d& frame_T_tissue,
                                         const cv::Mat& texture, double width);
 
-// A cylinder from a to b [m, in `frame`]; one that deletes the marker when they are (nearly) the same.
+// A cylinder from a to b [m, in `frame`]; deletes the marker if they are (nearly) equal.
 visualization_msgs::Marker cylinderMarker(const std::string& frame, const std::string& name, int id,
                                           const Eigen::Vector3d& a, const Eigen::Vector3d& b, double radius);
 

@@ -20,14 +20,14 @@
 namespace laparoscope_servo {
 
 struct ScopeMarkersConfig {
-  std::string frame_prefix = "auto";                 // in front of every frame's name, as for the aesop node
+  std::string frame_prefix = "auto";                 // prefix of all frames, as for the aesop node
   std::string camera_frame = "laparoscope_optical";  // without the prefix
   std::string insertion_point = "insertion_point";   // without the prefix
-  double view_depth = 0.08;                          // m, > 0: how far the field of view is drawn
+  double view_depth = 0.08;                          // m, > 0: depth to which the field of view is drawn
   double scope_radius = 0.005;                       // m, > 0
 };
 
-// The private parameters.
+// Adds the rows of the private parameters.
 void describe(parameters::Table& table, ScopeMarkersConfig& config);
 std::vector<std::string> validate(const ScopeMarkersConfig& config);
 
@@ -40,7 +40,7 @@ class ScopeMarkers {
   void addArm(visualization_msgs::MarkerArray& array) const;
   void addScope(visualization_msgs::MarkerArray& array) const;
   void addInsertionPoint(visualization_msgs::MarkerArray& array) const;
-  // Origin of a frame in the base; nothing while tf does not know it.
+  // Origin of a frame in the base; empty while tf does not know it.
   std::optional<Eigen::Vector3d> origin(const std::string& frame) const;
 
   ScopeMarkersConfig config_;

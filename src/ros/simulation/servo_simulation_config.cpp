@@ -35,7 +35,7 @@ void describeScope(Table& table, SimulationConfig& c) {
     table.number("depth", c.depth, {0.005, 0.5}, "m", "d2 at the reference pose");
     table.number("length", c.scope_length, {0.01, 1}, "m", "d1 + d2");
     table.number("believed_depth_factor", c.believed_depth_factor, {0.1, 10}, "times",
-                 "the true d2 that the controller and eq. (12) are told");
+                 "factor on the true d2 for the controller and eq. (12)");
     table.number("optics_angle", c.optics_angle, {-1.3, 1.3}, "rad",
                  "between shaft and optical axis; 0.5236 is a 30 degree scope");
     table.number("optics_roll", c.optics_roll, {-3.2, 3.2}, "rad", "of the camera about the shaft");
@@ -56,22 +56,22 @@ void describeScope(Table& table, SimulationConfig& c) {
 void describeRobot(Table& table, SimulationConfig& c) {
   table.group("robot", "", [&] {
     describe(table, c.robot);
-    table.numbers("signs", c.signs, 4, {-1, 1}, "", "of pan, tilt, spin, insertion; -1: the robot does the opposite");
+    table.numbers("signs", c.signs, 4, {-1, 1}, "", "factors on pan, tilt, spin, insertion; -1: reversed");
   });
-  table.flag("reports", c.reports, "the robot says how fast it moves");
+  table.flag("reports", c.reports, "the robot reports its velocity");
   table.number("report_noise", c.report_noise, {0, 1}, "rad/s", "standard deviation; a tenth of it in m/s");
-  table.flag("poses", c.poses, "the controller is told the shaft's pose, and may estimate the insertion point");
+  table.flag("poses", c.poses, "the controller gets the shaft's pose, and may estimate the insertion point");
   table.number("pose_noise", c.pose_noise, {0, 0.1}, "m", "of the shaft's place, standard deviation per axis");
   table.number("direction_noise", c.direction_noise, {0, 0.5}, "rad",
                "of the shaft's direction, standard deviation per axis");
 }
 
 void describeDisturbances(Table& table, SimulationConfig& c) {
-  table.group("picture", "what stands between the scope and what the tracker sees", [&] {
+  table.group("picture", "faults of the picture between scope and tracker", [&] {
     table.number("roll", c.picture.roll, {-6.3, 6.3}, "rad", "turned against the configured optics");
     table.choice("mirror", c.picture.mirror, {"none", "left_right", "up_down"}, "before it is rolled");
     table.number("frozen_from", c.picture.frozen_from, {0, 1e9}, "s",
-                 "from then on it shows what it showed, with new noise, as another camera's would");
+                 "time from which the picture is frozen, with new noise, like that of another camera");
   });
   table.group("crossing", "instruments cross the region", [&] {
     table.number("period", c.crossing.period, {0, 1e9}, "s", "from one to the next; 0: none");
@@ -89,7 +89,7 @@ void describeDisturbances(Table& table, SimulationConfig& c) {
 void describe(Table& table, SimulationConfig& c) {
   table.number("duration", c.duration, {0.1, 36000}, "s", "of simulated time, where --duration is not given");
   table.number("rest_from", c.rest_from, {0, 0.999}, "share",
-               "of the duration after which figures of rest are taken, where --rest-after is not given");
+               "of the duration after which figures of rest are computed, if --rest-after is not given");
   table.number("frame_rate", c.frame_rate, {1, 200}, "Hz", "of the camera");
   table.number("image_delay", c.image_delay, {0, 1}, "s", "from the exposure to the task error");
   table.number("corner_noise", c.corner_noise, {0, 20}, "px",
@@ -127,7 +127,7 @@ std::vector<std::string> validate(const SimulationConfig& c) {
 
 void describe(Table& table, ServoSimulationParameters& parameters) {
   describe(table, parameters.controller);
-  table.group("simulation", "what the controller is tried on", [&] { describe(table, parameters.simulation); });
+  table.group("simulation", "the simulated world", [&] { describe(table, parameters.simulation); });
 }
 
 std::vector<std::string> validate(const ServoSimulationParameters& parameters) {

@@ -1,4 +1,4 @@
-// Parameters of simulate_servo: those of the controller, and the group `simulation`, what it is tried on.
+// Parameters of simulate_servo: those of the controller, and the group `simulation` of the simulated world.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace laparoscope_servo::closed_loop {
 
-// Without the group's name.
+// Adds the rows without the group's name.
 void describe(parameters::Table& table, SimulationConfig& config);
 std::vector<std::string> validate(const SimulationConfig& config);
 

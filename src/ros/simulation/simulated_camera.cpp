@@ -16,7 +16,7 @@ namespace laparoscope_servo {
 
 namespace {
 
-constexpr double kThrottle = 5.0;  // s between two lines of the log about the same kind of trouble
+constexpr double kThrottle = 5.0;  // s between two lines of the log about the same kind of error
 
 sensor_msgs::CameraInfo cameraInfo(const sim::ScopeCameraConfig& camera, const std::string& frame) {
   sensor_msgs::CameraInfo info;
@@ -32,7 +32,7 @@ sensor_msgs::CameraInfo cameraInfo(const sim::ScopeCameraConfig& camera, const s
   return info;
 }
 
-// aesop_base_T_laparoscope_optical where the arm stands when it is switched on.
+// aesop_base_T_laparoscope_optical at the arm's start pose.
 Eigen::Isometry3d startPose(const aesop::Kinematics& kinematics, const sim::ArmConfig& arm) {
   return kinematics.optical(sim::Arm(kinematics, arm).position());
 }

@@ -1,10 +1,10 @@
-// The node `simulated_camera`: what the laparoscope that the emulated arm holds sees, published as a camera driver
-// would.
+// The node `simulated_camera`: renders the view of the laparoscope held by the emulated arm, and publishes it like a
+// camera driver.
 //
 // Publishes: image_raw (sensor_msgs/Image, bgr8) and camera_info, stamped with the time of the arm's pose that the
 // image was made from; ~tissue (visualization_msgs/Marker, latched) and ~instrument (visualization_msgs/MarkerArray),
 // for rviz, in aesop_base. Services: ~cross_instrument (std_srvs/Trigger): the instrument crosses the picture once,
-// from now. While the emulator cannot be reached it publishes nothing, says so, and tries again.
+// from now. While the emulator cannot be reached it publishes nothing, logs that, and tries again.
 #pragma once
 
 #include <image_transport/image_transport.h>
@@ -33,7 +33,7 @@ struct SimulatedCameraConfig {
   sim::EmulatorConfig emulator;                  // config/aesop.yaml, kinematics, and config/emulator.yaml
 };
 
-// The private parameters.
+// Adds the rows of the private parameters.
 void describe(parameters::Table& table, SimulatedCameraConfig& config);
 // Without what the emulator has, too.
 void describeCamera(parameters::Table& table, SimulatedCameraConfig& config);
@@ -41,7 +41,7 @@ std::vector<std::string> validate(const SimulatedCameraConfig& config);
 
 class SimulatedCamera {
  public:
-  // Throws std::invalid_argument or std::runtime_error: the start pose cannot be, or the texture not be read.
+  // Throws std::invalid_argument or std::runtime_error if the start pose is impossible, or the texture cannot be read.
   SimulatedCamera(ros::NodeHandle node, ros::NodeHandle private_node, const SimulatedCameraConfig& config);
 
   // Publishes at the camera's rate until the node ends.
@@ -53,7 +53,7 @@ class SimulatedCamera {
     ros::Time stamp;
   };
 
-  // Where the camera is now; nothing when the emulator does not answer.
+  // The camera's present pose; empty if the emulator does not answer.
   std::optional<Pose> pose();
   void publishImage(const Pose& pose);
   std::optional<Eigen::Vector3d> instrumentTip(double now);

@@ -17,12 +17,12 @@ std::string text(const geometry::PinholeCamera& camera) {
   return stream.str();
 }
 
-// Binning of 0 means 1, as does a region of interest of 0 x 0 the whole image.
+// Binning of 0 means 1, and a region of interest of 0 x 0 means the whole image.
 struct Axis {
   const char* name;
-  std::uint64_t sensor;  // px; 0: many drivers do not say
+  std::uint64_t sensor;  // px; 0: not known, as with many drivers
   std::uint64_t offset;
-  std::uint64_t region;  // of the driver, on the sensor; 0: all of it
+  std::uint64_t region;  // the driver's region on the sensor [px]; 0: all of it
   std::uint64_t binning;
   std::uint64_t image;
   double focal_length;
@@ -45,7 +45,7 @@ void checkRegion(const Axis& axis) {
   if (!message.str().empty()) throw std::invalid_argument(message.str());
 }
 
-// Of the part of the sensor that is known: all of it, or what the image shows.
+// Size of the known part of the sensor: all of it, or the part that the image shows.
 std::uint64_t sensorOf(const Axis& axis) {
   return axis.sensor > 0 ? axis.sensor : axis.offset + axis.image * axis.binning;
 }
@@ -71,13 +71,13 @@ void checkCamera(const Axis& axis, const char* matrix) {
   throw std::invalid_argument(message.str());
 }
 
-// What rectifying does to the focal length is less than this; matrices of two calibrations, or of two sizes of the
-// image, differ by more.
+// Rectification changes the focal length by less than this; matrices of two calibrations, or for two image sizes,
+// differ by more.
 void checkAgreement(const sensor_msgs::CameraInfo& info) {
   constexpr double kMostRatio = 2.5;
   for (const auto& [of_k, of_p, name] :
        {std::make_tuple(info.K[0], info.P[0], "fx"), std::make_tuple(info.K[4], info.P[5], "fy")}) {
-    if (of_k == 0.0 || of_p == 0.0) continue;  // a driver that gives one of the two
+    if (of_k == 0.0 || of_p == 0.0) continue;  // the driver gives only one of both
     const double ratio = of_p / of_k;
     if (ratio >= 1.0 / kMostRatio && ratio <= kMostRatio) continue;
     std::ostringstream message;
@@ -94,11 +94,11 @@ bool allZero(const std::vector<double>& values) {
 struct Model {
   const char* name;
   image::Distortion distortion;
-  std::vector<std::size_t> counts;  // of coefficients; the rest is 0
+  std::vector<std::size_t> counts;  // allowed numbers of coefficients; the rest is 0
 };
 
 const Model& modelOf(const sensor_msgs::CameraInfo& info) {
-  // Calibrations by OpenCV give a plumb_bob without its fifth coefficient, and uncalibrated drivers none.
+  // OpenCV's calibration may give plumb_bob without its fifth coefficient, and uncalibrated drivers give none.
   static const Model models[] = {{"plumb_bob", image::Distortion::kPlumbBob, {5, 4, 0}},
                                  {"rational_polynomial", image::Distortion::kRationalPolynomial, {8, 0}},
                                  {"equidistant", image::Distortion::kEquidistant, {4}}};
@@ -110,7 +110,7 @@ const Model& modelOf(const sensor_msgs::CameraInfo& info) {
                               "', expected plumb_bob, rational_polynomial or equidistant");
 }
 
-// But for the header, with which the same camera_info comes for every image. A NaN is never the same.
+// Compares all but the header, since the same camera_info comes with every image. A NaN never compares as equal.
 bool sameCalibration(const sensor_msgs::CameraInfo& a, const sensor_msgs::CameraInfo& b) {
   return a.width == b.width && a.height == b.height && a.distortion_model == b.distortion_model && a.D == b.D &&
          a.K == b.K && a.R == b.R && a.P == b.P && a.binning_x == b.binning_x && a.binning_y == b.binning_y &&
@@ -131,7 +131,7 @@ geometry::PinholeCamera cameraFromInfo(const sensor_msgs::CameraInfo& info, Imag
   const std::string error = camera.error();
   if (!error.empty())
     throw std::invalid_argument(std::string("camera_info cannot be used: ") + (raw ? "K: " : "P: ") + error);
-  // Many drivers leave the sizes at 0: then nothing can be compared but what they do say.
+  // Many drivers leave the sizes at 0; then only the other values can be compared.
   const bool has_size = info.width > 0 && info.height > 0;
   Axis x{"x",
          has_size ? info.width : 0,
@@ -175,7 +175,7 @@ image::Lens lensFromInfo(const sensor_msgs::CameraInfo& info, const cv::Size& si
   parameters.rectified = cameraFromInfo(info, ImageKind::kToRectify, size);
   const Model& model = modelOf(info);
   parameters.distortion = model.distortion;
-  const bool uncalibrated = info.distortion_model.empty();  // D is all zero then, however long
+  const bool uncalibrated = info.distortion_model.empty();  // D is then all zero, of any length
   if (!uncalibrated && std::find(model.counts.begin(), model.counts.end(), info.D.size()) == model.counts.end()) {
     throw std::invalid_argument("camera_info cannot be used: D has " + std::to_string(info.D.size()) +
                                 " coefficients, expected " + std::to_string(model.counts.front()) + " for " +

@@ -1,5 +1,5 @@
-// Decides whose messages a topic that should have one publisher is taken from: the first node that sends on it, until
-// it falls silent. What another node sends meanwhile is refused: two cameras on one topic are no film.
+// Decides whose messages are accepted on a topic that should have one publisher: those of the first node, until it is
+// silent. Messages of other nodes are refused, since images of two cameras are no sequence.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,14 @@ namespace laparoscope_servo {
 // Times are seconds of any steady clock.
 class FeedOwner {
  public:
-  static constexpr double kSilence = 2.0;  // s, after which another node's messages are taken
+  static constexpr double kSilence = 2.0;  // s, silence after which another node's messages are accepted
 
-  // Whether a message of the node `sender` counts. A node that starts again keeps its name.
+  // Whether a message of the node `sender` is accepted. A restarted node keeps its name.
   bool counts(const std::string& sender, double now);
 
   const std::string& owner() const { return owner_; }
   std::uint64_t refused() const { return refused_; }
-  // Whose messages are refused; empty when none has come for a while.
+  // Whose messages are refused; empty if none has come for a while.
   std::string complaint(double now) const;
 
  private:

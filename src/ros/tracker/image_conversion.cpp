@@ -14,20 +14,20 @@ namespace {
 
 constexpr int kAsItIs = -1;
 
-// How the pixels lie in the data. Of 4:2:0 four pixels share a U and a V, which follow the plane of Y.
+// Layout of the data. In 4:2:0 four pixels share a U and a V, which follow the plane of Y.
 enum class Layout { kPacked, kTwoPlanes, kThreePlanes };
 
 struct Encoding {
   const char* name;
   int depth;       // CV_8U or CV_16U
-  int channels;    // stored per pixel; of 4:2:0, in the plane of Y
+  int channels;    // channels stored per pixel; for 4:2:0, in the plane of Y
   int conversion;  // of cv::cvtColor, to grey or BGR
   Layout layout = Layout::kPacked;
 
   bool isYuv() const { return channels == 2 || layout != Layout::kPacked; }
 };
 
-// By names rather than constants of sensor_msgs: not every distribution has all of them.
+// Uses names instead of the constants of sensor_msgs, some of which are missing in some distributions.
 constexpr Encoding kEncodings[] = {
     {"mono8", CV_8U, 1, kAsItIs},
     {"bgr8", CV_8U, 3, kAsItIs},
@@ -75,7 +75,7 @@ std::string smallLetters(std::string text) {
 const Encoding& encodingOf(const sensor_msgs::Image& message) {
   for (const Encoding& encoding : kEncodings) {
     if (message.encoding == encoding.name) return encoding;
-    // Only the names of YUV are written both ways: a driver that says RGB8 may mean anything.
+    // Only names of YUV encodings are used in both cases by drivers; the meaning of RGB8 is unclear.
     if (encoding.isYuv() && smallLetters(message.encoding) == encoding.name) return encoding;
   }
   if (isBayer(message.encoding)) {
@@ -157,7 +157,7 @@ cv::Mat converted(const cv::Mat& image, int conversion) {
   return result;
 }
 
-// OpenCV knows the limited range alone: what the full one has is brought into it, which costs half a grey level.
+// OpenCV only has the limited range: full-range values are converted to it, with an error of half a grey level.
 const cv::Mat& limitedOf(bool luma) {
   const auto table = [](double low, double high) {
     cv::Mat result(1, 256, CV_8UC1);
@@ -188,7 +188,7 @@ cv::Mat limited(const cv::Mat& image, const Encoding& encoding) {
   return result;
 }
 
-// The planes of 4:2:0 below each other without gaps, as OpenCV wants them.
+// The planes of 4:2:0 below each other without gaps, as OpenCV needs them.
 cv::Mat planesOf(const sensor_msgs::Image& message, const Encoding& encoding) {
   const int width = static_cast<int>(message.width);
   const int height = static_cast<int>(message.height);

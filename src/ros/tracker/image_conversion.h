@@ -1,10 +1,9 @@
-// From images as they come to what the tracker takes: 8 bit, grey (CV_8UC1) or blue-green-red (CV_8UC3).
+// Converts images to the types of the tracker: 8 bit, grey (CV_8UC1) or blue-green-red (CV_8UC3).
 //
-// Understood are the encodings of 8 and 16 bit that stand for grey or colour: mono8, mono16, bgr8, rgb8, bgra8, rgba8,
-// bgr16, rgb16, bgra16, rgba16, 8UC1, 8UC3, 8UC4, 16UC1, 16UC3, 16UC4 (without a name for the channels: taken for grey,
-// BGR, BGRA), and YUV by the names that drivers use, in small or in capital letters: uyvy (also yuv422), yuyv (also
-// yuy2, yuv422_yuy2), yvyu, nv12, nv21, i420 (also yuv420, yuv420p), yv12. Alpha is dropped. Bayer patterns are
-// refused: image_proc turns them into colour.
+// Supported are encodings of 8 and 16 bit for grey or colour: mono8, mono16, bgr8, rgb8, bgra8, rgba8, bgr16, rgb16,
+// bgra16, rgba16, 8UC1, 8UC3, 8UC4, 16UC1, 16UC3, 16UC4 (used as grey, BGR, BGRA), and YUV by the names that drivers
+// use, in lower or upper case: uyvy (also yuv422), yuyv (also yuy2, yuv422_yuy2), yvyu, nv12, nv21, i420 (also yuv420,
+// yuv420p), yv12. Alpha is dropped. Bayer patterns are refused: image_proc turns them into colour.
 #pragma once
 
 #include <sensor_msgs/Image.h>
@@ -15,16 +14,16 @@
 
 namespace laparoscope_servo {
 
-// What is wrong with an image that is refused.
+// Why an image is refused. (aesop::Refusal is that of a command.)
 enum class Refusal {
   kData,    // encoding, sizes, amount of data
-  kStamp,   // repeated, out of order, zero, ahead
-  kSize,    // another than that of the images before
-  kSender,  // another node's than that of the images before
+  kStamp,   // stamp repeated, out of order, zero, or ahead
+  kSize,    // size differs from that of the last images
+  kSender,  // from another node than the last images
 };
 constexpr Refusal kRefusals[] = {Refusal::kData, Refusal::kStamp, Refusal::kSize, Refusal::kSender};
 
-// An image that cannot be used; what() says why, with the encoding and the sizes, and what was expected.
+// An unusable image; what() has the reason, with encoding and sizes, and what was expected.
 class ImageError : public std::runtime_error {
  public:
   explicit ImageError(const std::string& what, Refusal cause = Refusal::kData)
@@ -41,15 +40,15 @@ enum class YuvRange {
 };
 
 struct ImageFormat {
-  int bit_depth = 16;  // 8 to 16: what images of 16 bit use of them, the lowest ones; the largest value becomes 255
+  int bit_depth = 16;  // 8 to 16: number of low bits that 16 bit images use; the largest value becomes 255
   YuvRange yuv_range = YuvRange::kLimited;
 };
 
-// Finds out how many bits images of 16 bit use: the fewest of 8, 10, 12, 14 and 16 that hold the largest value seen. It
-// never shrinks, so that a dark picture changes nothing; a brighter one may make it grow.
+// Estimates how many bits 16 bit images use: the fewest of 8, 10, 12, 14 and 16 that hold the largest value seen. Never
+// decreases, so that a dark picture changes nothing.
 class BitDepth {
  public:
-  // Looks at a quarter of the rows. Images of 8 bit say nothing.
+  // Checks a quarter of the rows. Ignores images of 8 bit.
   void see(const cv::Mat& image);
   int value() const { return value_; }
 
@@ -57,15 +56,15 @@ class BitDepth {
   int value_ = 8;
 };
 
-// The image of a message. For mono8, bgr8, 8UC1 and 8UC3 it shares the message's data, which therefore has to outlive
-// it and must not be written to; for the others it is a copy. Throws ImageError when the encoding is not among the
-// above, the image is empty, or step or data are too small for width, height and encoding.
-// `found`: where given, it is asked for the depth rather than the format.
+// Converts the image of a message. For mono8, bgr8, 8UC1 and 8UC3 the result shares the message's data, which must
+// outlive it and must not be changed; for other encodings it is a copy. Throws ImageError when the encoding is not
+// among the above, the image is empty, or step or data are too small for width, height and encoding.
+// `found`: if given, it is used for the bit depth instead of the format.
 cv::Mat trackerImage(const sensor_msgs::Image& message, const ImageFormat& format = ImageFormat(),
                      BitDepth* found = nullptr);
 
-// The same for an image decoded by OpenCV: 1, 3 (BGR) or 4 (BGRA) channels of 8 or 16 bit without sign. Shares the data
-// when nothing has to be done. Throws ImageError for an empty one and for other types.
+// Converts an image decoded by OpenCV: 1, 3 (BGR) or 4 (BGRA) channels of 8 or 16 bit without sign. Shares the data if
+// no conversion is needed. Throws ImageError for an empty image and for other types.
 cv::Mat trackerImage(const cv::Mat& decoded, const ImageFormat& format = ImageFormat(), BitDepth* found = nullptr);
 
 // Whether the encoding names a colour filter pattern, e.g. bayer_rggb8.

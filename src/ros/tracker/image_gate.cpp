@@ -28,7 +28,7 @@ std::string kind(const cv::Size& size, int channels) {
 
 ImageGate::Passed ImageGate::judge(const ros::Time& stamp, const cv::Size& size, int channels) {
   Passed passed;
-  // The size first: an odd image says nothing about time.
+  // Checks the size first, since the stamp of an image of another size is not used.
   passed.other_size = !empty_ && otherSize(size, channels);
   if (passed.other_size) {
     const double step = (last_ - stamp).toSec();
@@ -71,7 +71,7 @@ void ImageGate::passTime(const ros::Time& stamp, Passed& passed) {
   const bool goes_on = other_times_ > 0 && on > 0.0 && on <= config_.max_gap;
   other_times_ = goes_on ? other_times_ + 1 : 1;
   other_last_ = stamp;
-  // What lies ahead is a pause as a rule, and one more image is enough to tell it from a single wrong stamp.
+  // A step ahead is usually a pause, and one more image suffices to distinguish it from a single wrong stamp.
   const int needed = step > 0.0 ? 2 : clock_jumps_ > 0 ? 1 : config_.restart_images;
   clock_jumps_ = std::max(0, clock_jumps_ - 1);
   if (other_times_ < needed) {

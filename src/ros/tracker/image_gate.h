@@ -1,7 +1,7 @@
-// Which images are the next ones: by their stamps and sizes alone, before anything looks at their pixels.
+// Decides by stamp and size alone which images continue the sequence, before any pixel is processed.
 //
-// One image that is out of order, repeated, without a stamp, far ahead, or of another size is refused: nobody can tell
-// what it shows. Only when several come in a row that agree with each other is it another time, or another camera.
+// A single image that is out of order, repeated, without a stamp, far ahead, or of another size is refused. Several in
+// a row that agree with each other mean another time or another camera, and are accepted.
 #pragma once
 
 #include <ros/time.h>
@@ -15,24 +15,25 @@ namespace laparoscope_servo {
 
 class ImageGate {
  public:
-  // What an image that is taken means for those that follow.
+  // Result for an accepted image.
   struct Passed {
-    double step_back = 0.0;   // s, > 0: time begins again, so much earlier
-    bool loop = false;        // the step is one of a recording that begins again
+    double step_back = 0.0;   // s, > 0: time jumped back by this
+    bool loop = false;        // the step is that of a recording that begins again
     bool other_size = false;  // another camera
-    double period = 0.0;      // s since the image before; after a step, the last one that was known
+    double period = 0.0;      // s since the last image; after a step, the last known period
   };
 
   explicit ImageGate(const tracking::InputConfig& config) : config_(config) {}
 
-  // The next image, of `size` and `channels`. Throws ImageError, with the cause kStamp or kSize, when it is refused.
+  // Checks the next image, of `size` and `channels`. Throws ImageError, with cause kStamp or kSize, if it is refused.
   Passed judge(const ros::Time& stamp, const cv::Size& size, int channels);
 
-  // The clock that the stamps come from has jumped back: the next image behind the last one is believed at once.
+  // Call if the clock of the stamps has jumped back: the next image with an earlier stamp is accepted at once.
   void clockJumpedBack() { clock_jumps_ = kJumpLasts; }
 
  private:
-  static constexpr int kJumpLasts = 50;  // images: those that were on their way when the clock jumped come first
+  // images for which this holds, since those under way when the clock jumped come first
+  static constexpr int kJumpLasts = 50;
 
   bool otherSize(const cv::Size& size, int channels);
   void passTime(const ros::Time& stamp, Passed& passed);
@@ -40,9 +41,9 @@ class ImageGate {
   tracking::InputConfig config_;
   bool empty_ = true;
   ros::Time last_;
-  double period_ = 0.04;  // s; until two images are known it only keeps time going on
+  double period_ = 0.04;  // s; the initial value is used until there are two images
   int clock_jumps_ = 0;
-  // Another time, or another size, that waits for being confirmed.
+  // A new time or size that is not confirmed yet.
   ros::Time other_last_;
   int other_times_ = 0;
   cv::Size size_;
@@ -53,7 +54,7 @@ class ImageGate {
 };
 
 // Throws ImageError when the stamp is zero, or further ahead of `now` than `max_ahead` [s]. A `now` of zero is a clock
-// that has not started, or of which nothing can be said.
+// that has not started or is not known; nothing is then ahead.
 void checkStamp(const ros::Time& stamp, const ros::Time& now, double max_ahead);
 
 }  // namespace laparoscope_servo

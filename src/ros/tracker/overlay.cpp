@@ -16,11 +16,11 @@ const cv::Scalar kBlue(255, 0, 0);
 const cv::Scalar kRed(0, 0, 255);
 const cv::Scalar kWhite(255, 255, 255);
 const cv::Scalar kBlack(0, 0, 0);
-constexpr int kBentPieces = 16;   // that an edge is drawn in, where a lens bends it
+constexpr int kBentPieces = 16;   // pieces in which an edge is drawn, since a lens bends it
 constexpr int kShift = 4;         // OpenCV draws in 1/16 px
-constexpr double kFarAway = 1e5;  // px: further out nothing is drawn, fixed-point coordinates would overflow
+constexpr double kFarAway = 1e5;  // px: further points are not drawn, since fixed-point coordinates would overflow
 
-// The quadrilateral's outline as the image shows it, each edge in `pieces`. Empty when a point of it cannot be drawn.
+// The quadrilateral's outline in the image, each edge in `pieces`. Empty if a point cannot be drawn.
 std::vector<cv::Point> drawable(const geometry::Quadrilateral& corners, const image::Lens* lens, int pieces) {
   std::vector<cv::Point> points;
   for (int k = 0; k < 4; ++k) {

@@ -1,4 +1,4 @@
-// The picture that a user looks at: the image with what the tracker makes of it.
+// Draws the tracker's result into the image, for a user.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -9,9 +9,9 @@
 namespace laparoscope_servo {
 
 // A copy of `image` (8UC1 or 8UC3) as 8UC3 with the ROI as it was selected in blue, where it is now in red (thin while
-// it is only searched for, absent when it is lost), the areas taken for occluded as filled blue squares, half
-// transparent, in perspective, and a line of text: state, visible fraction, reason.
-// With a lens the image is a raw one, and the edges are bent as it shows them.
+// it is only searched for, absent when it is lost), the occluded areas as filled blue squares, half transparent, in
+// perspective, and a line of text: state, visible fraction, reason. With a lens the image is raw, and edges are drawn
+// bent.
 cv::Mat drawOverlay(const cv::Mat& image, const tracking::TrackResult& result, const image::Lens* lens = nullptr);
 
 }  // namespace laparoscope_servo

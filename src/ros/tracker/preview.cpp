@@ -14,7 +14,7 @@ cv::Size previewSize(const cv::Size& image, int most) {
   return {scaled(image.width), scaled(image.height)};
 }
 
-// Centre of a preview's pixel in pixels of the image, and back.
+// Converts the centre of a preview pixel to image pixels, and back.
 double toImage(double preview, int image_side, int preview_side) {
   return (preview + 0.5) * image_side / preview_side - 0.5;
 }
@@ -22,7 +22,7 @@ double toImage(double preview, int image_side, int preview_side) {
 }  // namespace
 
 bool Preview::due(double now) {
-  // Slots keep their rhythm: of a camera at 30 Hz 25 images are shown, and not 15.
+  // Slots are periodic, so that of a camera at 30 Hz 25 images are shown, and not 15.
   if (now < next_) return false;
   next_ = next_ + kPreviewPeriod > now ? next_ + kPreviewPeriod : now + kPreviewPeriod;
   return true;
@@ -43,7 +43,7 @@ cv::Mat Preview::of(const cv::Mat& image, const std::shared_ptr<const image::Len
   return rectified;
 }
 
-// Of each pixel of the rectified preview: where the preview of the raw image has it.
+// Computes, for each pixel of the rectified preview, its place in the preview of the raw image.
 void Preview::prepareMap(const cv::Size& image, const cv::Size& preview,
                          const std::shared_ptr<const image::Lens>& lens) {
   if (lens == lens_ && image == image_size_) return;

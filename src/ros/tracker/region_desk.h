@@ -1,5 +1,4 @@
-// Questions about regions before one is selected: would it be taken, and the picture that is kept to draw one in. Not
-// thread-safe.
+// Keeps the picture in which a region is drawn, and checks regions before one is selected. Not thread-safe.
 #pragma once
 
 #include <memory>
@@ -18,19 +17,19 @@ class RegionDesk {
  public:
   explicit RegionDesk(const TrackerParameters& parameters) : parameters_(parameters) {}
 
-  // Keeps it, in place of the one before.
+  // Keeps the snapshot in place of the last one.
   void keep(const std::shared_ptr<const Snapshot>& snapshot) { kept_ = snapshot; }
-  // Small, of the one that is kept.
+  // A small picture of the kept snapshot.
   cv::Mat preview();
-  // The snapshot that was kept. Throws std::invalid_argument when none was, or one of another stamp.
+  // The kept snapshot. Throws std::invalid_argument if there is none, or one with another stamp.
   const Snapshot& kept(const ros::Time& stamp) const;
 
-  // Whether a region would be taken in the snapshot's image. Throws std::invalid_argument that says why not.
+  // Throws std::invalid_argument with the reason if a region would be refused in the snapshot's image.
   void check(const Snapshot& snapshot, const geometry::Rectangle& roi) const;
-  // One near it that would be, where it would not; empty where there is none.
+  // A region near it that would be accepted; empty if there is none.
   std::optional<geometry::Rectangle> propose(const Snapshot& snapshot, const geometry::Rectangle& roi) const;
-  // The way to a region of the image that was kept, from what is seen `now`. Throws as the two above do, and when the
-  // images have another size or another lens since.
+  // The way from the image `now` to a region of the kept image. Throws as kept() and check(), and if size or lens of
+  // the images have changed since.
   RecallRoute route(const ros::Time& stamp, const geometry::Rectangle& roi, const Snapshot& now) const;
 
  private:

@@ -79,7 +79,7 @@ TaskError taskErrorMessage(const Processed& processed) {
     error =
         servo::taskError(geometry::normalisedFromPixels(result.g, *processed.camera), result.roi, *processed.camera);
   } catch (const std::invalid_argument&) {
-    return message;  // an estimate that no camera motion explains must not move the robot
+    return message;  // an estimate that corresponds to no camera motion must not move the robot
   }
   if (!servo::isFinite(error)) return message;
   message.valid = true;

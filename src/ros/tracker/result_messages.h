@@ -1,4 +1,4 @@
-// Messages from what is known of one image. All of them carry the image's header.
+// Messages with the results of one image. All have the image's header.
 #pragma once
 
 #include <geometry_msgs/PolygonStamped.h>
@@ -16,8 +16,8 @@ namespace laparoscope_servo {
 // While no ROI is selected: g and h are the identity, the corners 0. Without usable intrinsics h is the identity.
 Homography homographyMessage(const Processed& processed);
 
-// Invalid, with zeros but for the stamps, unless the state is TRACKING, there are usable intrinsics and every number is
-// finite.
+// Invalid, with zeros except for the stamps, unless the state is TRACKING, there are usable intrinsics and all numbers
+// are finite.
 TaskError taskErrorMessage(const Processed& processed);
 
 AreaSelection areaSelectionMessage(const Processed& processed);

@@ -20,7 +20,7 @@ std::optional<Eigen::Isometry3d> cameraMotion(const tf2::BufferCore& tf, const s
     const Eigen::Isometry3d motion = fixed_T_to.inverse() * fixed_T_from;
     if (motion.matrix().allFinite()) return motion;
     why = "the pose of " + frame + " in " + fixed_frame + " is not finite";
-  } catch (const tf2::ExtrapolationException&) {  // its text holds times, which change with every image
+  } catch (const tf2::ExtrapolationException&) {  // the exception's own text has times, which change with every image
     why = "tf does not know the pose of " + frame + " in " + fixed_frame + " at the images' stamps";
   } catch (const tf2::TransformException& error) {
     why = error.what();

@@ -13,7 +13,7 @@ namespace {
 using diagnostic_msgs::DiagnosticStatus;
 using tracking::State;
 
-constexpr double kSilence = 2.0;  // s without an image that are worth a warning
+constexpr double kSilence = 2.0;  // s without an image, after which there is a warning
 
 int levelOf(State state) {
   switch (state) {
@@ -63,11 +63,11 @@ void TrackerDiagnostics::processed(double now, const Processed& processed, bool 
   rectifies_ = processed.lens != nullptr;
 }
 
-// A gap in the stamps, against what is usual, is as many images that were lost before they came here, or waited in the
-// queue of one until the next one took their place.
+// A gap in the stamps, relative to the usual period, counts as dropped images: they were lost on the way, or replaced
+// by a newer one in the queue of one image.
 void TrackerDiagnostics::countDropped(double now, double period) {
   if (!(period > 0.0)) return;
-  // Only a period that is known by several images tells a gap.
+  // A gap can be detected only with a period from several images.
   if (usual_period_ > 0.0 && period > 1.5 * usual_period_) {
     const double missing = std::round(period / usual_period_) - 1.0;
     dropped_ += static_cast<std::uint64_t>(missing);

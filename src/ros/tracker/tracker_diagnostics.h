@@ -1,4 +1,4 @@
-// What the tracker says on /diagnostics.
+// The diagnostics of the tracker.
 #pragma once
 
 #include <diagnostic_updater/DiagnosticStatusWrapper.h>
@@ -23,11 +23,11 @@ class TrackerDiagnostics {
       : config_(config), with_robot_motion_(with_robot_motion) {}
 
   void processed(double now, const Processed& processed, bool ignores_distortion);
-  // From the stamp of the image processed last to its result, s of ROS time.
+  // Takes the latency from the stamp of the last image to its result, s of ROS time.
   void answered(double now, double latency);
-  // An image came that could not be used.
+  // Call if an image could not be used.
   void refused(double now, const std::string& error, Refusal cause = Refusal::kData);
-  // Who publishes `image` and `camera_info`: how many, and whose are not taken (empty: nobody's).
+  // Publishers of `image` and `camera_info`: how many, and whose messages are refused (empty: none).
   struct Publishers {
     unsigned images = 0;
     unsigned camera_infos = 0;
@@ -35,7 +35,7 @@ class TrackerDiagnostics {
     std::string camera_info_complaint;
   };
   void setPublishers(const Publishers& publishers) { publishers_ = publishers; }
-  // A view could not be recalled; empty: it could. From any thread.
+  // Call with the reason if a view could not be recalled, or with an empty text. From any thread.
   void recallRefused(const std::string& why);
 
   // Level: OK while idle or tracking, WARN while searching, without images, without intrinsics, or with several
@@ -72,17 +72,17 @@ class TrackerDiagnostics {
   std::uint64_t repeated_ = 0;
   std::uint64_t dropped_ = 0;
   RecentValues recent_repeated_;  // 1 for each picture that repeats
-  RecentValues recent_dropped_;   // images, at each gap
+  RecentValues recent_dropped_;   // number of images lost at each gap
   RecentValues latencies_;        // s
-  RecentValues times_;            // s, for an image
+  RecentValues times_;            // s, processing time of an image
   RecentValues periods_{5.0};     // s, between stamps
   double usual_period_ = 0.0;     // s; 0: not known yet
   Publishers publishers_;
   std::optional<double> last_image_;
   std::string recall_ = "none";
   mutable std::mutex recall_mutex_;
-  std::string recall_refusal_;  // of the newest request, empty when it was fine
-  std::string refusal_;         // of the newest image, empty when it was fine
+  std::string recall_refusal_;  // of the newest request; empty if it was accepted
+  std::string refusal_;         // of the newest image; empty if it was used
   std::string last_refusal_;
   std::string last_reset_;
   tracking::TrackResult result_;

@@ -36,11 +36,11 @@ void describe(Table& table, ImageFormat& format) {
 
 void describe(Table& table, RobotMotionConfig& config) {
   table.flag("enabled", config.enabled, "the motion of the robot is used; not in track_bag");
-  table.text("fixed_frame", config.fixed_frame, "in it the tissue stands still")
+  table.text("fixed_frame", config.fixed_frame, "frame in which the tissue is at rest")
       .accepting("the name of a tf frame, without a leading slash", isFrame);
   table.text("frame_prefix", config.frame_prefix,
              "text in front of fixed_frame, unless that has a slash; auto: the namespace, nothing in the root");
-  table.text("owner", config.owner, "whose tf is believed; empty: who publishes a frame first")
+  table.text("owner", config.owner, "whose tf is accepted; empty: the first publisher of a frame")
       .accepting("the name of a node, e.g. aesop or /aesop, or nothing", isNodeOrNothing);
   table.number("depth", config.depth, {0.005, 1}, "m", "of the tissue in front of the camera");
 }
@@ -54,7 +54,7 @@ bool isRoiOrNothing(const std::string& text) {
   }
 }
 
-// A region told as a group of four numbers, in the words that the table knows.
+// Converts a region given as a group of four numbers to the text form of the table.
 void groupToText(XmlRpc::XmlRpcValue& roi, const std::string& name, std::vector<std::string>& errors) {
   if (roi.getType() != XmlRpc::XmlRpcValue::TypeStruct) return;
   geometry::Rectangle rectangle;
@@ -86,15 +86,15 @@ void describe(Table& table, TrackerParameters& parameters) {
                  isRoiOrNothing)
       .optional("580,180,220,340");
   table.flag("rectified_images", parameters.rectified_images,
-             "the images are rectified: P of camera_info describes them; otherwise K does");
+             "the images are rectified: P of camera_info applies to them, otherwise K");
   table.flag("rectify", parameters.rectify,
              "the images are raw, and the tracker takes the lens out by camera_info; pixels, also of roi, are then "
              "rectified ones. Not with rectified_images");
   table.number("select_timeout", parameters.select_timeout, {0.1, 60}, "s",
                "for which select_roi, store_view and recall_view wait for an image");
   table.group("image", "how pixels are stored", [&] { describe(table, parameters.image); });
-  table.group("input", "which images are believed", [&] { describe(table, parameters.input); });
-  table.group("robot_motion", "of the nodelet: the search starts from where tf says that the camera has moved",
+  table.group("input", "which images are accepted", [&] { describe(table, parameters.input); });
+  table.group("robot_motion", "in the nodelet: the ego-motion prior, by the camera's motion in tf",
               [&] { describe(table, parameters.robot_motion); });
   table.group("views", "of the nodelet: stored and recalled under a name", [&] { describe(table, parameters.views); });
   table.group("tracking", "", [&] { describe(table, parameters.tracking); });

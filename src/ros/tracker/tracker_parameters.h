@@ -21,38 +21,38 @@ namespace laparoscope_servo {
 struct TrackerParameters {
   tracking::TrackerConfig tracking;
   tracking::InputConfig input;
-  ImageFormat image{0, YuvRange::kLimited};  // a bit depth of 0: found out
+  ImageFormat image{0, YuvRange::kLimited};  // a bit depth of 0: estimated
   std::optional<geometry::Rectangle> roi;    // px, selected in the first image
-  bool rectified_images = false;             // P of camera_info describes them
-  bool rectify = false;                      // the lens is taken out of raw ones
+  bool rectified_images = false;             // images are rectified; P of camera_info applies
+  bool rectify = false;                      // the tracker rectifies raw images
   RobotMotionConfig robot_motion;
   tracking::ViewConfig views;
-  double select_timeout = 5.0;  // s, for which a service waits for an image
+  double select_timeout = 5.0;  // s, longest time that a service waits for an image
 
   ImageKind imageKind() const {
     return rectify ? ImageKind::kToRectify : rectified_images ? ImageKind::kRectified : ImageKind::kRaw;
   }
 };
 
-// All parameters of the tracker.
+// Adds the rows of all parameters of the tracker.
 void describe(parameters::Table& table, TrackerParameters& parameters);
 
 // Every error, each naming the parameter, its value and what was expected; empty when there is none.
 std::vector<std::string> validate(const TrackerParameters& parameters);
 
-// Reads `tree`, called `name` in errors; what is absent keeps its default. Every error is appended to `errors`: the
-// result may be used only when there is none. A parameter that does not exist is an error, too.
+// Reads `tree`, named `name` in errors; absent parameters keep their defaults. All errors are appended to `errors`; the
+// result is valid only without errors. Unknown parameters are errors.
 TrackerParameters readTrackerParameters(const XmlRpc::XmlRpcValue& tree, const std::string& name,
                                         std::vector<std::string>& errors);
 
-// "x,y,width,height" in px. Throws std::invalid_argument that says what is wrong; whether the rectangle lies in the
-// image is judged when there is one.
+// "x,y,width,height" in px. Throws std::invalid_argument with the error. Whether the rectangle lies in the image is
+// checked later, with the image.
 geometry::Rectangle parseRoi(const std::string& text);
 
 // "x,y,width,height", as parseRoi reads it.
 std::string roiText(const geometry::Rectangle& roi);
 
-// All errors below a heading, one a line; empty when there are none.
+// All errors below a heading, one per line; empty if there are none.
 std::string errorReport(const std::vector<std::string>& errors);
 
 }  // namespace laparoscope_servo

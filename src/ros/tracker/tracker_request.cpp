@@ -14,7 +14,8 @@ TrackerRequest::Answer TrackerRequest::ask(const Question& question, double time
   const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>(timeout);
   changed_.wait_until(lock, std::chrono::time_point_cast<std::chrono::steady_clock::duration>(until),
                       [this] { return taken_ || closed_; });
-  // Once taken, the answer is a matter of milliseconds: a time-out now would deny what is being done.
+  // Once it is taken, the answer comes within milliseconds; a timeout now would report a failure of a request that is
+  // being executed.
   if (taken_) changed_.wait(lock, [this] { return answer_.has_value() || closed_; });
   waiting_.reset();
   if (answer_) return *answer_;

@@ -1,4 +1,4 @@
-// Hands a request from the thread of the services to the thread of the images, and the answer back.
+// Passes a request from the thread of the services to that of the images, and the answer back.
 #pragma once
 
 #include <condition_variable>
@@ -15,7 +15,7 @@ namespace laparoscope_servo {
 
 class TrackerRequest {
  public:
-  struct WantSnapshot {};  // of the next image
+  struct WantSnapshot {};  // requests a snapshot of the next image
   // A ROI to select in the next image, a snapshot, or a way to follow from the next image on.
   using Question = std::variant<geometry::Rectangle, WantSnapshot, RecallRoute>;
 
@@ -25,15 +25,15 @@ class TrackerRequest {
     std::shared_ptr<const Snapshot> snapshot = nullptr;  // to WantSnapshot
   };
 
-  // Service: waits until the image thread has answered, at most `timeout` s (steady clock) until it takes the request;
-  // without an answer `timeout_message` says so. One at a time: others wait for their turn.
+  // For services: waits until the image thread has answered. If that does not take the request within `timeout` s
+  // (steady clock), the answer is `timeout_message`. One request at a time; others wait.
   Answer ask(const Question& question, double timeout, const std::string& timeout_message);
 
-  // Images: the request, if one waits; whoever takes it has to answer.
+  // For images: takes the waiting request, if there is one; it must be answered.
   std::optional<Question> take();
   void answer(const Answer& answer);
 
-  // Ends all waiting, now and later, e.g. because the node shuts down.
+  // Ends all waiting, now and later, e.g. when the node shuts down.
   void close();
 
  private:

@@ -57,7 +57,7 @@ Processed TrackerSession::process(const cv::Mat& decoded, const std_msgs::Header
 }
 
 void TrackerSession::complete(Processed& processed, const std::optional<geometry::Rectangle>& request) {
-  passGate(processed, processed.period);
+  passGate(processed);
   const ros::Time stamp = processed.header.stamp;
   const bool had_roi = tracker_.hasRoi();
   bool new_reference = false;
@@ -89,12 +89,12 @@ void TrackerSession::complete(Processed& processed, const std::optional<geometry
   processed.lens = lens_;
 }
 
-// Pixels of the image that was believed last to those of this one, for a plane parallel to the image.
+// Homography of the ego-motion from the last image in state TRACKING to this one, for a plane parallel to the image.
 std::optional<Eigen::Matrix3d> TrackerSession::motionBefore(Processed& processed) {
   const ros::Time& stamp = processed.header.stamp;
   if (!camera_motion_ || !believed_stamp_ || !tracker_.hasRoi() || !(stamp > *believed_stamp_)) return std::nullopt;
   processed.motion_wanted = true;
-  // That of the image before: when the camera changes, so does all that was tracked.
+  // The camera of the last image; if the camera changes, tracking ends.
   const std::optional<geometry::PinholeCamera>& camera = intrinsics_.camera();
   if (!camera) {
     processed.motion_error = "no intrinsics: " + intrinsics_.error();
@@ -102,7 +102,7 @@ std::optional<Eigen::Matrix3d> TrackerSession::motionBefore(Processed& processed
   }
   auto motion = camera_motion_(processed.header.frame_id, *believed_stamp_, stamp, processed.motion_error);
   if (!motion) return std::nullopt;
-  if (lens_) {  // the rectified camera is turned against the one that tf knows
+  if (lens_) {  // the rectified camera is rotated relative to the camera frame in tf
     const Eigen::Isometry3d turn(lens_->parameters().rotation);
     motion = turn * *motion * turn.inverse();
   }
@@ -130,8 +130,8 @@ void TrackerSession::updateLens(const cv::Size& size) {
   lens_ = lens;
 }
 
-// A view of a recall becomes the reference. True when the camera of this image is taken for that of the reference: for
-// the first view only, so that intrinsics which change on the way take H away.
+// Makes a view of a recall the reference. Returns true if this image's camera counts as that of the reference, which is
+// so for the first view only: if the intrinsics change on the way, H becomes invalid.
 bool TrackerSession::takeDueView(double time) {
   const RecallStep* step = recall_.due();
   if (step == nullptr || !lens_error_.empty()) return false;

@@ -1,5 +1,5 @@
-// The tracker as ROS sees it: images and camera_info in, results that messages are made of out. The nodelet and the
-// offline tool both use it, so that they give the same numbers. Not thread-safe.
+// The tracker for ROS: takes images and camera_info, returns the results for the messages. The nodelet and the offline
+// tool both use it, so that their results are equal. Not thread-safe.
 #pragma once
 
 #include <ros/time.h>
@@ -27,87 +27,87 @@
 
 namespace laparoscope_servo {
 
-// Where the camera was, for the tracker's prediction: the motion of `frame` from the image at `from` to that at `to`,
-// or why not.
+// The camera's motion for the tracker's prediction: that of `frame` from the image at `from` to that at `to`, or why it
+// is not known.
 using CameraMotion = std::function<std::optional<Eigen::Isometry3d>(const std::string& frame, const ros::Time& from,
                                                                     const ros::Time& to, std::string& why)>;
 
-// What is known of one image.
+// The result for one image.
 struct Processed {
-  std_msgs::Header header;  // the image's
-  cv::Mat image;            // as the tracker took it, 8UC1 or 8UC3; may share the data of the message
+  std_msgs::Header header;  // header of the image
+  cv::Mat image;            // the image as tracked, 8UC1 or 8UC3; may share the data of the message
   tracking::TrackResult result;
   ros::Time reference_stamp;
-  std::optional<geometry::PinholeCamera> camera;  // empty when H cannot be given
-  std::string camera_error;                       // why it cannot
-  std::shared_ptr<const image::Lens> lens;        // through which the image is seen; null: none
-  bool motion_wanted = false;                     // the camera's motion was asked for
-  std::string motion_error;                       // why it was not given
-  std::string selection_error;                    // a ROI should have been selected in this image and was not: why
-  std::string recall = "none";                    // of a stored view: see ViewRecall::text
-  image::Repeats repeats;                         // of the picture
-  double period = 0.0;                            // s since the image before
+  std::optional<geometry::PinholeCamera> camera;  // intrinsics; empty if H cannot be computed
+  std::string camera_error;                       // why there are no intrinsics
+  std::shared_ptr<const image::Lens> lens;        // lens of the image; null: none
+  bool motion_wanted = false;                     // the camera's motion was requested
+  std::string motion_error;                       // why it was not available
+  std::string selection_error;                    // why a requested ROI was not selected in this image; else empty
+  std::string recall = "none";                    // recall of a stored view, see ViewRecall::text
+  image::Repeats repeats;                         // repeats of the picture
+  double period = 0.0;                            // s since the last image
   double processing_time = 0.0;                   // s, from the decoded image to the result
 };
 
 class TrackerSession {
  public:
-  // `parameters` without errors; throws std::invalid_argument otherwise. The ROI of the parameters is selected in the
-  // first image where that is possible, until another one is selected or reset() is called. When time begins again (a
-  // looped bag), the region is looked for as it was when it was selected.
+  // Throws std::invalid_argument if `parameters` has errors. The ROI of the parameters is selected in the first image
+  // in which that is possible, unless another one was selected or reset() was called before. If time begins again (a
+  // looped bag), the region is searched with its original reference.
   explicit TrackerSession(const TrackerParameters& parameters);
 
-  // Holds for the images that follow. While the tracker rectifies, a lens that differs from the one before ends
-  // tracking; camera_info that cannot be used leaves the lens as it is, and takes H away.
+  // Sets camera_info for the following images. While the tracker rectifies, a different lens ends tracking; unusable
+  // camera_info does not change the lens, but makes H invalid.
   void setCameraInfo(const sensor_msgs::CameraInfo& info) {
     intrinsics_.set(info);
     lens_source_.set(info);
   }
 
-  // Asked while a ROI is tracked or searched for, at most once an image.
+  // Called at most once per image, while a ROI is tracked or searched.
   void setCameraMotion(const CameraMotion& motion) { camera_motion_ = motion; }
 
-  // Processes the next image; `request` is a ROI to select in it. Throws ImageError or std::invalid_argument when the
-  // image cannot be used, or is not the next one (see ImageGate): the session then goes on as if it had not come. The
-  // message has to outlive the result's image. A picture that repeats (see FrozenFeed) is never TRACKING.
+  // Processes the next image; `request` is a ROI to select in it. Throws ImageError or std::invalid_argument if the
+  // image cannot be used, or does not continue the sequence (see ImageGate); the session is then unchanged. The message
+  // must outlive the result's image. After tracking, checks of the pictures may lower TRACKING to SEARCHING: if the
+  // feed is frozen (see FrozenFeed), or the region was found again turned too far.
   Processed process(const sensor_msgs::Image& message,
                     const std::optional<geometry::Rectangle>& request = std::nullopt);
-  // The same for an image that OpenCV decoded.
+  // Processes an image decoded by OpenCV.
   Processed process(const cv::Mat& decoded, const std_msgs::Header& header,
                     const std::optional<geometry::Rectangle>& request = std::nullopt);
 
-  // What was processed last, with the tracked ROI where it is now: the picture as the surgeon sees it.
+  // The last image with the present place of the tracked ROI.
   Snapshot snapshot(const Processed& processed) const;
-  // From the next image on: each view of the way is the reference until it has been reached; the last one stays.
-  // Returns why not: something else was selected, or the session was reset, after the image that the way was planned
-  // from.
+  // Starts a recall with the next image: each view of the way is the reference until it is reached; the last one stays.
+  // Returns why it is refused: a ROI was selected, or the session was reset, after the image from which the way was
+  // planned.
   std::string recall(const RecallRoute& route);
 
-  // From the next image on, the parameters that may change while the tracker runs; the others stay. What is tracked
-  // stays, too.
+  // Takes the parameters that may change while the tracker runs, from the next image on. Tracking goes on.
   void retune(const TrackerParameters& parameters);
 
-  // ROS time has jumped back: a loop is believed with its first image.
+  // Call if ROS time has jumped back: a loop is then accepted with its first image.
   void clockJumpedBack() { gate_.clockJumpedBack(); }
 
   // Forgets the ROI, also that of the parameters, and ends a recall.
   void reset();
 
-  // Of the image processed last, with its size: see tracking::RegionTracker. All 0 while no ROI is selected.
+  // Mask of the last image, of its size: see tracking::RegionTracker. All 0 while no ROI is selected.
   cv::Mat occlusionMask() const;
-  // The camera has a lens distortion that nobody has taken out of the images.
+  // Whether the camera has lens distortion that is not corrected in the images.
   bool ignoresDistortion() const { return intrinsics_.ignoresDistortion(); }
   const TrackerParameters& parameters() const { return parameters_; }
 
  private:
-  // The image that the region was selected in, for when it has to be found again.
+  // The image in which the region was selected, for a new search.
   struct Reference {
     cv::Mat image;
     geometry::Rectangle roi;
     ros::Time stamp;
   };
 
-  void passGate(const Processed& processed, double& period);
+  void passGate(Processed& processed);
   void lookForReference(const std::string& why);
   geometry::Quadrilateral onSensor(geometry::Quadrilateral corners) const;
   void watchPicture(Processed& processed);
@@ -123,32 +123,32 @@ class TrackerSession {
   TrackerParameters parameters_;
   tracking::RegionTracker tracker_;
   ViewRecall recall_;
-  std::uint64_t epoch_ = 0;  // selections and resets until now
+  std::uint64_t epoch_ = 0;  // number of selections and resets
   Intrinsics intrinsics_;
   LensSource lens_source_;
-  std::shared_ptr<const image::Lens> lens_;  // in force
-  std::string lens_error_;                   // why the newest camera_info gives none, and nothing can be selected
-  bool start_roi_pending_ = false;           // the parameters' ROI waits for its image
-  bool start_roi_refused_ = false;           // it was refused once
-  std::optional<double> trial_ends_;         // s, the tracker's time: until then a new region is on trial
-  std::string trial_failed_;                 // what is said of a region that did not pass; empty otherwise
+  std::shared_ptr<const image::Lens> lens_;  // the present lens
+  std::string lens_error_;                   // why the newest camera_info has no lens, so that no ROI can be selected
+  bool start_roi_pending_ = false;           // the parameters' ROI is not selected yet
+  bool start_roi_refused_ = false;           // it was refused in an image before
+  std::optional<double> trial_ends_;         // s, tracker time, end of a new region's trial
+  std::string trial_failed_;                 // added to the reason while a region that failed its trial is not TRACKING
   BitDepth depth_;
   ImageGate gate_;
-  cv::Rect box_;  // px, of the image as it comes: about the region where it was tracked last
+  cv::Rect box_;  // px, in the raw image: box around the region where it was last tracked
   tracking::CornerPath path_;
   image::RepeatWatch repeats_;
   tracking::FrozenFeed feed_;
-  double time_offset_ = 0.0;  // s, from stamps to the tracker's time, which never goes back
+  double time_offset_ = 0.0;  // s, offset from stamps to the tracker's time, which never goes back
   double time_ = 0.0;         // s, the tracker's
   std::optional<Reference> reference_;
-  tracking::TrackResult before_;  // the tracker's word of the image before
+  tracking::TrackResult before_;  // the tracker's result for the last image
   double robot_step_ = 0.0;       // px, see FrozenFeed
   cv::Size image_size_;
   ros::Time reference_stamp_;
   CameraMotion camera_motion_;
-  std::optional<ros::Time> believed_stamp_;  // of the last new picture that the state was TRACKING in
-  double believed_time_ = 0.0;               // s, the tracker's, of the last image that the state was TRACKING in
-  double believed_angle_ = 0.0;              // rad, of the region in it
+  std::optional<ros::Time> believed_stamp_;  // stamp of the last new picture in state TRACKING
+  double believed_time_ = 0.0;               // s, tracker's time of the last image in state TRACKING
+  double believed_angle_ = 0.0;              // rad, angle of the region in that image
 };
 
 }  // namespace laparoscope_servo

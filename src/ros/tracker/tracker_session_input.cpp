@@ -1,5 +1,4 @@
-// What the session does about images before and after the tracker has looked at them: times and sizes that do not go
-// on, and pictures that repeat.
+// The session's checks of images before and after tracking: jumps of time, changes of size, and pictures that repeat.
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -13,7 +12,7 @@ namespace laparoscope_servo {
 namespace {
 
 cv::Rect boxOf(const geometry::Quadrilateral& corners) {
-  constexpr double kFar = 1e6;  // px: what lies further out fits no int, and is in no image
+  constexpr double kFar = 1e6;  // px: points further out are in no image, and may not fit an int
   Eigen::Vector2d low = corners[0];
   Eigen::Vector2d high = corners[0];
   for (const Eigen::Vector2d& corner : corners) {
@@ -25,7 +24,7 @@ cv::Rect boxOf(const geometry::Quadrilateral& corners) {
           cv::Point(static_cast<int>(high.x()), static_cast<int>(high.y()))};
 }
 
-// Of the region's upper edge.
+// Angle of the region's upper edge.
 double angleOf(const tracking::TrackResult& result) {
   const geometry::Quadrilateral corners = geometry::apply(result.g, result.roi.corners());
   const Eigen::Vector2d edge = corners[1] - corners[0];
@@ -34,12 +33,12 @@ double angleOf(const tracking::TrackResult& result) {
 
 }  // namespace
 
-// The tracker's time goes on whatever the stamps do: that a region is looked for again is decided here.
-void TrackerSession::passGate(const Processed& processed, double& period) {
+// The tracker's time always goes on; after a jump of the stamps, this function starts a new search for the region.
+void TrackerSession::passGate(Processed& processed) {
   const ros::Time& stamp = processed.header.stamp;
   const cv::Size size = processed.image.size();
   const ImageGate::Passed passed = gate_.judge(stamp, size, processed.image.channels());
-  period = passed.period;
+  processed.period = passed.period;
   if (passed.step_back > 0.0) {
     time_offset_ = time_ + passed.period - stamp.toSec();
     believed_stamp_.reset();
@@ -52,7 +51,7 @@ void TrackerSession::passGate(const Processed& processed, double& period) {
   if (size_returned) lookForReference("the images have their old size again");
 }
 
-// A view of a recall that is on its way is the reference then, and stays it.
+// During a recall its present view is the reference, and stays it.
 void TrackerSession::lookForReference(const std::string& why) {
   if (!reference_ || reference_->stamp != reference_stamp_) return;
   try {
@@ -64,9 +63,9 @@ void TrackerSession::lookForReference(const std::string& why) {
   }
 }
 
-// A region that is found again upside down is there, but no scope turns as fast: the picture was turned, or it is
-// another one. That is held back for longer than the controller waits by itself (resume_time, 2 s), so that nothing
-// moves by it before somebody has looked.
+// A region that is found again turned by more than 45 degrees may be correct, but no scope turns that fast: the picture
+// was turned, or it comes from another camera. The state then stays SEARCHING for 3 s, longer than resume_time (2 s),
+// so that motion does not resume by itself.
 std::string TrackerSession::turnedTooFast(const tracking::TrackResult& result) const {
   constexpr double kMostTurn = M_PI / 4.0;  // rad
   constexpr double kHeldBack = 3.0;         // s
@@ -87,8 +86,8 @@ geometry::Quadrilateral TrackerSession::onSensor(geometry::Quadrilateral corners
   return corners;
 }
 
-// The first second is a region's trial. One that is not tracked when it ends, and not because something covers it, is
-// looked for all the same: of 40 such regions on eight films 7 came back. But what would have done is said.
+// The first second is a region's trial. If the region is not TRACKING at its end, and not because it is covered, the
+// reason proposes another one. The search goes on all the same: of 40 such regions on eight films 7 came back.
 void TrackerSession::judgeSelection(const tracking::TrackResult& found, tracking::TrackResult& result) {
   constexpr double kTrial = 1.0;  // s
   if (found.selected_now) trial_ends_ = time_ + kTrial;
@@ -105,8 +104,7 @@ void TrackerSession::judgeSelection(const tracking::TrackResult& found, tracking
     result.reason += trial_failed_;
 }
 
-// What the tracker found in a picture that shows nothing new is not believed, though it is no reason to lose the
-// region.
+// An estimate in a frozen feed is not reported as TRACKING, but the tracker does not lose the region for it.
 void TrackerSession::watchPicture(Processed& processed) {
   using tracking::State;
   tracking::TrackResult& result = processed.result;

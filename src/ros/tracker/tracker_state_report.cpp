@@ -6,9 +6,10 @@ namespace laparoscope_servo {
 
 namespace {
 
-constexpr double kSilence = 1.0;      // s without a usable image: no camera is so slow
-constexpr double kReasonPause = 0.2;  // s between two messages of which only the reason differs: faster nobody reads
-constexpr double kRepeat = 1.0;       // s
+constexpr double kSilence = 1.0;  // s without a usable image; every camera is faster
+// s between two messages that differ in the reason only, since faster changes are not readable
+constexpr double kReasonPause = 0.2;
+constexpr double kRepeat = 1.0;  // s
 
 }  // namespace
 

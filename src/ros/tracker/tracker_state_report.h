@@ -1,5 +1,5 @@
-// What the tracker publishes on ~state, and when: at once when state, region, size or view change; a reason whose
-// numbers change with each image a few times a second; and once a second in any case, so that silence means something.
+// Messages on ~state: at once if state, region, size or view change; a few times a second if only the reason changes;
+// and once a second in any case, so that silence is a sign of failure.
 #pragma once
 
 #include <laparoscope_servo/TrackerState.h>
@@ -12,22 +12,22 @@
 
 namespace laparoscope_servo {
 
-// `now` is s of any steady clock. Each call returns the message to publish, if there is one.
+// `now`: s of any steady clock. Each call returns the message to publish, if there is one.
 class TrackerStateReport {
  public:
   std::optional<TrackerState> processed(double now, const Processed& processed);
-  // An image came that could not be used. A single one among others changes nothing.
+  // Call if an image could not be used. A single one among others has no effect.
   void refused(const std::string& error) { refusal_ = error; }
-  // To be called several times a second, also when no image comes.
+  // Call several times a second, also without images.
   std::optional<TrackerState> tick(double now);
 
  private:
   std::optional<TrackerState> say(double now, bool at_once);
 
   TrackerState message_;
-  std::string tracker_state_;  // of the newest image, also while none comes
+  std::string tracker_state_;  // state at the newest image, also while none comes
   std::string tracker_reason_;
-  std::string refusal_;  // of the newest image; empty: it was used
+  std::string refusal_;  // why the newest image was refused; empty: it was used
   double started_ = -1.0;
   double last_image_ = -1.0;
   double said_at_ = -1.0;

@@ -17,7 +17,7 @@ bool same(const std::shared_ptr<const image::Lens>& a, const std::shared_ptr<con
 ViewLibrary::ViewLibrary(const TrackerParameters& parameters)
     : parameters_(parameters), store_(parameters.tracking, parameters.views.capacity) {}
 
-// H between images of two cameras means nothing, and a ROI is in pixels of its lens.
+// H between images of two cameras has no meaning, and a ROI is in pixels of its lens.
 void ViewLibrary::followCamera(const Snapshot& snapshot) {
   const bool other_camera = camera_ && snapshot.camera && *camera_ != *snapshot.camera;
   if (other_camera || !same(lens_, snapshot.lens)) {
@@ -35,7 +35,8 @@ std::string ViewLibrary::store(const std::string& name, const Snapshot& snapshot
   if (!snapshot.roi) throw std::invalid_argument(snapshot.roi_error);
   store_.store(name, snapshot.image, *snapshot.roi);
   stamps_[name] = snapshot.stamp;
-  // It may see the region of another whose image does not show its own: it then leads there, and not back.
+  // Its image may show another view's region while that view's image does not show its own: there is then a way there,
+  // but not back.
   std::string from;
   std::string to;
   const auto list = [](std::string& names, const std::string& other) {

@@ -16,16 +16,16 @@
 
 namespace laparoscope_servo {
 
-constexpr int kThumbnailSide = 160;  // px, the most of either side
+constexpr int kThumbnailSide = 160;  // px, largest side
 
 class ViewLibrary {
  public:
   explicit ViewLibrary(const TrackerParameters& parameters);
 
-  // Stores the snapshot's image and region. Returns what was stored, and how it is linked with the others. Throws
-  // std::invalid_argument when it cannot be stored.
+  // Stores the snapshot's image and region. Returns a text with what was stored, and its links to other views. Throws
+  // std::invalid_argument if it cannot be stored.
   std::string store(const std::string& name, const Snapshot& snapshot);
-  // The way from the snapshot to a view. Throws std::invalid_argument when there is none, or no such view.
+  // The way from the snapshot to a view. Throws std::invalid_argument if there is none, or no such view.
   RecallRoute route(const std::string& name, const Snapshot& snapshot);
 
   // In alphabetical order.
@@ -42,7 +42,7 @@ class ViewLibrary {
   std::optional<geometry::PinholeCamera> camera_;
   std::shared_ptr<const image::Lens> lens_;
   Preview thumbnail_{kThumbnailSide};
-  std::string forgotten_;  // why views that were stored are no more
+  std::string forgotten_;  // why stored views were deleted
 };
 
 // "'a', 'b'": the names of a way.

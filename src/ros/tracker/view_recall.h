@@ -1,4 +1,4 @@
-// The way to a stored view, one reference after the other, and what is said of it.
+// The recall of a stored view, one reference after the other, and its text.
 #pragma once
 
 #include <ros/time.h>
@@ -18,47 +18,49 @@
 
 namespace laparoscope_servo {
 
-// One image, with all that a view is made of.
+// One image, with all data of a view.
 struct Snapshot {
   cv::Mat image;  // a copy
   ros::Time stamp;
-  std::optional<geometry::Rectangle> roi;         // px, the tracked region's place in it; empty: it cannot be stored
+  // px, the tracked region's place; empty: the snapshot cannot be stored
+  std::optional<geometry::Rectangle> roi;
   std::string roi_error;                          // why
-  std::optional<geometry::PinholeCamera> camera;  // as far as it is known
+  std::optional<geometry::PinholeCamera> camera;  // if known
   std::shared_ptr<const image::Lens> lens;        // null: none
-  std::string lens_error;                         // why nothing can be selected, as far as the lens is the reason
+  std::string lens_error;                         // why no ROI can be selected because of the lens; else empty
   std::uint64_t epoch = 0;                        // see TrackerSession::recall
 };
 
 struct RecallStep {
-  std::string name;  // of the stored view; empty: it is the region that was drawn in a frozen picture
+  std::string name;  // name of the stored view; empty: the region drawn in a frozen picture
   tracking::View view;
   ros::Time stamp;
 };
 
 struct RecallRoute {
-  std::vector<RecallStep> steps;  // the last one is the view that is asked for
-  std::uint64_t epoch = 0;        // of the image that it was planned from
+  std::vector<RecallStep> steps;  // the last one is the requested view
+  std::uint64_t epoch = 0;        // epoch of the image from which it was planned
 };
 
 class ViewRecall {
  public:
   explicit ViewRecall(const tracking::ViewConfig& config) : config_(config) {}
 
-  void begin(std::vector<RecallStep> steps);  // at least one; replaces a recall that is under way
-  // Something else is the reference now. Says nothing where there was no recall.
+  void begin(std::vector<RecallStep> steps);  // `steps`: at least one; replaces a present recall
+  // Call if the reference has changed otherwise. Has no effect without a recall.
   void end(const std::string& why);
 
-  // A view of the recall is the reference, or about to become it.
+  // Whether a view of the recall is the reference, or will be with the next image.
   bool active() const { return !steps_.empty(); }
-  // The view to take for the reference before the next image; null when it is to stay. taken() says that this was done.
+  // The view to make the reference before the next image; null for no change. Call taken() when this is done.
   const RecallStep* due() const { return due_ ? &steps_[at_] : nullptr; }
   bool first() const { return at_ == 0; }
   void taken() { due_ = false; }
-  // After every image: goes on to the next view when this one has been reached.
+  // Call after every image: proceeds to the next view when this one is reached.
   void see(const tracking::TrackResult& result);
 
-  // Which view it goes to, by which one, whether it is there, or why it was given up; "none" before the first.
+  // Text with the requested view, the present view, whether it is reached, or why the recall was given up; "none"
+  // before the first.
   const std::string& text() const { return text_; }
 
  private:

@@ -8,7 +8,7 @@
 namespace laparoscope_servo::servo {
 
 void describe(parameters::Table& table, InsertionPointConfig& c) {
-  table.number("wobble", c.wobble, {0, 0.05}, "m", "what breathing moves the point by, standard deviation");
+  table.number("wobble", c.wobble, {0, 0.05}, "m", "standard deviation of the point's motion with breathing");
   table.number("warning_residual", c.warning_residual, {1e-4, 0.1}, "m",
                "distance of the shafts from the point that is a warning");
   table
@@ -20,7 +20,7 @@ void describe(parameters::Table& table, InsertionPointConfig& c) {
 std::vector<std::string> validate(const InsertionPointConfig& config) {
   validation::RangeChecker check;
   for (const std::string& error : parameters::errorsOf(config)) check.add(error);
-  // Not zero: a pose without any noise would weigh infinitely.
+  // Not zero: a pose without noise would have an infinite weight.
   check.range("position_noise", config.position_noise, 1e-6, 0.05, "m");
   check.range("direction_noise", config.direction_noise, 0.0, 0.1, "rad");
   check.range("drift", config.drift, 0.0, 0.01, "m/sqrt(s)");

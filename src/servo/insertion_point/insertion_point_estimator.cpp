@@ -62,7 +62,7 @@ bool InsertionPointEstimator::update(double time, const Shaft& shaft) {
   sample.shaft = {shaft.point, shaft.direction.normalized()};
   insert(sample);
   const bool first = !estimate_.valid;
-  // The first solution of its own starts from all weights equal and takes some rounds to find the outliers.
+  // The first solution starts from equal weights and needs more rounds to reject the outliers.
   for (int k = first ? 6 : 2; k > 0; --k) solve(measureSamples());
   updateResidual(sample);
   return true;
@@ -88,7 +88,7 @@ void InsertionPointEstimator::insert(const Sample& sample) {
   }
 }
 
-// Distances and their expected variances; returns how much larger the distances are than expected, at least 1.
+// Computes distances and their expected variances; returns the ratio of actual to expected distances, at least 1.
 double InsertionPointEstimator::measureSamples() {
   const bool known = estimate_.valid || estimate_.smallest_eigenvalue > 0.0;
   scratch_.clear();
@@ -125,7 +125,7 @@ void InsertionPointEstimator::solve(double scale) {
     ages += weight * (time_ - sample.time);
   }
   if (!(weights > 0.0)) return;
-  // Never more than half of what is known along the shaft: the noise may be less than configured.
+  // At most half of the information along the shaft: the noise may be less than configured.
   const double along = Eigen3d(information, Eigen::EigenvaluesOnly).eigenvalues()[0];
   const double share = std::min(1.0, 0.5 * along / std::max(bias.trace(), 1e-300));
   information -= share * bias;
@@ -137,14 +137,14 @@ void InsertionPointEstimator::solve(double scale) {
   estimate_.observable = enough && estimate_.smallest_eigenvalue >= config_.min_eigenvalue;
   estimate_.valid = prior_.has_value() || estimate_.observable;
   if (prior_) {
-    // Directions that hardly differ beyond their noise are no reason to leave the prior along the shaft.
+    // Directions that differ little more than by their noise must not move the estimate from the prior along the shaft.
     const Eigen::Vector3d axis = axes.eigenvectors().col(0);
     const double excess = std::max(0.0, 1.0 - estimate_.smallest_eigenvalue / config_.min_eigenvalue);
     information -= excess * axes.eigenvalues()[0] * axis * axis.transpose();
     vector -= excess * axis * axis.dot(vector);
     information.diagonal().array() += 1.0 / (prior_->stddev * prior_->stddev);
   }
-  // Without a prior and without motion there is no point to be had, only a line.
+  // Without a prior and without motion only a line is determined, no point.
   if (!prior_ && !(estimate_.smallest_eigenvalue > 1e-9)) return;
   const Eigen::Matrix3d inverse = information.inverse();
   estimate_.point = origin + inverse * vector;

@@ -26,12 +26,12 @@ InsertionPointConfig estimatorConfig(const InsertionPointFitConfig& fit) {
   config.direction_noise = fit.direction_noise;
   config.wobble = fit.wobble;
   config.drift = 0.0;
-  // What is kept differs in direction already.
+  // The poses kept differ in direction already.
   config.same_direction = 0.0;
   config.samples_per_direction = 1000;
   config.max_samples = std::max(10, fit.max_poses);
   config.min_samples = 5;
-  // Earlier, the point would be anywhere along the shaft.
+  // With a smaller eigenvalue the place along the shaft would be undetermined.
   config.min_eigenvalue = 0.25 * std::pow(std::sin(fit.min_cone), 2);
   return config;
 }
@@ -48,18 +48,18 @@ std::string problem(const char* what, double value, const char* expected, double
 
 void describe(parameters::Table& table, InsertionPointFitConfig& c) {
   table.number("spacing", c.spacing, {0.001, 0.2}, "rad",
-               "a pose is kept when its shaft's direction is as far from all others");
+               "a pose is kept if its shaft's direction differs by at least this from all others");
   table.number("min_poses", c.min_poses, {5, 500}, "poses", "fewer are refused; at most half of max_poses");
   table.number("max_poses", c.max_poses, {10, 1000}, "poses", "when there are more, a wider spacing thins them out");
   table.number("min_cone", c.min_cone, {0.01, 0.5}, "rad",
-               "as far has the shaft to turn, root mean square from its mean");
+               "least root mean square of the shaft's directions from their mean");
   table.number("max_residual", c.max_residual, {1e-4, 0.1}, "m",
                "root mean square distance of the shafts from the point");
   table.number("max_stddev", c.max_stddev, {1e-4, 0.1}, "m", "standard deviation of the point along its worst axis");
-  table.number("position_noise", c.position_noise, {1e-6, 0.05}, "m", "assumed of a pose, standard deviation per axis");
+  table.number("position_noise", c.position_noise, {1e-6, 0.05}, "m", "assumed standard deviation of a pose per axis");
   table.number("direction_noise", c.direction_noise, {0, 0.1}, "rad",
-               "assumed of a shaft's direction, standard deviation per axis");
-  table.number("wobble", c.wobble, {0, 0.05}, "m", "what breathing moves the point by, standard deviation");
+               "assumed standard deviation of a shaft's direction per axis");
+  table.number("wobble", c.wobble, {0, 0.05}, "m", "standard deviation of the point's motion with breathing");
 }
 
 std::vector<std::string> validate(const InsertionPointFitConfig& config) {
@@ -77,7 +77,7 @@ InsertionPointFitter::InsertionPointFitter(const InsertionPointFitConfig& config
 bool InsertionPointFitter::add(const Shaft& shaft) {
   if (!insert(shaft, taken_)) return false;
   ++taken_;
-  // However long somebody stays near one direction, there is room for the others.
+  // Keeps room for other directions, however long the shaft stays near one.
   while (shafts_.size() >= static_cast<std::size_t>(config_.max_poses)) thinOut();
   measure();
   return true;
@@ -94,7 +94,7 @@ bool InsertionPointFitter::insert(const Shaft& shaft, std::size_t number) {
 }
 
 void InsertionPointFitter::thinOut() {
-  spacing_ *= 1.4;  // the root of 2: of directions that fill a cone, half are left
+  spacing_ *= 1.4;  // root of 2: halves the number of directions that fill a cone
   estimator_.reset();
   const std::vector<Shaft> shafts = std::move(shafts_);
   const std::vector<std::size_t> numbers = std::move(kept_);

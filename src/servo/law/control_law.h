@@ -8,11 +8,11 @@
 
 namespace laparoscope_servo::servo {
 
-// What a law asks for, in two parts that add up. They are limited apart, since a long way to turn need not slow down
-// the centring; each keeps its direction.
+// Velocity of a law, as the sum of two parts. They are limited separately, each with its direction kept, so that a
+// large turn does not slow down the centring.
 struct LawVelocity {
   scope::Velocity turning;   // for the ROI's orientation
-  scope::Velocity centring;  // for its place in the image, and its depth
+  scope::Velocity centring;  // for the ROI's place in the image, and its depth
   scope::Velocity sum() const { return scope::Velocity::fromVector(turning.vector() + centring.vector()); }
 };
 
@@ -20,7 +20,7 @@ class ControlLaw {
  public:
   virtual ~ControlLaw() = default;
 
-  // Not finite where the arguments are not, or where the ROI's place does not determine the motion.
+  // Not finite if the arguments are not, or if the ROI's place does not determine the motion.
   virtual LawVelocity velocity(const TaskError& error, const scope::Geometry& scope) const = 0;
 };
 

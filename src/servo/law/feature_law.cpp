@@ -15,7 +15,7 @@ Eigen::Matrix4d featureJacobian(double x, double y, double depth, const scope::G
 }
 
 double shortTurn(double turn) {
-  // Half a turn, and 20 degrees that noise may add to it: a hundred times an image's noise (target/orientation_noise).
+  // rad: half a turn plus 20 degrees of margin for noise, a hundred times an image's noise (target/orientation_noise).
   constexpr double kLongest = 3.5;
   return std::abs(turn) < kLongest ? turn : std::remainder(turn, 2.0 * M_PI);
 }

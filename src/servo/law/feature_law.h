@@ -1,4 +1,4 @@
-// The law of the features (x, y, log depth, alpha) of the ROI, under the constraint of the insertion point.
+// The law on the features (x, y, log depth, alpha) of the ROI, under the constraint of the insertion point.
 //
 // Four features for four degrees of freedom: each decays as exp(-rate t), the ROI's centre on a straight line in the
 // image. Interaction matrix: Chaumette and Hutchinson, Visual servo control I (2006), for a point and a depth; the
@@ -10,11 +10,11 @@
 
 namespace laparoscope_servo::servo {
 
-// The features' velocity per velocity of the scope: d(x, y, log depth, alpha)/dt = J (pan, tilt, spin, insertion).
+// Jacobian of the features by the scope's velocity: d(x, y, log depth, alpha)/dt = J (pan, tilt, spin, insertion).
 // `depth` Z [m] > 0 of the ROI's centre now, `x`, `y` normalised.
 Eigen::Matrix4d featureJacobian(double x, double y, double depth, const scope::Geometry& scope);
 
-// rad, of a turn: the shorter way round, unless both are about as long.
+// The shorter way round for a turn [rad]; the turn itself if both ways are about equally long.
 double shortTurn(double turn);
 
 // Z [m] from the log depth of the features.

@@ -6,7 +6,7 @@ namespace laparoscope_servo::servo {
 
 LawVelocity PaperLaw::velocity(const TaskError& error, const scope::Geometry& scope) const {
   // Eq. (7), plus signs: H maps the reference to the current image, so that e_v and e_w point back to the reference.
-  // The gains of pan and tilt are those of the paper times d2, which eq. (11) divides by again.
+  // Here lambda_v = k_p d2 for pan and k_t d2 for tilt; eq. (11) divides by d2, so that k_p and k_t are rates in 1/s.
   const Eigen::Matrix3d shaft_R_camera = scope.camera_R_shaft.transpose();
   const Eigen::Vector3d v = shaft_R_camera * error.e_v;
   const Eigen::Vector3d w = shaft_R_camera * error.e_w;

@@ -9,25 +9,25 @@ namespace laparoscope_servo::servo {
 
 class Breathing {
  public:
-  // The configuration must be valid. `target`: of its noise.
+  // The configuration must be valid. `target`: for the noise of its measurements.
   Breathing(const BreathingConfig& config, const TargetMotionConfig& target);
 
-  // A place measured at `time` [s]. True when the breath has been found or lost with it: what was made of places before
-  // does not hold.
+  // Takes a place measured at `time` [s]. Returns true if breathing was found or lost with it: estimates from earlier
+  // places are then invalid.
   bool observe(double time, const Features& place);
 
-  // Of the target's place and velocity, the part that breathing makes, at most a second ahead; zero while there is
-  // none. alpha is left alone.
+  // The periodic part of the target's place and velocity, at most a second ahead; zero while no breathing is found.
+  // alpha is always zero.
   TargetPrediction predict(double time) const;
 
-  // Hz; 0 while there is none.
+  // Breathing rate [Hz]; 0 while none is found.
   double rate() const { return filter_.frequency(); }
   void reset() { filter_.reset(); }
 
  private:
   BreathingConfig config_;
   double noise_;        // of x and y
-  double depth_scale_;  // makes the noise of log depth that of x and y
+  double depth_scale_;  // scales log depth so that its noise is that of x and y
   HarmonicFilter filter_;
 };
 

@@ -12,7 +12,7 @@ void CommandHistory::add(double time, const scope::Velocity& velocity) {
   }
   if (!commands_.empty() && time < commands_.back().time) clear();
   commands_.push_back({time, velocity.isFinite() ? velocity.vector() : Eigen::Vector4d(Eigen::Vector4d::Zero())});
-  // The command that was in force when the span began stays.
+  // Keeps the command that was in force at the start of the span.
   while (commands_.size() > 1 && commands_[1].time <= time - span_) commands_.pop_front();
 }
 

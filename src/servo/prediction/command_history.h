@@ -1,5 +1,4 @@
-// What the robot has been told, and what it therefore has done and still will do, when it executes each command after a
-// delay.
+// History of the commands to the robot, and the motion that they cause when each is executed after a delay.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,20 +10,20 @@ namespace laparoscope_servo::servo {
 
 class CommandHistory {
  public:
-  // Keeps the commands of the last `span` [s] > 0. The robot takes each for `lifetime` [s] > 0, then it stops by
+  // Keeps the commands of the last `span` [s] > 0. The robot executes each for `lifetime` [s] > 0, then it stops by
   // itself.
   CommandHistory(double span, double lifetime) : span_(span), lifetime_(lifetime) {}
 
-  // From `time` [s] on, the robot is told to move by `velocity`: that of the shaft, after the robot's dead zone. Times
-  // must not decrease; an earlier one, or one that is not finite, clears the history. A velocity that is not finite
-  // counts as none: it is never sent.
+  // Adds the command for `time` [s] and later: the velocity of the shaft, after the robot's dead zone. Times must not
+  // decrease; an earlier or non-finite one clears the history. A non-finite velocity counts as zero, since it is never
+  // sent.
   void add(double time, const scope::Velocity& velocity);
 
-  // (pan, tilt, spin [rad], insertion [m]) that the robot executes from `begin` to `end` [s] when it does each thing
-  // `delay` [s] after it is told. Before the first command, or the oldest that is kept, nothing is executed.
+  // (pan, tilt, spin [rad], insertion [m]) that the robot executes from `begin` to `end` [s], each command `delay` [s]
+  // after its time; zero before the oldest command kept.
   Eigen::Vector4d displacement(double begin, double end, double delay) const;
 
-  // What it executes at `time`.
+  // Velocity that the robot executes at `time`.
   Eigen::Vector4d velocity(double time, double delay) const;
 
   void clear() { commands_.clear(); }

@@ -17,7 +17,7 @@ std::vector<std::string> validate(const DelayConfig& config) {
   check.range("max_gap", config.max_gap, 0.05, 10.0, "s");
   check.range("min_correlation", config.min_correlation, 0.1, 1.0);
   check.range("max_stddev", config.max_stddev, 1e-4, 0.2, "s");
-  // Not zero: noise would count as a command.
+  // Not zero: noise would otherwise count as a command.
   check.range("min_excitation/pan", config.min_excitation.pan, 1e-5, 1.0, "rad/s");
   check.range("min_excitation/tilt", config.min_excitation.tilt, 1e-5, 1.0, "rad/s");
   check.range("min_excitation/spin", config.min_excitation.spin, 1e-5, 1.0, "rad/s");

@@ -10,8 +10,8 @@ namespace laparoscope_servo::servo {
 
 namespace {
 
-constexpr double kGrid = 0.005;      // s: the period of the fastest commands that a controller may be asked for, 200 Hz
-constexpr double kCorrelated = 0.1;  // s, within which the errors of reports count for one
+constexpr double kGrid = 0.005;      // s: the period of commands at the largest rate that can be configured, 200 Hz
+constexpr double kCorrelated = 0.1;  // s, correlation time of the errors of reports
 
 }  // namespace
 
@@ -31,7 +31,7 @@ void DelayEstimator::reset(bool also_delay) {
 
 bool DelayEstimator::admit(std::deque<Sample>& samples, double time, const scope::Velocity& velocity) {
   if (!std::isfinite(time) || !velocity.vector().allFinite()) return false;
-  // The two streams may interleave late, but not by more than a gap.
+  // The two streams may be out of step, but not by more than a gap.
   const double newest =
       std::max(commands_.empty() ? time : commands_.back().time, reports_.empty() ? time : reports_.back().time);
   const bool back = !samples.empty() && time < samples.back().time;
@@ -139,7 +139,7 @@ DelayEstimator::Peak DelayEstimator::findPeak() {
   for (int i = 0; i < count; ++i) correlations_.push_back(correlationAt(config_.minimum + config_.step * i));
   const auto best = std::max_element(correlations_.begin(), correlations_.end());
   correlation_ = std::clamp(*best, 0.0, 1.0);
-  // At a bound, the peak may be anywhere beyond.
+  // At a bound the true peak may lie beyond it.
   if (best == correlations_.begin() || best + 1 == correlations_.end()) return {};
   const double curvature = (2.0 * best[0] - best[-1] - best[1]) / (config_.step * config_.step);
   if (!(curvature > 0.0) || !(correlation_ > 0.0)) return {};

@@ -1,13 +1,13 @@
-// How long the robot takes to execute a command, from the commands sent and the velocities it reports.
+// Estimates how long the robot takes to execute a command, from the commands sent and the velocities it reports.
 //
 // The reports of a sliding window are correlated with the commands of a delay earlier, over all delays between two
 // bounds: means taken off, axes weighted by their smallest excitation, the peak refined by a parabola. The curvature at
-// the peak against what does not correlate gives the standard deviation. A command is held until the next one; a known
-// lag of first order is applied to the commands, so that what remains is delay. Without a known lag, the delay contains
-// it.
+// the peak, relative to the uncorrelated part, gives the standard deviation. A command is held until the next one; a
+// known lag of first order is applied to the commands, so that what remains is delay. Without a known lag, the delay
+// contains it.
 //
 // A comparison is used when an axis was excited, the correlation is high, its peak lies between the bounds and is
-// sharp. If not, the estimate stays as it is. It never leaves the bounds and changes no faster than a bound.
+// sharp. If not, the estimate stays as it is. It never leaves the bounds, and its rate of change is limited.
 #pragma once
 
 #include <Eigen/Core>
@@ -23,23 +23,23 @@ class DelayEstimator {
   // Throws std::invalid_argument with all errors when the configuration is not valid.
   explicit DelayEstimator(const DelayConfig& config);
 
-  // A command sent at `time` [s], and a velocity reported for `time` [s], on the same clock. Each returns false,
-  // without any effect, when a number is not finite. Time that goes back, or a gap, forgets what was collected, not the
-  // estimate.
+  // Take a command sent at `time` [s], and a velocity reported for `time` [s], on the same clock. Both return false,
+  // without any effect, if a number is not finite. If time goes back, or after a gap, the window is cleared, but not
+  // the estimate.
   bool command(double time, const scope::Velocity& velocity);
   bool report(double time, const scope::Velocity& velocity);
 
   // s, within the bounds of the configuration.
   double delay() const { return delay_; }
 
-  // The last comparison was used, or is about to be.
+  // Whether the last comparison is good enough to be used.
   bool informative() const { return informative_; }
 
-  // Of the last comparison: 0 to 1, and s. A comparison that could not be made has correlation 0.
+  // Correlation (0 to 1) and standard deviation [s] of the last comparison. The correlation is 0 if there was none.
   double correlation() const { return correlation_; }
   double stddev() const { return stddev_; }
 
-  // Forgets what was collected, and the estimate when `also_delay`.
+  // Clears the window, and with `also_delay` also the estimate.
   void reset(bool also_delay);
 
  private:
@@ -65,7 +65,7 @@ class DelayEstimator {
   double grid_start_ = 0.0;
   std::vector<Eigen::Vector4d> grid_;  // commands as they would be executed without delay
   std::vector<double> correlations_;
-  Eigen::Vector4d weights_ = Eigen::Vector4d::Zero();  // of the axes, 0: left out
+  Eigen::Vector4d weights_ = Eigen::Vector4d::Zero();  // weights of the axes, 0: not used
   double next_comparison_ = 0.0;
   double delay_ = 0.0;
   bool informative_ = false;

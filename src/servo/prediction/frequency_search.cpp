@@ -14,8 +14,8 @@ constexpr int kTrend = 3;
 constexpr int kHarmonics = 3;
 constexpr int kColumns = kTrend + 2 * kHarmonics;
 constexpr double kAboutAsDeep = 1.5;
-// Of the grid, times the length T of the window. A frequency that is off by half a step d fits a sinusoid but for
-// 1 - sinc^2(pi d T) of its power: 2 %, so that no minimum falls between two points of the grid.
+// Step of the grid of frequencies times the length T of the window. At half a step d beside its frequency, the fit of a
+// sinusoid misses 1 - sinc^2(pi d T) of its power: 2 %, so that no minimum falls between two points of the grid.
 constexpr double kStep = 0.15;
 
 using Row = Eigen::Matrix<double, kColumns, 1>;
@@ -32,7 +32,7 @@ class Window {
 
   double length() const { return 2.0 * half_; }
 
-  // Sum of squares that the fit leaves; frequency 0: of the trend alone.
+  // Residual sum of squares of the fit; frequency 0: of the trend alone.
   double left(double frequency) const {
     const int used = frequency > 0.0 ? kColumns : kTrend;
     Normal a = Normal::Zero();
@@ -81,7 +81,7 @@ struct Minimum {
   double left;
 };
 
-// Golden section within [low, high].
+// Golden section search within [low, high].
 Minimum refined(const Window& window, double low, double high) {
   constexpr double kGolden = 0.6180339887498949;
   double a = high - kGolden * (high - low);

@@ -1,8 +1,8 @@
-// The frequency of a periodic motion in a window of samples: least squares over a grid of frequencies.
+// Finds the frequency of a periodic motion in a window of samples by least squares over a grid of frequencies.
 //
-// For each frequency, a parabola in time and three harmonics are fitted to each channel. What is left over has a
-// minimum at the frequency, but about as deep a one at half and a third of it, whose harmonics contain it. Of minima
-// that are about as deep, the one at the highest frequency is taken.
+// For each frequency, a parabola in time and three harmonics are fitted to each channel. The residual has a minimum at
+// the frequency, and similar ones at half and a third of it, whose harmonics contain it. Among minima of about the same
+// depth, the one at the highest frequency is taken.
 #pragma once
 
 #include <vector>
@@ -24,11 +24,11 @@ struct FrequencyBand {
 struct FoundFrequency {
   bool found = false;
   double frequency = 0.0;    // Hz
-  double unexplained = 1.0;  // share of what the parabola leaves that the harmonics leave, too: 0 to 1
+  double unexplained = 1.0;  // 0 to 1, residual with harmonics over that of the parabola alone
 };
 
-// `samples` in order of time; `noise`, the standard deviation of each. The lowest frequency that is tried has
-// `min_periods` in the time of the samples.
+// `samples` in order of time; `noise`: standard deviation of each. The lowest frequency tried has `min_periods` periods
+// in the time of the samples.
 FoundFrequency findFrequency(const std::vector<TimedChannels>& samples, const FrequencyBand& band, double noise,
                              double min_periods);
 

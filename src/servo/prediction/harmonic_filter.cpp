@@ -15,16 +15,16 @@ namespace {
 // its amplitude, sinc(pi 1.5 0.2).
 constexpr double kBin = 0.2;
 constexpr double kSearchPeriod = 1.0;  // s
-constexpr double kMaxAhead = 1.0;      // s: an image of 0.25 s ago and a delay of 0.4 s, and as much again
+constexpr double kMaxAhead = 1.0;      // s: an image age of 0.25 s and a delay of 0.4 s, with a margin of about half
 constexpr double kMaxUnexplained = 0.5;
-constexpr double kShorter = 0.6;   // of the window that did not fit
+constexpr double kShorter = 0.6;   // factor on the length of a window in which the search failed
 constexpr double kShortest = 4.0;  // s
-constexpr double kPeriods = 1.7;   // in the window, to find a frequency
+constexpr double kPeriods = 1.7;   // periods in the window that a search needs
 constexpr double kSeededPeriods = 1.0;
-constexpr double kLongMemory = 4.0;  // s, and a period at least
+constexpr double kLongMemory = 4.0;  // s, or one period if longer
 constexpr double kSmallPart = 0.3;
 constexpr double kShortMemory = 1.0;  // s
-constexpr double kUsual = 0.42;       // s of samples, ten at 25 Hz, before it is known what is usual
+constexpr double kUsual = 0.42;       // s of samples, ten at 25 Hz, before the usual innovation is known
 
 HarmonicFilterConfig checked(const HarmonicFilterConfig& config, int channels) {
   std::vector<std::string> errors = validate(config);
@@ -102,13 +102,13 @@ bool HarmonicFilter::update(double time, const Eigen::VectorXd& z, double stddev
   }
   if (!locked_ && time >= next_search_) {
     next_search_ = time + kSearchPeriod;
-    // A seed that did not lock may be wrong: every other search does without.
+    // A seed that did not lock may be wrong: every other search ignores it.
     if (searched_) seed_counts_ = !seed_counts_;
     searched_ = true;
     running_ = false;
     share_ = 1.0;
   }
-  // One window a sample: a controller waits for it.
+  // One window per sample, since the controller waits for this call.
   if (!locked_ && share_ > 0.0) search();
   return true;
 }
@@ -131,7 +131,7 @@ Channels HarmonicFilter::withoutJumps(double time, const Channels& z, double std
     shift_ += level - predicted;
     level = predicted;
   }
-  // A jump counts for as much as it takes to be one, so that motion which only looks like jumps ends to do so.
+  // A jump raises the usual innovation by at most the threshold, so that fast motion soon stops counting as jumps.
   const double counted = std::min(error, config_.jump * usual);
   const double share = std::min(1.0, dt / 2.0);
   usual_ = std::sqrt((1.0 - share) * usual_ * usual_ + share * counted * counted);
@@ -203,7 +203,7 @@ FoundFrequency HarmonicFilter::findIn(double seconds) {
 void HarmonicFilter::search() {
   const bool whole = share_ == 1.0;
   const double seconds = share_ * (history_.back().time - history_.front().time);
-  // What lies further back may be of another time: a breath held, the patient moved.
+  // Older samples may be invalid: the breath was held, or the patient moved.
   share_ = kShorter * seconds > kShortest ? kShorter * share_ : 0.0;
   const FoundFrequency found = findIn(seconds);
   if (!(found.found && found.unexplained < (whole ? 1.0 : 0.5) * kMaxUnexplained)) return;
@@ -271,19 +271,19 @@ double HarmonicFilter::longMemory() const {
 }
 
 void HarmonicFilter::judge(double stddev) {
-  // What noise alone leaves is no reason to unlock, nor is a small part of what the motion usually costs without a
-  // period: between breaths hardly anything moves, and no prediction is hard to beat.
+  // An error within the noise is no reason to unlock, nor is one that is small against the usual error without a
+  // periodic part: between breaths hardly anything moves, and a prediction without a period is then good.
   const double usual = long_.without() / longMemory() * kShortMemory;
   const double floor = 4.0 * channels_ * stddev * stddev + kSmallPart * usual;
   const bool worse_than_none = short_.with > 2.0 * short_.without() + floor;
   if (locked_) {
     if (long_.ratio() < config_.unlock_ratio && !worse_than_none) return;
     locked_ = running_ = false;
-    // The motion before is another one than that after.
+    // Motion before the jump is not comparable with that after it.
     while (history_.front().time < history_.back().time - kShortMemory) history_.pop_front();
     return;
   }
-  // A random walk looks periodic for less than that now and then.
+  // A random walk can look periodic for a shorter time.
   const double enough = std::max(3.0, 1.0 / kalman_.frequency());
   locked_ = scored_ >= enough && long_.ratio() < config_.lock_ratio && !worse_than_none;
 }

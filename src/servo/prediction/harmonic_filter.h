@@ -1,16 +1,16 @@
-// Periodic motion of the target, as breathing causes it: its frequency, and where it will be.
+// Estimates periodic motion of the target, such as breathing: its frequency, and a prediction.
 //
-// Input: positions of the target as a camera that stands still would see it, in any unit, with slow drifts and jumps
-// that are not periodic. Output: the periodic part alone, mean zero, and its velocity, a little ahead of time.
+// Input: positions of the target as seen by a fixed camera, in any unit, with slow drifts and jumps that are not
+// periodic. Output: prediction of the periodic part alone, with mean zero, and of its velocity.
 //
 // Until it is locked, the frequency is searched by least squares over a window (see frequency_search.h), or taken from
 // a seed, such as the ventilator's rate; the samples of the window are then run through a Kalman filter with a state
-// for the frequency (see harmonic_kalman.h). It locks when the filter, a horizon ahead, was wrong by much less than the
-// better of two predictions without a period: the mean of the last samples, and the line through them. It unlocks when
-// that is no longer so: within about a second when the prediction is worse than none. Unlocked, position and velocity
-// are exactly zero.
+// for the frequency (see harmonic_kalman.h). It locks when the filter's errors at the prediction horizon are much
+// smaller than those of the better of two predictions without a period: the mean of the last samples, and the line
+// through them. It unlocks when this no longer holds, within about a second if the prediction is worse than none.
+// Unlocked, position and velocity are exactly zero.
 //
-// A jump of the target, another one marked or the tissue pulled, is taken off all later samples.
+// A jump of the target (another one selected, or the tissue pulled) is subtracted from all later samples.
 #pragma once
 
 #include <Eigen/Core>
@@ -26,7 +26,7 @@ namespace laparoscope_servo::servo {
 
 struct PeriodicMotion {
   Eigen::VectorXd position;  // unit of the samples
-  Eigen::VectorXd velocity;  // the same per second
+  Eigen::VectorXd velocity;  // unit of the samples per second
 };
 
 class HarmonicFilter {
@@ -35,26 +35,27 @@ class HarmonicFilter {
   // configuration or the number of channels is not valid.
   HarmonicFilter(const HarmonicFilterConfig& config, int channels);
 
-  // The frequency is known [Hz], with a standard deviation; forgets what was found before. Where nothing periodic is
-  // found at it, another is searched. Throws std::invalid_argument
-  // unless it lies within the bounds and the standard deviation is at least 0 and finite.
+  // Sets a known frequency [Hz] with its standard deviation; forgets the one found before. If no periodic motion is
+  // found there, other frequencies are searched. Throws std::invalid_argument unless it lies within the bounds and the
+  // standard deviation is at least 0 and finite.
   void seed(double frequency, double stddev);
 
-  // No frequency is known any more.
+  // Removes the known frequency.
   void unseed();
 
-  // A sample with its standard deviation, > 0, per channel. False, without any effect, for one of another size, or not
-  // finite, or at the time of the last one. Time that goes back, or a gap, forgets all samples, not the seed.
+  // Takes a sample with its standard deviation, > 0, per channel. Returns false, without any effect, for a wrong size,
+  // a non-finite value, or the time of the last one. If time goes back, or after a gap, all samples are forgotten, but
+  // not the seed.
   bool update(double time, const Eigen::VectorXd& z, double stddev);
 
   void reset();
 
   bool locked() const { return locked_; }
 
-  // Hz; 0 when not locked.
+  // Frequency [Hz]; 0 when not locked.
   double frequency() const { return locked_ ? kalman_.frequency() : 0.0; }
 
-  // At a time up to a second after the last sample; zero when not locked, or beyond.
+  // Prediction for a time up to a second after the last sample; zero when not locked, or for later times.
   PeriodicMotion predict(double time) const;
 
  private:
@@ -62,7 +63,7 @@ class HarmonicFilter {
     double time = 0.0;
     double stddev = 0.0;
     bool jumped = false;
-    Channels z;  // without jumps
+    Channels z;  // samples with jumps subtracted
   };
   struct Line {
     Channels value;  // at the last sample
@@ -109,12 +110,12 @@ class HarmonicFilter {
   HarmonicKalman kalman_;
   bool running_ = false;
   bool locked_ = false;
-  double started_ = 0.0;  // s, when the Kalman filter was
-  double scored_ = 0.0;   // s, of predictions that were judged
+  double started_ = 0.0;  // s, when the Kalman filter was started
+  double scored_ = 0.0;   // s, time over which predictions were compared
   Errors long_;
   Errors short_;
   double next_search_ = 0.0;  // s
-  double share_ = 0.0;        // of the samples, in which to search next; 0: no search is under way
+  double share_ = 0.0;        // share of the samples in which to search next; 0: no search is running
   bool searched_ = false;
   bool seed_counts_ = true;
 };

@@ -46,7 +46,7 @@ void HarmonicKalman::predictTo(double time, const Walks& walks) {
       turn << std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle);
       const Eigen::Vector2d turned = turn * x_.segment<2>(i);
       x_.segment<2>(i) = turned;
-      // P := F P F', where F turns this pair and adds to it by the frequency, and leaves the rest.
+      // P := F P F', where F turns this pair, adds the effect of the frequency to it, and leaves the rest unchanged.
       const Eigen::Vector2d by_frequency = kTwoPi * k * dt * Eigen::Vector2d(-turned[1], turned[0]);
       rows_ = turn * p_.middleRows<2>(i) + by_frequency * p_.row(0);
       p_.middleRows<2>(i) = rows_;

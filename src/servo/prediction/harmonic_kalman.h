@@ -1,7 +1,7 @@
-// Extended Kalman filter of channels that share a frequency: each an offset that walks at random, and harmonics.
+// Extended Kalman filter for channels that share a frequency; each has an offset (random walk) and harmonics.
 //
 // State: frequency f [Hz]; for each channel its offset and, for k = 1..harmonics, a phasor (c, s) that turns by 2 pi k
-// f dt, of which c is what the harmonic adds to the channel. All channels in one unit, any.
+// f dt; c is the harmonic's contribution to the channel. All channels have the same unit.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,7 +11,7 @@ namespace laparoscope_servo::servo {
 constexpr int kMaxChannels = 4;
 constexpr int kMaxHarmonics = 6;
 
-// A value per channel, without allocation.
+// One value per channel; does not allocate.
 using Channels = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxChannels, 1>;
 
 class HarmonicKalman {
@@ -24,29 +24,29 @@ class HarmonicKalman {
   struct Walks {
     double frequency = 0.0;  // Hz
     double offset = 0.0;     // the channels' unit
-    double harmonics = 0.0;  // over the amplitude
+    double harmonics = 0.0;  // relative to the amplitude
   };
 
   // `harmonics` from 1 to kMaxHarmonics.
   explicit HarmonicKalman(int harmonics) : harmonics_(harmonics) {}
 
-  // Starts at `z`, knowing the frequency to `frequency_stddev` and the amplitudes to be about `amplitude`.
+  // Starts at `z` with the given frequency and its standard deviation, and amplitudes of about `amplitude`.
   void start(double time, const Channels& z, double frequency, double frequency_stddev, double amplitude);
 
-  // To `time`, not before the last one.
+  // Predicts to `time`, which must not be before the last one.
   void predictTo(double time, const Walks& walks);
 
-  // The offsets may have changed by as much as `stddev`.
+  // Adds `stddev` to the uncertainty of the offsets.
   void loosenOffset(double stddev);
 
-  // Takes a sample for the time predicted to; the frequency stays within the bounds.
+  // Takes a sample at the predicted time; the frequency is kept within the bounds.
   void correct(const Channels& z, double stddev, double min_frequency, double max_frequency);
 
   double time() const { return time_; }
   double frequency() const { return x_[0]; }
   const State& state() const { return x_; }
 
-  // Of a state, `ahead` [s] later: what is periodic, its derivative, and the offsets.
+  // Periodic part of a state, its derivative, and the offsets, `ahead` [s] later.
   Channels periodic(const State& state, double ahead) const;
   Channels periodicVelocity(const State& state, double ahead) const;
   Channels offset(const State& state) const;
@@ -54,7 +54,7 @@ class HarmonicKalman {
  private:
   int channelCount(const State& state) const;
   int offsetIndex(int channel) const { return 1 + channel * (1 + 2 * harmonics_); }
-  // Of the first component of the phasor; the second follows.
+  // Index of the phasor's first component; the second follows.
   int phasorIndex(int channel, int harmonic) const { return offsetIndex(channel) + 2 * harmonic - 1; }
 
   int harmonics_;

@@ -1,4 +1,4 @@
-// A correction that is taken over slowly: an estimate that jumps does not make the scope jump.
+// A correction whose rate is limited, so that a jump of an estimate does not make the scope jump.
 #pragma once
 
 #include <algorithm>
@@ -8,11 +8,11 @@ namespace laparoscope_servo::servo {
 
 class SlowCorrection {
  public:
-  // `rate` >= 0: the most that it changes in a second.
+  // `rate` >= 0: largest change per second.
   explicit SlowCorrection(double rate) : rate_(rate) {}
 
-  // One that is not finite is none. Time that does not increase changes nothing yet, and of a clock that jumped ahead
-  // no more than a second counts.
+  // A non-finite `wanted` counts as zero. Nothing changes if time does not increase; a longer step counts as one
+  // second.
   void update(double time, double wanted) {
     wanted_ = std::isfinite(wanted) ? wanted : 0.0;
     const double step = has_time_ && time > time_ ? rate_ * std::min(time - time_, kLongestStep) : 0.0;

@@ -32,10 +32,9 @@ void TargetMotion::observe(double time, const Features& place, const Features& m
     axis.covariance(0, 1) += 0.5 * acceleration[k] * dt;
     axis.covariance(1, 0) = axis.covariance(0, 1);
     double innovation = place[k] - axis.state[0];
-    if (k == 3) innovation = std::remainder(innovation, 2.0 * M_PI);  // a turn more is the same orientation
+    if (k == 3) innovation = std::remainder(innovation, 2.0 * M_PI);  // full turns do not matter
     const double expected = axis.covariance(0, 0) + noise[k];
-    if (!(innovation * innovation <
-          config_.jump * config_.jump * expected)) {  // another target: it stands until it is seen to move
+    if (!(innovation * innovation < config_.jump * config_.jump * expected)) {  // another target: starts at rest
       axis = {Eigen::Vector2d(place[k], 0.0), Eigen::Vector2d(noise[k], 0.0).asDiagonal(), false};
       continue;
     }

@@ -1,10 +1,10 @@
-// Where the target is, and how it moves by itself.
+// Estimates where the target is, and its own motion.
 //
-// The target's place is told in the features (x, y, log depth, alpha) as a camera at the reference would see them: what
-// is left to do according to the image, plus the sum of the scope's small motions, each in the axes that it had then.
-// It stands still when the tissue does: exactly for motions along one direction, to first order in their angles
-// otherwise. A Kalman filter for each feature, with a place and a velocity. What the scope itself does is not known
-// exactly - the depths d2 and Z* are believed, the delay is -, so that its motion is part of the process noise.
+// The target's place is given by the features (x, y, log depth, alpha) as seen by a camera at the reference: the
+// displacement to the target according to the image, plus the sum of the scope's small motions, each in its axes of
+// that time. For tissue at rest it is constant: exactly for motions along one direction, to first order in their angles
+// otherwise. A Kalman filter for each feature, with a place and a velocity. The scope's own motion is not known
+// exactly, since d2, Z* and the delay are only estimates; so a share of it is process noise.
 #pragma once
 
 #include <Eigen/Core>
@@ -25,11 +25,11 @@ class TargetMotion {
  public:
   explicit TargetMotion(const TargetMotionConfig& config) : config_(config) {}
 
-  // A place measured at `time` [s], and how far the scope has moved since the last one. Times that do not increase
-  // start anew.
+  // Takes a place measured at `time` [s], and the scope's motion since the last one. Starts anew if time does not
+  // increase.
   void observe(double time, const Features& place, const Features& moved);
 
-  // At `time`, which may lie ahead of the last measurement.
+  // Prediction for `time`, which may be after the last measurement.
   TargetPrediction predict(double time) const;
 
   // See TargetMotionConfig::significance.
@@ -42,7 +42,7 @@ class TargetMotion {
   struct Axis {
     Eigen::Vector2d state = Eigen::Vector2d::Zero();  // place, velocity
     Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
-    bool moves = false;  // its velocity is believed
+    bool moves = false;  // its velocity is significant
   };
   TargetMotionConfig config_;
   bool initialised_ = false;

@@ -6,8 +6,8 @@ namespace laparoscope_servo::servo {
 
 namespace {
 
-// Sources that are remembered: more than there are switches in a room, so that strangers who connect again and again do
-// not take memory. One that is forgotten has to be seen released again.
+// Number of sources kept, more than there are switches in a room; bounds the memory if publishers connect again and
+// again. A forgotten source must be seen released again.
 constexpr std::size_t kSources = 16;
 
 }  // namespace

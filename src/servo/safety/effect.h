@@ -1,12 +1,12 @@
-// What the picture says of the scope's motion, see effect_guard.h.
+// Result of comparing the picture's motion with the scope's, see effect_guard.h.
 #pragma once
 
 namespace laparoscope_servo::servo {
 
 enum class Effect {
-  kAsCommanded,  // nothing speaks against it
-  kDoubted,      // a fault is the better explanation: the scope stands until it is not
-  kWrong,        // by so much that somebody has to look before it goes on
+  kAsCommanded,  // no evidence of a fault
+  kDoubted,      // a fault explains the images better: the scope stops while this holds
+  kWrong,        // a fault explains the images so much better that an operator must look at the arm first
 };
 
 }  // namespace laparoscope_servo::servo

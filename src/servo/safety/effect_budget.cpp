@@ -11,24 +11,25 @@ namespace laparoscope_servo::servo {
 
 namespace {
 
-// Log of the ratio of likelihoods, the picture as it should be over a fault: from the first on a fault is closed, below
-// the second it is open again. Measured with simulate_servo, 200 starts of large_starts: with 4 in the place of 3 some
-// three healthy starts more use up what they may go.
+// Log likelihood ratio of the correct picture over a fault: from kClosed on the fault is excluded, below the next
+// constant it is open again. Measured with simulate_servo, 200 starts of large_starts: with 4 instead of 3 about three
+// more healthy starts use up the budget.
 constexpr double kClosed = 3.0;
 constexpr double kOpened = 1.0;
-// The same of a single axis, which is to go a short way beside a long one and shows less. With 3 and 1, of 400 healthy
-// starts 8 were held, one of them for good; with these 1 was. The furthest that an axis
-// goes the wrong way stays the same (300 starts each of effect_insertion_reversed and effect_spin_reversed).
+// Thresholds for a fault of a single axis, whose motion may be short beside that of the others and gives less evidence.
+// With 3 and 1, 8 of 400 healthy starts were held, one of them for good; with these values 1 was. The largest motion of
+// an axis in the wrong direction did not change (300 starts each of effect_insertion_reversed and
+// effect_spin_reversed).
 constexpr double kClosedAxis = 1.5;
 constexpr double kOpenedAxis = 0.5;
-// So much is kept, and forgotten within this time [s]: a fault that nothing speaks against any more is open again after
-// 23 s, memory times the log of most over opened.
+// The ratio is limited to kMost, and decays with the time constant below [s]: without further evidence a fault is open
+// again after 23 s, the time constant times the log of kMost over the threshold of opening.
 constexpr double kMost = 10.0;
 constexpr double kMemory = 10.0;
 
 }  // namespace
 
-// And which share of a motion goes wrong under it: at most 1.
+// A fault hypothesis, with the share of a motion that would go wrong under it, at most 1.
 struct EffectBudget::Fault {
   explicit Fault(const EffectExplanation& fault)
       : explanation(fault),
@@ -44,11 +45,11 @@ struct EffectBudget::Fault {
   Eigen::Vector4d of_arm;
   double log_likelihood = 0.0;
   bool open = true;
-  Eigen::Vector4d since = Eigen::Vector4d::Zero();  // where it was opened
+  Eigen::Vector4d since = Eigen::Vector4d::Zero();  // displacement at which it was opened
 
-  // (turn [rad], insertion [m]) of a displacement, with a camera that is turned about the shaft.
+  // (turn [rad], insertion [m]) that go wrong in a displacement, with a camera that is turned about the shaft.
   Eigen::Vector2d wrong(const Eigen::Vector4d& displacement, const Eigen::Matrix2d& turned) const {
-    // A pan to the one side lets the picture go to the other, a tilt does not.
+    // A pan moves the picture in the opposite direction, a tilt in the same one.
     const Eigen::Vector2d seen = turned * Eigen::Vector2d(-displacement[0], displacement[1]);
     const Eigen::Vector4d of_axes = of_arm.cwiseProduct(displacement).cwiseAbs();
     return {std::max({(of_picture * seen).norm(), of_axes.head<2>().norm(), of_axes[2]}), of_axes[3]};

@@ -1,12 +1,12 @@
-// How far the scope may go before the picture has shown what its motion does.
+// Limits how far the scope may move before the images have confirmed the effect of its motion.
 //
-// Each fault that the guard of effect knows is open until the images speak against it: until the log-likelihood of the
-// picture as it should be is above that of the fault by `confirmed`. While a fault is open, motion whose effect would
-// be wrong under it counts against a budget: pan and tilt under a roll, insertion under a reversed insertion. Motion
-// that the fault would leave as it is does not, nor would it show the fault. It is the motion that was commanded that
-// counts, from where the scope was when the fault was opened: whatever interrupts the images, or lets the robot do
-// something else, the scope goes no further. A fault that was spoken against is opened again after a while, and at once
-// where the images do not go on from one to the next: another camera's may have taken their place.
+// Each fault hypothesis of the effect guard is open until the images exclude it: until the log-likelihood of the
+// correct picture exceeds that of the fault by a threshold. While a fault is open, motion that would have a wrong
+// effect under it uses up a budget: pan and tilt under a roll, insertion under a reversed insertion. Motion that the
+// fault does not affect uses none, and does not reveal the fault either. The commanded motion counts, from the place
+// where the fault was opened, so that the limit also holds if images are interrupted or the robot does something else.
+// An excluded fault is opened again after a while, and at once if the sequence of images is interrupted, since they may
+// then come from another camera.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,25 +27,26 @@ class EffectBudget {
   EffectBudget(EffectBudget&&) noexcept;
   EffectBudget& operator=(EffectBudget&&) noexcept;
 
-  // Somebody has engaged: every fault is open, nothing is spent.
+  // Call when engaging: all faults are open, and nothing is spent.
   void restart();
 
-  // The images do not go on: every fault is open. What is spent stays spent.
+  // Call when the sequence of images is interrupted: all faults are open. The motion spent stays spent.
   void interrupt();
 
-  // The scope was told to go by (pan, tilt, spin [rad], insertion [m]); not `for_view`: by somebody, who sees it.
+  // Takes a commanded displacement (pan, tilt, spin [rad], insertion [m]). `for_view`: false if a person commands it,
+  // who sees the effect.
   void command(const Eigen::Vector4d& displacement, bool for_view);
 
-  // An image, `dt` [s] after the last: log-likelihoods by each of effectExplanations(), what the scope was told and had
-  // not done yet, and which way the camera is turned about the shaft [rad]. `breath_known`: a frozen picture cannot be
-  // told from this one.
+  // Takes an image, `dt` [s] after the last: its log-likelihoods under each of effectExplanations(), the commanded
+  // motion not executed yet, and the camera's angle about the shaft [rad]. `breath_known`: the image cannot be
+  // distinguished from a frozen one.
   void see(double dt, const std::vector<double>& log_likelihoods, const Eigen::Vector4d& pending, double turned,
            bool breath_known);
 
-  // Share of the budget, 1: it is used up.
+  // Used share of the budget; 1: used up.
   double spent() const;
 
-  // Of spin and insertion, by as much as they have gone while a fault of pan and tilt was open, which they do not show.
+  // Used share for spin and insertion: their motion while a fault of pan and tilt was open, which they do not reveal.
   double aside() const;
 
  private:
@@ -54,8 +55,8 @@ class EffectBudget {
   EffectConfig config_;
   std::vector<Fault> faults_;
   std::vector<double> good_;                         // log-likelihoods
-  Eigen::Vector4d moved_ = Eigen::Vector4d::Zero();  // by commands
-  Eigen::Vector4d done_ = Eigen::Vector4d::Zero();   // of this, at the last image
+  Eigen::Vector4d moved_ = Eigen::Vector4d::Zero();  // sum of the commanded displacements
+  Eigen::Vector4d done_ = Eigen::Vector4d::Zero();   // part of moved_ that was executed by the last image
   double turned_ = 0.0;                              // rad
 };
 

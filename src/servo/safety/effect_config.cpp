@@ -6,7 +6,7 @@ namespace laparoscope_servo::servo {
 
 void describe(parameters::Table& table, EffectConfig& c) {
   table.flag("enabled", c.enabled, "false: nothing watches what the motion does to the picture");
-  // Not zero: tissue that cannot move by itself would make a fault of every breath.
+  // Not zero: if the tissue could not move by itself, every breath would count as a fault.
   table.number("tissue_centre", c.tissue_centre, {1e-3, 10}, "1/s",
                "px over the focal length a second: how fast tissue moves by itself, standard deviation");
   table.number("tissue_depth", c.tissue_depth, {1e-3, 10}, "1/s",

@@ -7,8 +7,7 @@ namespace laparoscope_servo::servo {
 
 namespace {
 
-// Degrees. A roll by less than 60 leaves a loop that converges; between two steps the nearer one explains 97 % of a
-// motion.
+// Degrees. The loop converges with a roll of less than 60; between two steps the nearer one explains 97 % of a motion.
 constexpr int kRollStep = 30;
 constexpr int kLeastRoll = 60;
 

@@ -1,5 +1,5 @@
-// What may stand between a motion of the scope and the motion seen in the picture: nothing, or one of the faults that
-// the guard of effect knows.
+// The hypotheses that relate the scope's motion to the motion in the picture: no fault, or one of the faults that the
+// effect guard knows.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,15 +9,16 @@
 namespace laparoscope_servo::servo {
 
 struct EffectExplanation {
-  std::string fault;                                      // in words that follow "as if it were"; empty: none
-  Eigen::Matrix2d picture = Eigen::Matrix2d::Identity();  // of the picture over what it should be, orthogonal
-  Eigen::Vector4d arm = Eigen::Vector4d::Ones();          // signs of what it does: pan, tilt, spin, insertion
-  double late = 0.0;                                      // s, by which what is known of its motion comes late
-  double reach = 1.0;                                     // of the motion in the picture, over what depths say
+  std::string fault;                                      // text that follows "as if it were"; empty: no fault
+  Eigen::Matrix2d picture = Eigen::Matrix2d::Identity();  // takes the correct picture to the one seen, orthogonal
+  Eigen::Vector4d arm = Eigen::Vector4d::Ones();          // signs of the executed pan, tilt, spin, insertion
+  double late = 0.0;                                      // s, by which the known motion is late
+  // ratio of the motion in the picture to that predicted from the depths
+  double reach = 1.0;
   bool frozen() const { return arm.isZero(); }
 };
 
-// Those without a fault allow for depths and a delay that are somewhat off.
+// All hypotheses. Those without a fault allow for some error of depths and delay.
 std::vector<EffectExplanation> effectExplanations();
 
 }  // namespace laparoscope_servo::servo

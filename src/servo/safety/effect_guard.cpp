@@ -32,13 +32,14 @@ constexpr double kJump = 100.0;  // the same: where no explanation is nearer, th
 constexpr double kOther = 400.0;
 // Standard deviations of what stamps make: evenly spread ones are never further from each other.
 constexpr double kScattered = 3.5;
-// Log of how much less likely it is that a fault begins in an image than that there is none. Chosen, not varied since:
-// less lets faults that explain nothing lie nearer to the doubt, more makes those that begin later be found later.
+// Log of how much less likely it is that a fault begins in an image than that there is none. Chosen, not varied since.
+// Lower: more false alarms; higher: later detection of faults that begin later.
 constexpr double kOnset = 3.0;
 // Where the best fault is less likely than none by all but this much of kOnset, it explains nothing: confirmed.
 constexpr double kConfirmed = 0.5;
-// Where depths are so wrong that the picture moves by less than this of what they say, it is no doubt of the budget's,
-// but here it would pass for a frozen one.
+// Smallest ratio of the picture's motion to that predicted from the depths for which a hypothesis counts as correct in
+// judge(): below it, wrong depths cannot be distinguished from a frozen picture. The budget accepts also the smaller
+// ones.
 constexpr double kLeastReach = 0.5;
 
 }  // namespace
@@ -258,7 +259,7 @@ double EffectGuard::compare(const EffectObservation& image, const Features& nois
   return nearest;
 }
 
-// What no explanation is free of is the tissue's own unrest.
+// An innovation common to all hypotheses is attributed to unusual motion of the tissue.
 void EffectGuard::calm(double dt, const std::vector<Features>& innovations, const Features& variance) {
   Features least = Features::Constant(std::numeric_limits<double>::infinity());
   for (const Features& innovation : innovations) {

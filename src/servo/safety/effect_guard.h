@@ -12,8 +12,9 @@
 // log of the ratio of the likelihoods, the motion is doubted and the scope has to stand. What the picture does when it
 // stands decides: tissue that happened to be pulled when the scope began to move goes on, a fault stops with the scope.
 //
-// Tissue that is followed well does not move in the picture, no more than a frozen one does. What tells them apart is
-// who began. A breath that is followed as it was learnt is not told apart.
+// Tissue that is followed well does not move in the picture, no more than a frozen one does. They differ in which moved
+// first, scope or tissue. While a learnt breath is compensated, both cannot be told apart, and a frozen picture is not
+// detected.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,8 +1,8 @@
-// Whether the scope may be driven by what a stick, a slider or a pad says.
+// Checks whether the scope may follow the commands of a stick, a slider or a pad.
 //
-// A stick that is deflected when driving begins moves nothing before it was seen at rest, nor does one that comes back
-// from silence. A pad that has gone out of reach repeats its axes for ever: what is not zero and stays the same to the
-// last digit for too long is taken for that, until something changes.
+// A stick that is deflected when driving begins, or that returns after silence, has no effect until it was seen at
+// rest. A pad out of radio range repeats its axes for ever: values other than zero that do not change in the last digit
+// for too long are ignored until they change.
 #pragma once
 
 #include <string>
@@ -17,10 +17,10 @@ class ManualStick {
   // `full`: the velocity of which SafetyConfig::manual_neutral is a share.
   ManualStick(const SafetyConfig& config, const scope::Velocity& full) : config_(config), full_(full) {}
 
-  // It has to be seen at rest again.
+  // The stick must be seen at rest again.
   void restart() { seen_at_rest_ = false; }
-  // In every step, at `time` [s]. `drives`: it is the stick that moves the scope. Returns why the scope must not follow
-  // it, in words that stay the same while it is so; empty when it may.
+  // Call in every step, at `time` [s]. `drives`: the stick moves the scope. Returns why the scope must not follow it,
+  // in a text that does not change while this holds; empty if it may.
   std::string update(const ManualInput& input, bool drives, double time);
 
  private:
@@ -30,7 +30,7 @@ class ManualStick {
   SafetyConfig config_;
   scope::Velocity full_;
   scope::Velocity last_;
-  double since_ = 0.0;  // s, when it became what it is
+  double since_ = 0.0;  // s, when it last changed
   bool seen_at_rest_ = false;
 };
 

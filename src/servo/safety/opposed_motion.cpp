@@ -7,11 +7,11 @@ namespace laparoscope_servo::servo {
 namespace {
 
 const char* const kAxes[] = {"pan", "tilt", "spin", "insertion"};
-constexpr double kLate = 0.1;    // s, by which the robot may be later than its delay: the guard's latest is 0.14 s
-constexpr double kLasts = 0.15;  // s, for longer than this an axis has to go the wrong way
-constexpr double kStep = 0.02;   // s, between the commands that are looked at: the period of the commands at 50 Hz
+constexpr double kLate = 0.1;    // s, by which the robot may be later than its delay; the effect guard allows 0.14 s
+constexpr double kLasts = 0.15;  // s, least time for which an axis must move in the wrong direction
+constexpr double kStep = 0.02;   // s, between the commands that are compared: the period of commands at 50 Hz
 
-// Against everything that it was told since before its delay.
+// Whether the motion opposes all commands since before its delay.
 bool isOpposed(double time, double done, const CommandHistory& told, double delay, int axis) {
   for (double age = 0.0; age <= delay + kLate; age += kStep) {
     if (!(told.velocity(time, age)[axis] * done < 0.0)) return false;

@@ -1,7 +1,7 @@
-// Whether the robot says that it moves against what it is told.
+// Detects that the robot reports motion opposite to its commands.
 //
-// The guard of effect believes the robot's own account of its motion. An axis that is reversed, and says so, fits its
-// picture; what does not fit is the command.
+// The effect guard relies on the reported motion. If an axis is reversed and reports so, picture and report agree; only
+// the command does not.
 #pragma once
 
 #include <array>
@@ -13,19 +13,19 @@ namespace laparoscope_servo::servo {
 
 class OpposedMotion {
  public:
-  // `width` of the robot's dead zone: slower motion is rest.
+  // `width`: of the robot's dead zone; slower motion counts as rest.
   explicit OpposedMotion(const scope::Velocity& width) : width_(width) {}
 
-  // What the robot says that it did at `time` [s], and what it was told, to be executed after `delay` [s].
+  // Takes the velocity reported for `time` [s], and the commands, which are executed after `delay` [s].
   void report(double time, const scope::Velocity& done, const CommandHistory& told, double delay);
 
-  // Which axis goes the wrong way, in words; empty: none. It stays until restart().
+  // Text that names the axis which moves in the wrong direction; empty: none. Stays until restart().
   const std::string& words() const { return words_; }
   void restart();
 
  private:
   scope::Velocity width_;
-  std::array<double, 4> since_{};  // s: from then on the axis has gone the wrong way
+  std::array<double, 4> since_{};  // s, since when the axis has moved in the wrong direction
   std::array<bool, 4> opposed_{};
   std::string words_;
 };

@@ -10,14 +10,14 @@ namespace laparoscope_servo::servo {
 
 namespace {
 
-// s, by which two stamps may be nearer to each other than the poses: the arm's node stamps what it has just read, and
-// under load it reads two answers at once.
+// s, by which the difference of two stamps may be smaller than that of the poses: the arm's node stamps an answer when
+// it reads it, and under load it reads two at once.
 constexpr double kStampJitter = 0.05;
-constexpr double kLastingJump = 0.5;  // s: a stray message is followed by true ones at once
-constexpr int kJumps = 3;             // in a row, each not long after the one before
+constexpr double kLastingJump = 0.5;  // s: a longer jump is no stray message, which correct ones follow at once
+constexpr int kJumps = 3;             // jumps in a row, each within kForgotten after the last
 constexpr double kForgotten = 10.0;   // s, after a jump
-// By which the optics may differ from those at engaging and be the same: far more than rounding makes of a transform
-// that stands, 1e-7 m in single precision, and less than anybody places a camera by hand.
+// Tolerances within which the optics count as unchanged since engaging: far more than rounding of a static transform,
+// 1e-7 m in single precision, and less than anybody moves a camera by hand.
 constexpr double kSameOffset = 1e-4;     // m
 constexpr double kSameDirection = 1e-3;  // rad
 
@@ -63,7 +63,7 @@ std::string PoseWatch::jump(double stamp, const Eigen::Isometry3d& insertion_poi
   if (!last_) return "";
   const double distance = (insertion_point_T_tip.translation() - last_->insertion_point_T_tip.translation()).norm();
   const double angle = angleOf(last_->insertion_point_T_tip.linear().transpose() * insertion_point_T_tip.linear());
-  // Nobody waits for a pose longer than max_depth_age in motion, and at rest the arm goes nowhere.
+  // In motion no pose is older than max_depth_age, and at rest the arm does not move.
   const double time = std::clamp(stamp - last_->stamp, 0.0, config_.max_depth_age) + kStampJitter;
   if (distance <= config_.max_tip_speed * time && angle <= config_.max_tip_turn * time) return "";
   std::ostringstream text;

@@ -1,7 +1,7 @@
-// Tells task errors of a picture that repeats from those of a camera that sees: while the scope moves, and through the
-// noise of every picture, no two task errors are the same to the last digit.
+// Detects task errors of a repeating picture: while the scope moves, and with the noise of real pictures, no two task
+// errors are equal to the last digit.
 //
-// The tracker looks at the pictures themselves; this holds for any source of task errors.
+// The tracker checks the pictures themselves (image::RepeatWatch); this check works for any source of task errors.
 #pragma once
 
 #include <optional>
@@ -12,14 +12,14 @@ namespace laparoscope_servo::servo {
 
 class RepeatWatch {
  public:
-  // `most`: as many repetitions in a row, while the scope moves, are a repeated picture.
+  // `most`: number of repetitions in a row, while the scope moves, that count as a repeated picture.
   explicit RepeatWatch(int most) : most_(most) {}
 
-  // The valid task error of an image taken at `image_time` [s]; the same time again is the same message, which says
-  // nothing. `moves`: the scope's motion must have shown in it.
+  // Takes the valid task error of an image taken at `image_time` [s]; a call with the last time is ignored, since it is
+  // the same message. `moves`: the scope's motion must be visible in the image.
   void take(double image_time, const TaskError& error, bool moves);
 
-  // Holds until another task error comes: a scope that stands because of it must not take its standing for an excuse.
+  // Latched until a different error arrives: stopping the scope must not clear the condition.
   bool repeats() const { return repeats_; }
 
  private:

@@ -7,7 +7,7 @@ namespace laparoscope_servo::servo {
 void ReportedMotion::add(double time, const scope::Velocity& velocity) {
   if (!reports_.empty() && time < reports_.back().time) reports_.clear();
   reports_.push_back({time, velocity.vector()});
-  // The one that stood for the motion when the span began stays.
+  // Keeps the report that was valid at the start of the span.
   while (reports_.size() > 1 && reports_[1].time <= time - span_) reports_.pop_front();
 }
 

@@ -1,4 +1,4 @@
-// What the robot says that it does: its velocity at moments that need not be even, and some of them may be missing.
+// The motion that the robot reports: velocities at irregular times, some of which may be missing.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,14 +10,14 @@ namespace laparoscope_servo::servo {
 
 class ReportedMotion {
  public:
-  // Keeps the reports of the last `span` [s] > 0. A report stands for the motion for `life` [s] > 0; between two that
-  // are no further apart, the velocity goes in a straight line from the one to the other.
+  // Keeps the reports of the last `span` [s] > 0. A report is valid for `life` [s] > 0; between two reports that are no
+  // further apart, the velocity is interpolated linearly.
   ReportedMotion(double span, double life) : span_(span), life_(life) {}
 
-  // The robot's velocity at `time` [s], both finite. One that is older than the last makes it begin anew.
+  // Adds the velocity at `time` [s], both finite. A time before the last one clears the history.
   void add(double time, const scope::Velocity& velocity);
 
-  // (pan, tilt, spin [rad], insertion [m]) from `begin` to `end` [s]. Nothing where no report stands for it.
+  // (pan, tilt, spin [rad], insertion [m]) from `begin` to `end` [s]; zero where no report is valid.
   Eigen::Vector4d displacement(double begin, double end) const;
 
  private:

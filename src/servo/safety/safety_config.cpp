@@ -39,7 +39,7 @@ void describeView(parameters::Table& table, SafetyConfig& c) {
   table.number("max_corner_error_for_insertion", c.max_corner_error_for_insertion, {0, 100}, "px",
                "above this corner_error of the tracker, the scope goes no deeper");
   table.number("max_repeated_errors", c.max_repeated_errors, {1, 100}, "task errors",
-               "that repeat to the last digit while the scope moves stop the arm");
+               "number in a row that repeat to the last digit while the scope moves, from which on the arm stops");
 }
 
 }  // namespace
@@ -57,10 +57,10 @@ void describe(parameters::Table& table, SafetyConfig& c) {
   table.number("max_optics_offset", c.max_optics_offset, {0, 1}, "m",
                "from the shaft's frame to the camera's; more stops the arm");
   describeView(table, c);
-  table.flag("dead_man_required", c.dead_man_required, "the topic dead_man has to say true while the arm moves");
-  table.flag("robot_required", c.robot_required, "the topic operating_state has to say ENABLED");
+  table.flag("dead_man_required", c.dead_man_required, "the topic dead_man must be true while the arm moves");
+  table.flag("robot_required", c.robot_required, "the topic operating_state must be ENABLED");
   table.number("manual_neutral", c.manual_neutral, {0, 0.5}, "share",
-               "of limits/velocity up to which a stick is taken for released");
+               "share of limits/velocity up to which a stick counts as released");
 }
 
 }  // namespace laparoscope_servo::servo

@@ -22,7 +22,7 @@ constexpr unsigned kLost = only(State::kLost);
 constexpr unsigned kFault = only(State::kFault);
 constexpr unsigned kEngaged = kArmed | kServo | kHold;
 
-// Written so that a NaN age is not fresh.
+// False for a NaN age.
 bool isFresh(double age, double limit) {
   return age >= 0.0 && age <= limit;
 }
@@ -64,7 +64,7 @@ const char* name(SafetyState state) {
   return "IDLE";
 }
 
-// One screen. A row that leads to the state itself keeps it, with its reason.
+// All transitions. A self-transition only updates the reason.
 const std::vector<SafetyTransition>& safetyTransitions() {
   static const char* const by_itself = "by itself";
   static const char* const resume = "resume the robot";
@@ -110,7 +110,7 @@ SafetyOutput SafetyMachine::step(const SafetyFacts& facts) {
     enter(transition, why, facts);
     break;
   }
-  // A pause counts only while somebody may expect motion.
+  // The step time is checked only while engaged.
   has_time_ = isEngaged(state_);
   last_time_ = facts.time;
   return output(facts);
@@ -118,7 +118,7 @@ SafetyOutput SafetyMachine::step(const SafetyFacts& facts) {
 
 std::string SafetyMachine::refusal(const SafetyFacts& facts) const {
   if (state_ == State::kFault) return "in FAULT: " + reason_;
-  // What would end motion does not let it begin.
+  // Every condition that ends motion also refuses to engage.
   for (const SafetyTransition& transition : safetyTransitions()) {
     if (!transition.contains(State::kServo)) continue;
     if (transition.to == State::kIdle || transition.to == State::kArmed) continue;

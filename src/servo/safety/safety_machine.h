@@ -1,4 +1,4 @@
-// Which safety state follows: whether the scope may move, how fast, and why not.
+// The state machine of the safety states: whether the scope may move, how fast, and the reason.
 //
 // One table holds all transitions, see safetyTransitions(). Pure: no clock, the same facts give the same states.
 #pragma once
@@ -22,33 +22,33 @@ struct PoseFacts {
   std::string problem = "depth d2 is unknown";  // why it cannot be used; empty: it can
   double age = std::numeric_limits<double>::infinity();
   double d2 = 0.0;              // m, along the shaft from the insertion point to the camera
-  double lateral_offset = 0.0;  // m, of the insertion point from the shaft
-  double d2_doubt = 0.0;        // m, by which d2 may be less or more
+  double lateral_offset = 0.0;  // m, distance of the insertion point from the shaft
+  double d2_doubt = 0.0;        // m, uncertainty of d2
 };
 
 struct TrackerFacts {
   std::string problem = "no task error was received";             // why it cannot be used; empty: it can
-  double age = std::numeric_limits<double>::infinity();           // since it came
-  double image_age = std::numeric_limits<double>::infinity();     // since the image behind it was taken
-  bool valid = false;                                             // the tracker's own word
-  std::optional<double> region;                                   // another number is another region of interest
-  double visible_fraction = 0.0;                                  // 0 to 1, of the region of interest
-  double corner_error = std::numeric_limits<double>::infinity();  // px, expected of the worst corner
+  double age = std::numeric_limits<double>::infinity();           // s, since the message was received
+  double image_age = std::numeric_limits<double>::infinity();     // s, since its image was taken
+  bool valid = false;                                             // `valid` field of the message
+  std::optional<double> region;                                   // identifies the region of interest
+  double visible_fraction = 0.0;                                  // 0 to 1, visible share of the region of interest
+  double corner_error = std::numeric_limits<double>::infinity();  // px, expected error of the worst corner
 };
 
 struct EffectFacts {
   Effect effect = Effect::kAsCommanded;
-  std::string words;  // what was seen, where it is not as commanded
+  std::string words;  // description of the fault, if `effect` is not kAsCommanded
 };
 
-// What is known in one step.
+// Input of one step.
 struct SafetyFacts {
   double time = 0.0;  // s, on a clock that never jumps
   EngageRequest request = EngageRequest::kNone;
-  std::string off_reason = "not engaged";  // of the state IDLE that kOff leads to
-  std::string clock_jump;                  // what jumped since the last step, in words; empty: nothing did
-  std::string ended;                       // what has ended the engagement since the last step; empty: nothing
-  bool command_finite = true;              // the control law's last velocity
+  std::string off_reason = "not engaged";  // reason of the state IDLE after kOff
+  std::string clock_jump;                  // description of a clock jump since the last step; empty: none
+  std::string ended;                       // event that has ended the engagement since the last step; empty: none
+  bool command_finite = true;              // the control law's last velocity is finite
   ResidualLevel residual = ResidualLevel::kOk;
   RobotFacts robot;
   PoseFacts pose;
@@ -59,15 +59,16 @@ struct SafetyFacts {
 
 struct SafetyOutput {
   SafetyState state = SafetyState::kIdle;
-  std::string reason = "not engaged";  // never empty; stays the same, letter by letter, while its cause does
+  std::string reason = "not engaged";  // never empty; does not change while its cause lasts
   double speed_scale = 0.0;            // 0 to 1, for the whole velocity; 0 unless in SERVO
-  bool insertion_allowed = false;  // false: not deeper. Outwards stays allowed: it is away from the tissue, along the
-                                   // way that the scope came, and min_depth ends it
-  bool reset_history = true;       // the command is zero at once: filters and limits start from rest
-  std::string caution;             // in SERVO: what slows the scope or lets it go no deeper; empty: nothing
+  // false: not deeper. Outwards is always allowed: it leads away from the tissue, along the path on which the scope
+  // came, down to min_depth
+  bool insertion_allowed = false;
+  bool reset_history = true;  // the command is zero at once: filters and limits start from rest
+  std::string caution;        // in SERVO: what slows the scope or keeps it from going deeper; empty: nothing
 };
 
-// What can lead from one state to another.
+// Conditions of the transitions.
 enum class SafetyCondition {
   kDisengaged,
   kEnded,
@@ -100,7 +101,7 @@ struct SafetyTransition {
   unsigned from;  // a set of states, see contains()
   SafetyCondition condition;
   SafetyState to;
-  const char* way_on;  // who or what ends the state, in words
+  const char* way_on;  // what ends the new state, for display
 
   constexpr bool contains(SafetyState state) const { return (from >> static_cast<unsigned>(state) & 1U) != 0; }
 };
@@ -116,14 +117,14 @@ class SafetyMachine {
 
   SafetyOutput step(const SafetyFacts& facts);
 
-  // Why a request to engage would be refused now; empty when it would not. The dead-man switch refuses nothing.
+  // The reason why engaging would be refused now; empty if it would not. The dead-man switch is no reason.
   std::string refusal(const SafetyFacts& facts) const;
 
   SafetyState state() const { return state_; }
 
  private:
   bool clockJumped(double time) const;
-  // The reason when the condition holds, empty when it does not.
+  // Text of the reason if the condition holds, else empty.
   std::string cause(SafetyCondition condition, const SafetyFacts& facts) const;
   void enter(const SafetyTransition& transition, const std::string& cause, const SafetyFacts& facts);
   SafetyOutput output(const SafetyFacts& facts) const;
@@ -135,8 +136,9 @@ class SafetyMachine {
   double last_time_ = 0.0;   // s, of the last step while engaged
   double hold_since_ = 0.0;  // s
   std::optional<double> held_region_;
-  std::uint32_t enables_ = 0;  // of the robot, when engaged
-  bool held_for_arm_ = false;  // not for the tracker alone, which says nothing while it learns another region
+  std::uint32_t enables_ = 0;  // RobotFacts::enables at engaging
+  // HOLD has another cause than the tracker, which is silent while another region is selected
+  bool held_for_arm_ = false;
 };
 
 }  // namespace laparoscope_servo::servo

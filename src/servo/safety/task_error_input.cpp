@@ -6,12 +6,12 @@ namespace laparoscope_servo::servo {
 
 namespace {
 
-constexpr double kFarthest = 5.0;   // 79 degrees off the axis: beyond what a pinhole camera shows
-constexpr double kDeepest = 3.0;    // log: 20 times as far, or as near, as at the reference
-constexpr double kRounding = 1e-6;  // of what passed through a message
+constexpr double kFarthest = 5.0;   // 79 degrees off the axis: more than a pinhole camera shows
+constexpr double kDeepest = 3.0;    // log depth: 20 times as far, or as near, as at the reference
+constexpr double kRounding = 1e-6;  // tolerance for values from a message
 
 bool within(double value, double bound) {
-  return std::abs(value) <= bound;  // NaN is not
+  return std::abs(value) <= bound;  // false for NaN
 }
 
 }  // namespace
@@ -32,10 +32,10 @@ std::string implausible(const TaskErrorInput& input) {
   if (!within(e.m_star.z() - 1.0, kRounding) || !within(e.m_star.x(), kFarthest) || !within(e.m_star.y(), kFarthest)) {
     return "task error: m_star is not (x, y, 1) within 5";
   }
-  // m* + e_v is H m*, a point before the camera, and its z is the ratio of the depths.
+  // m* + e_v is H m*, a point in front of the camera; its z is the ratio of the depths.
   if (!(1.0 + e.e_v.z() > 0.0)) return "task error: e_v puts the region behind the camera";
   if (!within(std::log(1.0 + e.e_v.z()), kDeepest)) return "task error: the depth in e_v is not possible";
-  const double farthest = kFarthest * (2.0 + e.e_v.z());  // of m* + e_v, and m* again
+  const double farthest = kFarthest * (2.0 + e.e_v.z());  // bound on m* + e_v, plus one on m*
   if (!within(e.e_v.x(), farthest) || !within(e.e_v.y(), farthest)) return "task error: e_v is not possible";
   if (!(input.visible_fraction >= 0.0 && input.visible_fraction <= 1.0 + kRounding)) {
     return "task error: visible_fraction is not within 0 and 1";

@@ -6,9 +6,9 @@
 namespace laparoscope_servo::servo {
 
 bool HysteresisBand::update(Band& band, double distance, double stop, double start, double time) const {
-  constexpr double kFar = 5.0;  // times `start`: an error beyond it is a new way to go, and nothing that was hunted
+  constexpr double kFar = 5.0;  // times `start`: a larger error is a new target, not hunting
   if (distance > kFar * start) band.widened = 1.0;
-  // NaN counts as off: what is wrong must not look like rest.
+  // NaN counts as off, so that an invalid error is not taken for rest.
   const bool moves = !(distance < (band.moves ? stop : band.widened * start));
   if (moves && !band.moves && time - band.stopped < config_.hunting_time) {
     band.widened = std::min(config_.widest, config_.widening * band.widened);

@@ -1,9 +1,9 @@
 // The bands about the target within which the scope rests.
 //
-// A feature that is at rest starts to be servoed when it is off by at least `start`, and is left alone again when it is
-// off by less than `stop`. Without the bands the noise of the images would keep the arm moving, and through the inverse
-// of the dead zone by no small steps. A feature that starts again soon after it stopped is being hunted - the robot's
-// dead zone is not what the inverse takes it for -, and its band grows until it rests.
+// A feature at rest is servoed when its error reaches `start`, and rests again when the error is below `stop`. Without
+// the bands the noise of the images would keep the arm moving, in large steps because of the inverse of the dead zone.
+// A feature that starts again soon after it stopped indicates hunting (a limit cycle: the robot's dead zone differs
+// from the configured one); its band is then widened until it rests.
 #pragma once
 
 #include "laparoscope_servo/servo/shaping_config.h"
@@ -15,14 +15,14 @@ class HysteresisBand {
  public:
   explicit HysteresisBand(const RestConfig& config) : config_(config) {}
 
-  // The error at `time` [s] with the features that rest at their desired values, for any law. Remembers which rest. A
-  // feature that is not finite stays as it is.
+  // Returns the error at `time` [s] with all resting features set to their desired values, for any law. Keeps which
+  // features rest. A non-finite feature is not changed.
   TaskError apply(const TaskError& error, double time);
 
-  // Other bands: what rests in them, and how they are widened, stays.
+  // Sets other bands; which features rest and how far bands are widened does not change.
   void retune(const RestConfig& config) { config_ = config; }
 
-  // Every feature is at rest, and the bands are as configured.
+  // All features are at rest, and no band is widened.
   void reset() { centre_ = depth_ = orientation_ = Band(); }
 
  private:

@@ -29,7 +29,7 @@ double OscillationGuard::update(double time, const TaskError& error) {
   bool swinging = false;
   for (std::size_t k = 0; k < 4; ++k) swinging |= swings(swings_[k], time, errors[k], thresholds[k]);
   if (!swinging) return factor_;
-  for (Swing& swing : swings_) swing.changes = 0;  // what follows is judged with the new gain
+  for (Swing& swing : swings_) swing.changes = 0;  // later changes are counted with the new gain
   factor_ = std::max(config_.least, config_.step * factor_);
   return factor_;
 }

@@ -1,9 +1,8 @@
-// Notices that the loop swings, and takes its gain back.
+// Detects oscillations of the loop, and lowers its gain.
 //
-// What is believed of delay and depths sets how fast the loop may be; where it is wrong, the loop swings about the
-// target with a period of a few delays, which no tissue does by itself: a breath is slower. Feature errors that change
-// their sign quickly, several times in a row and by more than noise, lower the gain by a step. It stays lowered until
-// the loop starts anew.
+// With a wrong delay or depth the loop may oscillate about the target with a period of a few delays; tissue does not,
+// since a breath is slower. If feature errors change their sign quickly, several times in a row and by more than noise,
+// the gain is lowered by a step, until the loop starts anew.
 #pragma once
 
 #include <array>
@@ -17,7 +16,7 @@ class OscillationGuard {
  public:
   explicit OscillationGuard(const OscillationConfig& config) : config_(config) {}
 
-  // The errors in an image taken at `time` [s]; the factor for the gains, from `least` to 1.
+  // Takes the errors in an image taken at `time` [s]; returns the factor for the gains, from `least` to 1.
   double update(double time, const TaskError& error);
 
   double factor() const { return factor_; }
@@ -25,8 +24,8 @@ class OscillationGuard {
 
  private:
   struct Swing {
-    int side = 0;       // on which it was last, beyond the threshold
-    double time = 0.0;  // s, when it got there
+    int side = 0;       // side on which it last was beyond the threshold
+    double time = 0.0;  // s, when it reached that side
     int changes = 0;    // in a row
   };
   bool swings(Swing& swing, double time, double error, double threshold) const;

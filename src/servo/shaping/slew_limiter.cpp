@@ -7,7 +7,7 @@ namespace laparoscope_servo::servo {
 
 namespace {
 
-// The largest factor, from 0 to 1, with which `v` added to `base`, which is within the limits, stays within them.
+// The largest factor, from 0 to 1, for which base + factor * v stays within the limits; `base` is within them.
 double scaleWithin(const Eigen::Vector4d& v, const Eigen::Vector4d& limit,
                    const Eigen::Vector4d& base = Eigen::Vector4d::Zero()) {
   double scale = 1.0;
@@ -30,12 +30,12 @@ scope::Velocity SlewLimiter::apply(std::initializer_list<scope::Velocity> parts,
   for (const scope::Velocity& part : parts) {
     if (common < 1.0)
       target += scaleWithin((1.0 - common) * part.vector(), limit, target) * (1.0 - common) * part.vector();
-    for (int k = 0; k < 4; ++k) target[k] = std::clamp(target[k], -limit[k], limit[k]);  // of rounding; keeps NaN
+    // removes rounding errors; keeps NaN
+    for (int k = 0; k < 4; ++k) target[k] = std::clamp(target[k], -limit[k], limit[k]);
   }
   const Eigen::Vector4d change = target - last_.vector();
   const double scale = scaleWithin(change, dt * limits_.acceleration.vector());
-  // With nothing to slow down the target is taken as it is: last + (target - last) would leave rounding where a zero is
-  // meant.
+  // If nothing is slowed down, the target is used directly, since last + (target - last) may not be exactly zero.
   last_ = scope::Velocity::fromVector(scale < 1.0 ? Eigen::Vector4d(last_.vector() + scale * change) : target);
   return last_;
 }

@@ -7,7 +7,7 @@ namespace laparoscope_servo::servo {
 
 namespace {
 
-// 1 far from the bound, 0 at it and beyond. NaN: 0.
+// 1 far from the bound, 0 at the bound and beyond, and 0 for NaN.
 double share(double room, double margin) {
   if (!(room > 0.0)) return 0.0;
   return margin > 0.0 ? std::min(1.0, room / margin) : 1.0;
@@ -29,11 +29,11 @@ scope::Velocity within(const Workspace& range, const scope::Velocity& velocity, 
   const Eigen::Vector3d there =
       insertion_point_R_shaft.transpose() * axis;  // in the shaft's axes, where the shaft is z
   const double angle = std::acos(std::clamp(there.z(), -1.0, 1.0));
-  // z moves by (pan, -tilt) in x and y. Outwards is away from the cone's axis; on the axis everything is, and there is
-  // room.
+  // z moves by (pan, -tilt) in x and y. Outwards is away from the cone's axis; on the axis every direction is outwards.
   const Eigen::Vector2d outwards = -there.head<2>();
   if (!(outwards.norm() > 1e-9)) {
-    if (!(there.z() > 0.0)) result.pan = result.tilt = 0.0;  // it looks out of the body, or nobody knows where
+    // the scope points out of the body, or its direction is not finite
+    if (!(there.z() > 0.0)) result.pan = result.tilt = 0.0;
     return result;
   }
   const Eigen::Vector2d out = outwards.normalized();

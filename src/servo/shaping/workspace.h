@@ -1,6 +1,6 @@
-// How far the scope may go: a range of depths, and a cone of directions about the insertion point.
+// Keeps the scope in its workspace: a range of depths, and a cone of directions about the insertion point.
 //
-// Towards a bound it is slowed down, and at the bound it goes no further; back it may always.
+// Motion towards a bound is slowed down and ends at the bound; motion away from it is always allowed.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,11 +9,12 @@
 
 namespace laparoscope_servo::servo {
 
-// What of a velocity is done at a depth d2 [m] with the shaft's axes in the insertion point's frame.
+// The part of a velocity that is allowed at depth d2 [m] and with these axes of the shaft in the insertion point's
+// frame.
 scope::Velocity within(const Workspace& range, const scope::Velocity& velocity, double d2,
                        const Eigen::Matrix3d& insertion_point_R_shaft);
 
-// The same without the cone, where the directions are not known.
+// Checks the depth only, for unknown directions.
 scope::Velocity within(const Workspace& range, const scope::Velocity& velocity, double d2);
 
 }  // namespace laparoscope_servo::servo

@@ -1,13 +1,13 @@
-// The horizon: how the picture stands to what is up in space.
+// The horizon: the angle in the image between upwards and the direction "up" in space.
 #pragma once
 
 #include <Eigen/Core>
 
 namespace laparoscope_servo::servo {
 
-// rad in [-pi, pi]: by how much the direction `up_in_camera` (camera coordinates, any length) is turned in the image
-// from upwards, positive from x (right) to y (down), like alpha of the features. Where the camera looks along it,
-// nothing in the image is up: the error fades from 12 degrees on and is 0 from 6.
+// rad in [-pi, pi]: angle in the image from upwards to `up_in_camera` (camera coordinates, any length), positive from x
+// (right) to y (down), like alpha of the features. It is not defined when the camera looks along that direction: within
+// 12 degrees of it the error is reduced, and within 6 degrees it is 0.
 double horizonError(const Eigen::Vector3d& up_in_camera);
 
 }  // namespace laparoscope_servo::servo

@@ -10,11 +10,12 @@ namespace laparoscope_servo::servo {
 
 namespace {
 
-// Newton's method: near the solution each step doubles the digits, and where it has not ended after 20 there is none.
+// Newton's method doubles the correct digits in each step near the solution; if it has not converged after 20 steps,
+// there is no solution.
 constexpr int kMaxSteps = 20;
 constexpr double kConverged = 1e-12;  // rad and m, the last step: 4 digits above a double's rounding
 
-// Change of the direction of `d` at the normalised point of `p`, in the image.
+// Change of the image direction of `d` at the normalised image point of `p`.
 double turnOf(const Eigen::Vector3d& d, const Eigen::Vector3d& p, double angle) {
   const Eigen::Vector2d m = p.head<2>() / p.z();
   const double seen = std::atan2(d.y() - m.y() * d.z(), d.x() - m.x() * d.z());
@@ -28,7 +29,7 @@ TaskError moved(const TaskError& error, const Eigen::Vector4d& displacement, con
   const double depth = depthOf(error, desired_depth);
   const Eigen::Matrix3d& camera_R_shaft = scope.camera_R_shaft;
   const Eigen::Vector3d rotation = scope::angularVelocity(scope::Velocity::fromVector(displacement));
-  const Eigen::Matrix3d now_R_before = geometry::so3Exp(-rotation);  // of the shaft
+  const Eigen::Matrix3d now_R_before = geometry::so3Exp(-rotation);  // rotation of the shaft
   const Eigen::Vector3d before = camera_R_shaft.transpose() * Eigen::Vector3d(depth * error.x, depth * error.y, depth);
   const Eigen::Vector3d lever(0.0, 0.0, scope.d2);
   const Eigen::Vector3d now = now_R_before * (before + lever) - lever - Eigen::Vector3d(0.0, 0.0, displacement[3]);

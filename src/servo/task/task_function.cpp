@@ -25,8 +25,8 @@ geometry::Quadrilateral normalised(const geometry::Quadrilateral& pixels, const 
   return geometry::apply(camera.inverseMatrix(), pixels);
 }
 
-// The rotation that takes the corners of one quadrilateral closest to those of the other, both about their means. It
-// uses the whole ROI, so that perspective, which turns opposite sides in opposite directions, cancels.
+// The rotation that best takes the corners of one quadrilateral to those of the other, both about their means. It uses
+// the whole ROI, so that the effect of perspective, which turns opposite sides in opposite directions, cancels.
 double rotation(const geometry::Quadrilateral& from, const geometry::Quadrilateral& to) {
   const Eigen::Vector2d from_mean = (from[0] + from[1] + from[2] + from[3]) / 4.0;
   const Eigen::Vector2d to_mean = (to[0] + to[1] + to[2] + to[3]) / 4.0;

@@ -18,7 +18,7 @@ using aesop::kJoints;
 
 constexpr double kStep = 0.002;  // s
 constexpr double kAtRest =
-    1e-4;  // m/s, rad/s: slower than this, a joint that nothing drives stands even without friction
+    1e-4;  // m/s, rad/s: below this a joint without command counts as at rest, even without friction
 constexpr double kLongest = 60.0;  // s of one hand movement
 constexpr double kEpsilon = 1e-9;  // s
 
@@ -28,12 +28,12 @@ void describe(parameters::Table& table, ArmConfig& c) {
   table.numbers("start", c.start.data(), kJoints, {-100, 100}, "m or rad",
                 "joint positions at power-on; those of passive joints are a first guess");
   table.numbers("insertion_point", c.insertion_point.data(), 3, {-10, 10}, "m",
-                "where the trocar really is, in aesop_base");
+                "true position of the trocar in aesop_base");
   table.number("delay", c.delay, {0, 2}, "s", "from a command to its effect");
   table.numbers("dead_zone", c.dead_zone.data(), kJoints, {0, 1}, "m/s or rad/s",
                 "of the joints; about 0.4 mm/s and 4 mrad/s of the scope");
-  table.number("breakaway", c.breakaway, {1, 10}, "times", "its dead zone is what a joint at rest needs");
-  table.number("time_constant", c.time_constant, {0, 1}, "s", "of a joint following its speed");
+  table.number("breakaway", c.breakaway, {1, 10}, "times", "factor on the dead zone for a joint to start from rest");
+  table.number("time_constant", c.time_constant, {0, 1}, "s", "time constant with which a joint follows its speed");
 }
 
 std::vector<std::string> validate(const ArmConfig& config) {
@@ -114,14 +114,14 @@ JointVector Arm::drivenVelocity(double dt) const {
     const double wanted = std::abs(target_[k]) > threshold ? target_[k] : 0.0;
     const double share = config_.time_constant > 0.0 ? 1.0 - std::exp(-dt / config_.time_constant) : 1.0;
     const double next = qdot_[joint] + share * (wanted - qdot_[joint]);
-    const bool rests = wanted == 0.0 && std::abs(next) <= std::max(dead, kAtRest);  // friction holds it
+    const bool rests = wanted == 0.0 && std::abs(next) <= std::max(dead, kAtRest);  // held by friction
     velocity[joint] = rests ? 0.0 : next;
   }
   return velocity;
 }
 
 JointVector Arm::handVelocity(double dt) {
-  // Not through the limits that the driver keeps: a hand can do what it likes as far as the joints go.
+  // Without the driver's limits: a hand can move the arm as far as the joints go.
   const aesop::JointMotion motion =
       aesop::jointMotion(kinematics_, aesop::MotionConfig(), q_, config_.insertion_point, hand_);
   const double share = std::min(1.0, hand_left_ / dt);
@@ -147,12 +147,12 @@ void Arm::advance(double dt) {
     return;
   }
   qdot_ = (wrist.q - q_) / dt;
-  // Rounding of the division must not keep a joint that stands from being at rest.
+  // Rounding of the division must not leave a small velocity of a joint at rest.
   for (const int joint : kinematics_.driven()) {
     if (velocity[joint] == 0.0) qdot_[joint] = 0.0;
   }
   if (velocity.isZero(0.0)) qdot_.setZero();
-  if (in_hand && !isInHand()) qdot_.setZero();  // a hand lets go at rest
+  if (in_hand && !isInHand()) qdot_.setZero();  // a hand releases the arm at rest
   q_ = wrist.q;
 }
 

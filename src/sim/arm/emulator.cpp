@@ -63,7 +63,7 @@ aesop::Message Emulator::answer(const aesop::Frame& request, double now) {
     identity.model = "EMULATED AESOP";
     return identity;
   }
-  // Doubled and late requests are answered, but not executed a second time.
+  // Repeated and late requests are answered, but not executed.
   if (session_ && aesop::compareSequence(request.sequence, last_sequence_) > 0) {
     last_sequence_ = request.sequence;
     execute(request.message, now);

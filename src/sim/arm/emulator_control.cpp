@@ -64,7 +64,8 @@ std::string answerHand(const Words& words, Emulator& emulator, double now) {
   return verdict(emulator.hand({values[0], values[1], values[2], values[3]}, values[4], now));
 }
 
-// fault <name> [value] [to_controller|to_host] [for <s>], from the word `fault` on. Says why not.
+// fault <name> [value] [to_controller|to_host] [for <s>], starting with the word `fault`. Returns the error, or an
+// empty text.
 std::string parseFault(const Words& words, Fault& fault) {
   std::size_t k = 0;
   if (words.empty() || words[k++] != "fault" || words.size() < 2) return "expected fault and its name";

@@ -51,7 +51,7 @@ class EmulatorControlClient::Connection {
     context_.run_for(std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(timeout_)));
     if (!done) {
       broken_ = true;
-      // The handlers refer to this frame: they have to end before it does.
+      // The handlers refer to this stack frame, so they must end first.
       error_code ignored;
       socket_.close(ignored);
       context_.restart();

@@ -27,9 +27,9 @@ using boost::asio::local::stream_protocol;
 using boost::system::error_code;
 
 constexpr std::size_t kLongestRequest = 256;  // bytes
-constexpr double kSilence = 1.0;              // s without a byte from the host: its process may have gone
-constexpr double kLongestPause = 0.005;       // s, between two looks at everything
-constexpr double kShortestPause = 0.001;      // s: bytes that come through closer together are handed over together
+constexpr double kSilence = 1.0;              // s without a byte from the host, after which its process may be gone
+constexpr double kLongestPause = 0.005;       // s, longest time between two cycles
+constexpr double kShortestPause = 0.001;      // s: bytes that arrive closer together are passed on together
 constexpr std::chrono::milliseconds kStopPeriod{20};
 
 double steadyNow() {
@@ -119,7 +119,7 @@ class EmulatorServer::Loop {
     try {
       acceptor_.open();
       acceptor_.bind(stream_protocol::endpoint(control_));
-      // Whoever may write to it moves the arm by hand.
+      // Restricted, since write access allows moving the arm by hand.
       if (::chmod(control_.c_str(), S_IRUSR | S_IWUSR) != 0) throw std::runtime_error("control socket: chmod failed");
       acceptor_.listen();
     } catch (const boost::system::system_error& error) {
@@ -148,7 +148,7 @@ class EmulatorServer::Loop {
     listen();
   }
 
-  // The duplicate has to go, too, or the far end would not see the port go away.
+  // Closes the duplicate too, otherwise the far end would not notice that the port is gone.
   void closePort() {
     port_events_.close();
     pty_.reset();

@@ -11,7 +11,7 @@ namespace laparoscope_servo::sim {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kLongest = 1e6;  // s, of a schedule
+constexpr double kLongest = 1e6;  // s, latest time of a schedule
 
 enum class Takes { kNothing, kProbability, kDelay, kPerhapsSeconds, kMask, kJoint, kLie };
 
@@ -19,7 +19,7 @@ struct Kind {
   const char* name;
   Takes takes;
   bool of_line;   // has a direction
-  bool can_last;  // may have an end
+  bool can_last;  // may have a duration
   const char* help;
 };
 

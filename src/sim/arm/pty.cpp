@@ -36,7 +36,7 @@ Pty::Pty(const std::string& link) : link_(link) {
   slave_ = ::open(device_.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
   termios settings{};
   if (slave_ >= 0 && ::tcgetattr(slave_, &settings) == 0) {
-    ::cfmakeraw(&settings);  // or the line would echo
+    ::cfmakeraw(&settings);  // otherwise the line would echo
     ::tcsetattr(slave_, TCSANOW, &settings);
   }
   struct stat existing {};
@@ -55,7 +55,7 @@ Pty::Pty(const std::string& link) : link_(link) {
 }
 
 Pty::~Pty() {
-  // Somebody may have put another link there since.
+  // The link may have been replaced since.
   std::array<char, 128> target{};
   const ssize_t length = ::readlink(link_.c_str(), target.data(), target.size() - 1);
   if (length > 0 && device_ == target.data()) ::unlink(link_.c_str());
@@ -79,7 +79,7 @@ aesop::Bytes Pty::read() {
 
 void Pty::write(const aesop::Bytes& bytes) {
   const ssize_t written = ::write(master_, bytes.data(), bytes.size());
-  // Nobody reads: drop what is there, so that a client that comes later does not get the news of long ago.
+  // Nobody reads: drops the waiting bytes, so that a later client does not read stale data.
   if (written < static_cast<ssize_t>(bytes.size())) ::tcflush(slave_, TCIFLUSH);
 }
 

@@ -1,4 +1,4 @@
-// A pseudo-terminal with a symbolic link to its far end: the serial port of a robot that is not there.
+// A pseudo-terminal with a symbolic link to its far end: the serial port of the emulated robot.
 #pragma once
 
 #include <string>
@@ -9,19 +9,18 @@ namespace laparoscope_servo::sim {
 
 class Pty {
  public:
-  // `link`: where to put the symbolic link; an old link is replaced, anything else there is left alone and refused.
-  // Throws std::runtime_error.
+  // `link`: path of the symbolic link. An old link is replaced; for any other file std::runtime_error is thrown.
   explicit Pty(const std::string& link);
   ~Pty();
   Pty(const Pty&) = delete;
   Pty& operator=(const Pty&) = delete;
 
-  // Never block; what the far end does not take is lost, as on a serial line.
+  // Never block; bytes that the far end does not take are lost, as on a serial line.
   aesop::Bytes read();
   void write(const aesop::Bytes& bytes);
-  // A descriptor of this end for somebody who watches it, and closes it. Throws std::runtime_error.
+  // A second descriptor of this end, for polling; the caller closes it. Throws std::runtime_error.
   int duplicate() const;
-  // Lets somebody else open the port after a process that opened it exclusively was killed: with a real port the kernel
+  // Allows opening the port again after a process that opened it exclusively was killed; for a real port the kernel
   // does so.
   void release();
 
@@ -34,7 +33,7 @@ class Pty {
   std::string link_;
   std::string device_;
   int master_ = -1;
-  int slave_ = -1;  // held open, or the settings and bytes of the line would end with each client
+  int slave_ = -1;  // held open, so that the settings and bytes of the line survive each client
 };
 
 }  // namespace laparoscope_servo::sim

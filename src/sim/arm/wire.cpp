@@ -25,7 +25,7 @@ void WireDirection::push(const aesop::Bytes& bytes, double now) {
 }
 
 void WireDirection::carry(std::uint8_t byte, double now) {
-  // A line does not reorder, also when its delay becomes shorter.
+  // A line keeps the order of bytes, also when its delay becomes shorter.
   const double at = now + faults.delay;
   line_.push_back({line_.empty() ? at : std::max(at, line_.back().at), byte});
 }

@@ -15,7 +15,7 @@ struct Nearest {
   double depth;     // m, z of the ray's point
 };
 
-// Between the ray t m, t > 0, and the segment from a to b.
+// Nearest points of the ray t m, t > 0, and the segment from a to b.
 Nearest nearest(const Eigen::Vector3d& m, const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   const Eigen::Vector3d e = b - a;
   const double mm = m.squaredNorm(), me = m.dot(e), ee = e.squaredNorm();
@@ -27,7 +27,7 @@ Nearest nearest(const Eigen::Vector3d& m, const Eigen::Vector3d& a, const Eigen:
   return {(on_segment - t * m).norm(), t * m.z()};
 }
 
-// Cuts off what is behind z = kNear. False when nothing is left.
+// Cuts off the part behind z = kNear. Returns false if nothing is left.
 bool cut(Eigen::Vector3d& a, Eigen::Vector3d& b) {
   if (a.z() < kNear && b.z() < kNear) return false;
   Eigen::Vector3d& behind = a.z() < b.z() ? a : b;
@@ -36,7 +36,7 @@ bool cut(Eigen::Vector3d& a, Eigen::Vector3d& b) {
   return true;
 }
 
-// A rectangle that holds the image of the capsule: that of the boxes round the spheres at its ends.
+// A rectangle that contains the image of the capsule: that of the boxes around the spheres at its ends.
 cv::Rect bounds(const Capsule& c, const geometry::PinholeCamera& camera, const cv::Size& size) {
   Eigen::Vector2d least(1e9, 1e9), most(-1e9, -1e9);
   for (const Eigen::Vector3d& p : {c.a, c.b}) {
@@ -84,7 +84,7 @@ void drawCapsules(const std::vector<Capsule>& capsules, const geometry::PinholeC
         const double cover = std::clamp((capsule.radius - hit.distance) / pixel + 0.5, 0.0, 1.0);
         if (!(cover > 0.0) || hit.depth > nearest_depth(v, u)) continue;
 
-        // The surface turns away from lamp and camera towards the outline; the middle shines.
+        // Towards the outline the surface turns away from lamp and camera and gets darker.
         const double across = std::min(1.0, hit.distance / capsule.radius);
         const double facing = std::sqrt(1.0 - across * across);
         const double light = gain * lamp.onSurface(u, v, hit.depth);

@@ -14,9 +14,9 @@ Eigen::Vector3d vector(const std::vector<double>& v) {
   return {v[0], v[1], v[2]};
 }
 
-// Where the k-th pull ends; before the first the tissue is at rest.
+// End of the k-th pull; before the first the tissue is at rest.
 Eigen::Vector3d endOfPull(double k, double distance) {
-  constexpr double kGoldenAngle = 2.399963;  // rad: no two pulls are alike
+  constexpr double kGoldenAngle = 2.399963;  // rad: makes all pulls different
   if (!(k > 0.0)) return Eigen::Vector3d::Zero();
   return distance * Eigen::Vector3d(std::cos(kGoldenAngle * k), std::sin(kGoldenAngle * k), std::sin(k) / 3.0);
 }
@@ -34,7 +34,7 @@ void describe(parameters::Table& table, PatientConfig& c) {
     table.numbers("trocar", c.breathing.trocar, 3, {-0.05, 0.05}, "m",
                   "amplitude of the insertion point's first harmonic: x, y, z");
   });
-  table.group("pull", "somebody pulls at the tissue, each time to another place on a circle", [&] {
+  table.group("pull", "repeated pulls at the tissue, each to another place on a circle", [&] {
     table.number("distance", c.pull.distance, {0, 0.1}, "m",
                  "radius of the circle; nearer and further by a third of it");
     table.number("time", c.pull.time, {0.05, 60}, "s", "that a pull takes");

@@ -39,7 +39,7 @@ void describe(Table& table, TissueConfig& c) {
 
 void describe(Table& table, LightConfig& c) {
   table.number("reference_distance", c.reference_distance, Range::above(0, 10), "m",
-               "where tissue that is seen squarely has the brightness of its texture");
+               "distance at which tissue seen squarely has the brightness of its texture");
   table.number("beam_exponent", c.beam_exponent, {0, 8}, "",
                "lamp and lens lose this power of the cosine of the angle to the optical axis");
 }
@@ -47,13 +47,13 @@ void describe(Table& table, LightConfig& c) {
 void describe(Table& table, ExposureConfig& c) {
   table.flag("automatic", c.automatic, "false: the gain stays as it is");
   table.number("gain", c.gain, {0.01, 100}, "", "when not automatic");
-  table.number("target", c.target, {1, 254}, "grey levels", "mean of the image that the gain is moved to");
+  table.number("target", c.target, {1, 254}, "grey levels", "target mean of the image");
   table.number("time_constant", c.time_constant, Range::above(0, 1e3), "s", "of that motion");
 }
 
 void describe(Table& table, InstrumentConfig& c) {
   table.number("radius", c.radius, Range::above(0, 0.1), "m", "of its shaft");
-  table.numbers("trocar", c.trocar.data(), 3, {-10, 10}, "m", "where it comes from");
+  table.numbers("trocar", c.trocar.data(), 3, {-10, 10}, "m", "point through which the shaft enters");
   table.numbers("start", c.start.data(), 3, {-10, 10}, "m", "its tip when a crossing begins");
   table.numbers("end", c.end.data(), 3, {-10, 10}, "m", "its tip when a crossing ends");
   table.number("crossing_time", c.crossing_time, Range::above(0, 1e4), "s", "that a crossing takes");

@@ -21,7 +21,7 @@ cv::Mat texture(const TissueConfig& config) {
   return tissueTexture(config.texture_side, static_cast<std::uint64_t>(config.seed));
 }
 
-// Mean of the image's brightness under that light, before the exposure's gain; every eighth pixel says enough.
+// Mean of the image's brightness under that light, before the exposure's gain; every eighth pixel suffices.
 double meanBrightness(const cv::Mat& image, const cv::Mat1f& light) {
   constexpr int kStep = 8;
   double sum = 0.0;

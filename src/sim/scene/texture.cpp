@@ -79,7 +79,7 @@ cv::Mat tissueTexture(int side, std::uint64_t seed) {
   if (side < 64 || side > 8192) {
     throw std::invalid_argument("side of the tissue's texture is " + std::to_string(side) + " px, expected 64 to 8192");
   }
-  cv::RNG random(seed ^ 0x9E3779B97F4A7C15ULL);  // a seed of 0 would leave OpenCV's generator standing
+  cv::RNG random(seed ^ 0x9E3779B97F4A7C15ULL);  // OpenCV's generator does not work with a seed of 0
 
   cv::Mat3f image(side, side, cv::Vec3f(78.0F, 84.0F, 178.0F));
   blend(image, smoothStep(fractalNoise(side, 4, 64, 0.6F, random), 0.35, 0.8) * 0.8, {96.0F, 118.0F, 214.0F});

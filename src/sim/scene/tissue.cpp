@@ -14,9 +14,9 @@ namespace laparoscope_servo::sim {
 
 namespace {
 
-constexpr double kMinDistance = 1e-4;  // m: nearer than this nothing is to be seen
+constexpr double kMinDistance = 1e-4;  // m: at smaller distances nothing is visible
 
-// Texels that lie between two neighbouring samples of the image, at most, over the image's corners and centre.
+// Largest number of texels between two neighbouring samples, over the image's corners and centre.
 double texelsPerSample(const Eigen::Matrix3d& texels_from_samples, const cv::Size& size) {
   const double right = size.width - 1.0, bottom = size.height - 1.0;
   double most = 0.0;
@@ -37,8 +37,8 @@ cv::Matx33d toCv(const Eigen::Matrix3d& m) {
   return {m(0, 0), m(0, 1), m(0, 2), m(1, 0), m(1, 1), m(1, 2), m(2, 0), m(2, 1), m(2, 2)};
 }
 
-// The warp divides by a negative denominator as readily as by a positive one: takes out the pixels whose rays point
-// away from the plane, those with n'm <= 0.
+// The warp does not check the sign of the denominator: blackens the pixels whose rays point away from the plane, those
+// with n'm <= 0.
 void blackenBeyondHorizon(cv::Mat& image, const Eigen::RowVector3d& ray_dot_normal) {
   const auto at = [&](double u, double v) { return ray_dot_normal.dot(Eigen::RowVector3d(u, v, 1.0)); };
   const double right = image.cols - 1.0, bottom = image.rows - 1.0;
@@ -116,7 +116,7 @@ cv::Mat Tissue::view(const geometry::PinholeCamera& camera, const cv::Size& size
   const double density = texelsPerSample(texels_from_samples, samples);
   const int coarsest = static_cast<int>(pyramid_.size()) - 1;
   const int level = density > 1.0 ? std::min(coarsest, static_cast<int>(std::lround(std::log2(density)))) : 0;
-  // pyrDown keeps the centre of the first pixel where it is.
+  // pyrDown does not move the centre of the first pixel.
   const Eigen::Matrix3d level_from_samples =
       Eigen::Vector3d(std::ldexp(1.0, -level), std::ldexp(1.0, -level), 1.0).asDiagonal() * texels_from_samples;
 

@@ -21,7 +21,7 @@ void ScopeActuator::command(double time, const Eigen::Vector4d& velocity) {
 }
 
 Eigen::Vector4d ScopeActuator::velocity(double time) {
-  constexpr double kRounding = 1e-9;  // s, of the sum of many steps
+  constexpr double kRounding = 1e-9;  // s, rounding of the sum of many steps
   while (!waiting_.empty() && waiting_.front().first + config_.delay <= time + kRounding) {
     executed_ = waiting_.front().second;
     waiting_.pop_front();

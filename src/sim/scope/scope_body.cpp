@@ -22,7 +22,7 @@ void ScopeBody::moveInsertionPoint(const Eigen::Vector3d& insertion_point) {
   if (wrist_ == Wrist::kPassive) aim();
 }
 
-// Turns the scope about O_7, the shortest way, until its shaft passes through the insertion point.
+// Turns the scope about O_7 by the smallest angle for which its shaft passes through the insertion point.
 void ScopeBody::aim() {
   const Eigen::Vector3d end_effector = world_T_tip_ * Eigen::Vector3d(0.0, 0.0, -length_);
   const Eigen::Vector3d axis = world_T_tip_.linear().col(2);

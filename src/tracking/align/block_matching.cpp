@@ -11,25 +11,27 @@ namespace laparoscope_servo::tracking {
 
 namespace {
 
-constexpr int kLargest = 160;         // px of the level, the ROI's larger side: more detail tells no more
-constexpr int kAround = 7;            // px, half of the window that local contrast is relative to
-constexpr float kFloor = 1.5f;        // grey levels: a deviation below it is noise
-constexpr float kMost = 3.0f;         // deviations: an edge or a highlight does not outweigh all else
-constexpr double kLeastEnergy = 0.3;  // mean square of the contrast, of a block with texture
-constexpr double kPeak = 0.5;         // correlation
-constexpr double kLead = 0.1;         // over the second peak
-constexpr double kApart = 2.5;        // px of the level: another peak, and what counts as moved alike
-constexpr int kAlike = 2;             // other blocks
-// Of a block's side: blocks nearer to each other share so much of the image that they agree by themselves.
+constexpr int kLargest = 160;   // px of the level, the ROI's larger side: a finer level adds no information
+constexpr int kAround = 7;      // px, half the window of the local mean and deviation
+constexpr float kFloor = 1.5f;  // grey levels: a smaller deviation is noise
+// deviations, at which contrast is clipped so that an edge or a highlight does not dominate
+constexpr float kMost = 3.0f;
+constexpr double kLeastEnergy = 0.3;  // least mean square contrast of a block with texture
+constexpr double kPeak = 0.5;         // least correlation of a confident peak
+constexpr double kLead = 0.1;         // least lead over the second peak
+// px of the level: peaks further apart are different; blocks whose shifts differ by less moved alike
+constexpr double kApart = 2.5;
+constexpr int kAlike = 2;  // other blocks that must have moved alike
+// share of a block's side: blocks nearer to each other share so many pixels that their agreement proves nothing
 constexpr double kIndependent = 0.5;
 constexpr double kLeastValid = 0.6;
 
 struct Products {
   float both = 0.0f;    // dot product of a block with a window
-  float energy = 0.0f;  // of the window
+  float energy = 0.0f;  // energy of the window
 };
 
-// Column by column, and the columns at the end: sums across a row would take longer than the products.
+// Adds up column by column, and the columns at the end, since sums across a row would take longer than the products.
 LAPAROSCOPE_SERVO_CLONES
 Products product(const float* block, int block_stride, const float* window, int stride) {
   constexpr int kSide = BlockMatching::kSide;
@@ -103,7 +105,7 @@ void BlockMatching::look(const image::RegionPyramid& current, const Eigen::Matri
   contrast();
 }
 
-// What differs from its surroundings, over how much they vary; 0 where the image is not valid.
+// Local contrast: deviation from the local mean over the local standard deviation; 0 where the image is not valid.
 void BlockMatching::contrast() {
   const int width = warped_.cols, height = warped_.rows;
   float* const count = column_sums_.data();
@@ -149,7 +151,7 @@ BlockMatching::Peak BlockMatching::find(const cv::Point& block) {
     const Products found = product(own, stride, window, static_cast<int>(detail_.step1()));
     return score[j][i] = found.both / std::sqrt(energy * std::max(found.energy, 0.2f * energy) + 1e-6f);
   };
-  // Every second place, then uphill: local contrast is smooth over two pixels.
+  // Tries every second place, then climbs to the peak: local contrast is smooth over two pixels.
   Peak peak{0.0, 0.0, -1.0, -1.0};
   int row = 0, column = 0;
   const auto better = [&](int j, int i) {
@@ -176,7 +178,7 @@ BlockMatching::Peak BlockMatching::find(const cv::Point& block) {
     }
   }
   if (row == 0 || column == 0 || row == kPlaces - 1 || column == kPlaces - 1) {
-    peak.second = peak.top;  // it may be higher beyond
+    peak.second = peak.top;  // at the border of the range: the correlation may be higher beyond
     return peak;
   }
   peak.x = column - kReach + vertex(score[row][column - 1], score[row][column], score[row][column + 1]);

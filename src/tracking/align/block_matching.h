@@ -1,4 +1,4 @@
-// Block matching: how far blocks of the region of interest (ROI) are from where a homography puts them, by the
+// Block matching: measures how far blocks of the region of interest (ROI) are from where a homography puts them, by the
 // correlation of local contrast.
 //
 // It is independent of ESM and of its assumptions: gain, haze and shading that vary smoothly do not change local
@@ -19,37 +19,37 @@ namespace laparoscope_servo::tracking {
 
 struct BlockShift {
   Eigen::Vector2d centre;  // px of the reference
-  Eigen::Vector2d shift;   // px of the reference: what the reference shows at the centre is seen at g (centre + shift)
-  double correlation = 0.0;  // -1 to 1, where it is seen
-  bool confident = false;    // a clear peak, and other blocks moved alike
+  Eigen::Vector2d shift;   // px of the reference: the tissue at the reference's `centre` is seen at g (centre + shift)
+  double correlation = 0.0;  // -1 to 1, at the place where it is seen
+  bool confident = false;    // a clear peak, and at least two other blocks moved alike
 };
 
 class BlockMatching {
  public:
   static constexpr int kAlong = 6;  // blocks along each side of the ROI
   static constexpr int kMostBlocks = kAlong * kAlong;
-  static constexpr int kSide = 24;  // px of the level that blocks are searched on, of a block
+  static constexpr int kSide = 24;  // side of a block, px of the level on which blocks are searched
 
   // With a lens pyramids are of raw images; everything else is in rectified pixels. `coarser`: how many levels coarser
-  // than usual blocks are searched on; each doubles the distance at which they are found.
+  // than usual the search is; each level doubles the search range.
   explicit BlockMatching(std::shared_ptr<const image::Lens> lens = nullptr, int coarser = 0)
       : lens_(std::move(lens)), coarser_(coarser) {}
 
-  // The pyramid must hold the ROI with the margin (px) below where the image has it.
+  // The pyramid must hold the ROI with kReach px of the search level around it.
   void setReference(const image::RegionPyramid& reference, const geometry::Rectangle& roi);
 
-  // How many blocks have texture that is unique within the search range.
+  // Number of blocks whose texture is unique within the search range.
   int blocks() const { return static_cast<int>(blocks_.size()); }
-  // px of the reference per px of the level that blocks are searched on.
+  // px of the reference per px of the level on which blocks are searched.
   double scale() const { return scale_; }
-  // px of the reference, of the blocks' side.
+  // Side of a block [px of the reference].
   double side() const { return kSide * scale_; }
 
-  // The shifts of all blocks that lie in the image. The result is valid until the next call.
+  // Measures the shifts of all blocks that lie in the image. The result is valid until the next call.
   const std::vector<BlockShift>& measure(const image::RegionPyramid& current, const Eigen::Matrix3d& g);
 
  private:
-  static constexpr int kReach = 8;  // px of the level, by which a block is searched for
+  static constexpr int kReach = 8;  // search range: px of the level in each direction
   struct Peak {
     double x, y, top, second;
   };
@@ -65,7 +65,7 @@ class BlockMatching {
   Eigen::Matrix3d reference_T_crop_ = Eigen::Matrix3d::Identity();
   cv::Mat1f warped_, valid_, detail_, reference_;
   std::vector<float> column_sums_;
-  std::vector<cv::Point> blocks_;  // their first pixels in the crop
+  std::vector<cv::Point> blocks_;  // first pixel of each block in the crop
   std::vector<BlockShift> shifts_;
 };
 

@@ -11,12 +11,14 @@ namespace laparoscope_servo::tracking {
 
 namespace {
 
-constexpr int kSets = 8;           // of three channels, as bits: blue 1, green 2, red 4
-constexpr int kSpoiled = 5;        // px, a square around what clips: smoothed and differentiated
-constexpr double kBrighter = 1.5;  // the lamp, as it comes nearer
-constexpr double kNearly = 0.95;   // of the energy; the error of an estimate goes with its root
+constexpr int kSets = 8;  // sets of channels, as bits: blue 1, green 2, red 4
+// px, side of the square around a clipped pixel that smoothing and differentiation spoil
+constexpr int kSpoiled = 5;
+constexpr double kBrighter = 1.5;  // factor of brightness of a lamp that comes nearer
+// share of the largest energy that counts as nearly as strong; the error of an estimate goes with its root
+constexpr double kNearly = 0.95;
 
-// For each set of channels that clip, the energy sum grad_c grad_d of the pixels where they and no others do.
+// For each set of channels: the energy, sum grad_c grad_d, of the pixels where exactly these channels clip.
 using Energies = std::array<Eigen::Matrix3d, kSets>;
 
 struct Gradients {
@@ -59,7 +61,7 @@ Energies energiesOf(const Gradients& g, const cv::Mat1b& clipped) {
   return energies;
 }
 
-// Of a set's channels, where none of them clips.
+// Energy of a set's channels over the pixels where none of them clips.
 Eigen::Matrix3d energyOf(const Energies& energies, int set) {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (int clipped = 0; clipped < kSets; ++clipped) {
@@ -83,13 +85,13 @@ Principal principalOf(const Eigen::Matrix3d& energy, int set) {
   if (solver.info() != Eigen::Success || !(solver.eigenvalues()[2] > 0.0)) return {};
   Principal principal = {solver.eigenvalues()[2], solver.eigenvectors().col(2)};
   for (int c = 0; c < 3; ++c) {
-    if ((set & (1 << c)) == 0) principal.axis[c] = 0.0;  // exactly
+    if ((set & (1 << c)) == 0) principal.axis[c] = 0.0;  // exactly zero
   }
   return principal;
 }
 
-// The set whose mixture holds most in brighter light, of those that hold nearly the most as the light is. Scaled so
-// that the weights' magnitudes sum to one, which keeps the range of grey levels.
+// Among the sets whose mixture has nearly the most energy in the present light, takes the one with the most energy in
+// brighter light. The weights are scaled so that their magnitudes sum to one, which keeps the range of grey levels.
 image::Channels strongestMixture(const cv::Mat& patch, int saturation) {
   const Gradients gradients = gradientsOf(patch);
   const Energies as_it_is = energiesOf(gradients, clippedSets(patch, saturation));

@@ -1,5 +1,5 @@
-// Chooses the channel that is tracked, a weighted sum of the colours, or several of them: the one with the strongest
-// gradients in the region that does not clip.
+// Chooses the tracked channel (a weighted sum of the colours) or channels: those with the strongest gradients in the
+// region that do not clip.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ namespace laparoscope_servo::tracking {
 //   kColour     the channels that have the strongest gradients together, without those that clip
 image::Channels chosenChannels(TrackedChannels wanted, const cv::Mat& patch, int saturation);
 
-// Whether what is tracked depends on blue, green, red.
+// Whether the tracked channels depend on blue, green, red.
 std::array<bool, 3> coloursIn(const image::Channels& tracked);
 
 }  // namespace laparoscope_servo::tracking

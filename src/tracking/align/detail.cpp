@@ -9,7 +9,7 @@ namespace laparoscope_servo::tracking {
 namespace {
 
 constexpr int kBlock = 16;      // px
-constexpr int kFewPixels = 32;  // an eighth of a block
+constexpr int kFewPixels = 32;  // an eighth of a block's pixels; blocks with fewer are ignored
 constexpr double kBlur = 1.0;   // px
 
 }  // namespace

@@ -8,55 +8,55 @@ namespace laparoscope_servo::tracking {
 
 namespace {
 
-// All px of this file are lengthUnit()s of the image.
-// px: an alignment that still moves by less than this after all its iterations is as good as converged.
+// All px of this file are lengthUnit()s of the image. px: an alignment whose last iteration moved it by less than this
+// counts as converged.
 constexpr double kNearlyConverged = 1.0;
 
-// Least visible share of the part of the ROI that is in the image. Below it, the areas that are left may be just those
-// that happen to agree with a wrong estimate.
+// Least visible share of the part of the ROI that is in the image. Below it, the remaining areas may be just those that
+// happen to agree with a wrong estimate.
 constexpr double kMinOfImage = 0.15;
 
-constexpr double kRecordTime = 0.8;  // s, in which the record follows what it is told
+constexpr double kRecordTime = 0.8;  // s, time constant of the record
 
 // How much worse than the record an estimate may be: factor and constant on the unexplained share 1 - zncc, and on
-// sigma [grey levels]. A search starts anywhere, and picks the areas that agree; false fits have 1.5 to 4 times the
-// residual.
+// sigma [grey levels]. Less is allowed to a search, which starts anywhere and keeps the areas that agree; its false
+// fits have 1.5 to 4 times the residual.
 struct Tolerance {
   double unexplained_factor, unexplained, sigma_factor, sigma;
 };
 constexpr Tolerance kTracking = {2.0, 0.10, 2.0, 1.0};
 constexpr Tolerance kSearching = {1.5, 0.05, 1.5, 0.3};
 
-// By which factor the light may have changed between the last estimate that was believed and one that a search has
-// found: at once, and more for each second that has passed.
+// Factor by which the gain may differ between the last accepted estimate and one that a search has found:
+// kMaxGainChange at once, and more for each second since.
 constexpr double kMaxGainChange = 1.5;
 constexpr double kGainChangeRate = 0.5;  // 1/s
 
-// Block matching. So many blocks where the estimate has them, and such a share of those in the image, are the ROI,
-// whatever its light and noise are like; in images of other scenes not three moved alike.
+// Block matching. If kEnoughBlocks blocks, and this share of those in the image, are where the estimate puts them, it
+// is the ROI, whatever the illumination and the noise; in images of other scenes fewer than three blocks moved alike.
 constexpr int kEnoughBlocks = 6;
 constexpr double kRecognised = 0.3;
-constexpr double kNear = 3.0;       // px, the median of the blocks
-constexpr int kTelling = 8;         // blocks; where fewer can be told from their surroundings, they tell nothing
-constexpr int kVisibleTelling = 6;  // the same of those that nothing covers
-constexpr int kFewBlocks = 3;       // that moved alike: as many as it takes to be confident of any
-// Of the blocks that can be visible. On chol_blood.mp4 (of the four films where it was looked at) a sixth of 36
+constexpr double kNear = 3.0;       // px, limit of the median distance of the blocks
+constexpr int kTelling = 8;         // blocks; with fewer that have unique texture, block matching is inconclusive
+constexpr int kVisibleTelling = 6;  // kTelling for blocks that are not covered
+constexpr int kFewBlocks = 3;       // blocks that moved alike: the least number for any of them to be confident
+// Share of the blocks that can be visible. On chol_blood.mp4 (of the four films where it was looked at) a sixth of 36
 // overlapping blocks agreed by chance for 20 images.
 constexpr double kFoundOfVisible = 0.25;
 
-// While tracking, blocks are asked only where most of the ROI is visible: next to an instrument a block is covered,
-// too. But where the gates take all that has texture for covered, the estimate may as well be wrong: so much is not
-// visible for so long without a block that is.
+// While tracking, block matching is required only if most of the ROI is visible, since blocks beside an instrument are
+// covered in part. But if the gates reject all textured areas, the estimate may be wrong: if at least kPartlyVisible is
+// visible, block matching is also required once no leastBlocks() blocks were found for kUnproven.
 constexpr double kMostlyVisible = 0.5;
 constexpr double kPartlyVisible = 0.35;
 constexpr double kUnproven = 0.5;  // s
 
-// A record can be so good that what is real never reaches it again: these are always good enough.
+// A record can be better than any later correct estimate: values at least this good always pass.
 constexpr double kGoodZncc = 0.9;
-constexpr double kGoodSigma = 4.0;  // grey levels, of a compressed feed
-// Tissue changes while it is not seen: after so long, what it looked like counts as much less as it ever will.
+constexpr double kGoodSigma = 4.0;  // grey levels; typical of a compressed feed
+// Tissue changes while it is not seen: over this time, the tolerance grows to its largest value.
 constexpr double kForgetting = 2.0;                      // s
-constexpr Tolerance kForgotten = {0.0, 0.15, 0.0, 3.0};  // added
+constexpr Tolerance kForgotten = {0.0, 0.15, 0.0, 3.0};  // added to the tolerance after kForgetting
 
 std::string text(const char* what, double value, const char* limit, double bound) {
   std::ostringstream stream;

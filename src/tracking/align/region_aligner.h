@@ -1,6 +1,11 @@
-// Aligns a region of interest (ROI) of the reference with one image: occlusion gates choose the pixels, ESM aligns
-// them, the gates are evaluated again on the result, until no further area is rejected; then block matching checks and
-// corrects the estimate.
+// Aligns a region of interest (ROI) of the reference with one image. The order in align():
+//   1. Colour gate at the start, unless the last prediction was too far off for its mask to fit.
+//   2. ESM on the coarse levels.
+//   3. ESM on the finest level. If the estimate has left the place at which the colour gate was evaluated, the gate is
+//      evaluated again there, before and at most once more after this step.
+//   4. Structure gate on the aligned region; while it rejects further areas, ESM on the finest level again.
+//   5. Block matching checks the estimate, and corrects it where both contradict each other.
+//   6. If most blocks were not found, block matching on a coarser level, which searches further.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,7 +26,7 @@
 namespace laparoscope_servo::tracking {
 
 struct Alignment {
-  EsmResult esm;                  // iterations: of all alignments together
+  EsmResult esm;                  // its `iterations` are those of all alignments together
   bool in_image = true;           // false: the ROI is expected outside the image, nothing was aligned
   double visible_fraction = 0.0;  // 0 to 1, share of the ROI's pixels that were used
   double share_in_image = 1.0;    // 0 to 1, of the ROI's pixels
@@ -44,12 +49,12 @@ class RegionAligner {
   // With a lens images are raw; the ROI and homographies are in rectified pixels.
   explicit RegionAligner(const TrackerConfig& config, std::shared_ptr<const image::Lens> lens = nullptr);
 
-  // `roi`: whole pixels, shown by the image (CV_8UC1 or CV_8UC3). Everything is visible in the reference but its
+  // `roi`: whole pixels, shown by the image (CV_8UC1 or CV_8UC3). In the reference everything counts as visible except
   // highlights.
   void setReference(const cv::Mat& image, const geometry::Rectangle& roi);
 
-  // Starts at `start`. `reach` [px]: by how much a corner may have moved from there without the image's crop being
-  // left.
+  // Aligns from `start`. `reach` [px]: how far a corner may be from there without leaving the crop of the image that is
+  // used.
   Alignment align(const cv::Mat& image, const EsmState& start, const MotionPrior* prior, double reach);
 
   // See RegionTracker::retune.
@@ -57,13 +62,13 @@ class RegionAligner {
 
   // Forgets occlusions and light of the last alignment, before one that starts elsewhere.
   void startAfresh();
-  // An image is done: see OcclusionGates::advance.
+  // Call at the end of an image, see OcclusionGates::advance.
   void advance() { gates_.advance(); }
 
-  // Of the last alignment: correlation of fine structure, see detailCorrelation.
+  // Correlation of the fine structure at the last alignment, see detailCorrelation.
   double detail() const;
 
-  // Of an image of `size`: 255 where a pixel of the ROI, seen there at `g`, is taken for occluded, 0 elsewhere.
+  // Mask of an image of `size`: 255 where the ROI, seen at `g`, counts as occluded, 0 elsewhere.
   cv::Mat occlusionMask(const Eigen::Matrix3d& g, const cv::Size& size) const;
 
   // What the reference's texture, beyond its noise, determines.
@@ -71,7 +76,7 @@ class RegionAligner {
 
   const Esm& esm() const { return esm_; }
   const OcclusionGates& gates() const { return gates_; }
-  // Of the ROI's pixels, as they are used now; valid until the next call of anything here.
+  // Current weights of the ROI's pixels; valid until the next call of a member function.
   cv::Mat1f weights() { return gates_.weights().view(); }
   const image::Channels& channels() const { return channels_; }
   const geometry::Rectangle& roi() const { return esm_.roi(); }
@@ -97,8 +102,8 @@ class RegionAligner {
   image::Channels channels_ = image::kLuma;
   image::ColourPatch patch_;
   Eigen::Matrix3d shown_ = Eigen::Matrix3d::Identity();  // the homography at which the colour gate was last evaluated
-  double noise_ = 0.0;                                   // grey levels, of the reference image
-  double surprise_ = 0.0;  // px, by how much a corner was off the prediction in the last image
+  double noise_ = 0.0;     // grey levels, noise of the reference image
+  double surprise_ = 0.0;  // px, distance of the worst corner from the prediction in the last image
 };
 
 // Pixels of a patch of the ROI's size to those of the image that the ROI is taken from.

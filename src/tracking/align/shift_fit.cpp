@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kFew = 5;
 constexpr int kRounds = 5;
-constexpr double kPlace = 0.15;  // px, how well a block's place is measured at best
+constexpr double kPlace = 0.15;  // px, least standard deviation of a block's measured place
 // Standard deviations of ESM's error at the ROI's border, in units of half its side, before blocks are measured. They
 // keep shear and perspective small unless the blocks determine them.
 constexpr double kShift = 0.08, kAffine = 0.04, kPerspective = 0.024;
@@ -38,7 +38,7 @@ using OfBlocks = boost::container::static_vector<Value, BlockMatching::kMostBloc
 
 // A confident block, in normalised template units.
 struct Row {
-  Eigen::Matrix<double, 2, 8> jacobian;  // of its place, by x
+  Eigen::Matrix<double, 2, 8> jacobian;  // derivative of the block's place by x
   Eigen::Vector2d shift;
   double correlation;
 };
@@ -82,11 +82,13 @@ std::optional<ShiftFit> fitShifts(const std::vector<BlockShift>& shifts, const g
   }
   if (rows.size() < kFew) return std::nullopt;
   const Matrix8d known = knownBefore();
-  // Blocks overlap, so their shifts are not independent: each counts for the share of its area that is its own.
+  // Blocks overlap, so their shifts are not independent: each gets the weight of the share of its area that no other
+  // block covers.
   const double overlap = std::max(1.0, static_cast<double>(rows.size()) * side * side / (roi.width * roi.height));
   ShiftFit result;
   Matrix8d a = Matrix8d::Zero();
-  double sigma = std::numeric_limits<double>::infinity();  // of a shift, each direction; at first all count alike
+  // standard deviation of a shift in each direction; infinite at first, so that all have the same weight
+  double sigma = std::numeric_limits<double>::infinity();
   OfBlocks<double> left;
   for (int round = 0; round < kRounds; ++round) {
     a.setZero();

@@ -14,19 +14,19 @@ namespace laparoscope_servo::tracking {
 
 struct ShiftFit {
   geometry::Vector8d x = geometry::Vector8d::Zero();  // G -> G N^-1 exp(A(x)) N, see MotionPrior
-  Matrix8d covariance = Matrix8d::Zero();             // of x, by how the blocks scatter about it
-  double significance = 0.0;  // of x against 0: squared standard deviations, a degree of freedom
+  Matrix8d covariance = Matrix8d::Zero();             // of x, from the scatter of the blocks about the fit
+  double significance = 0.0;                          // squared Mahalanobis distance of x from 0, per degree of freedom
 };
 
-// Of the confident shifts, robustly; empty when there are fewer than five. As many degrees of freedom as they
-// determine: turn, shear and perspective only as far as they are seen. `side`: px of the reference, of a block.
+// Robust fit to the confident shifts; empty if there are fewer than five. A prior keeps turn, shear and perspective
+// small unless the shifts determine them. `side`: of a block [px of the reference].
 std::optional<ShiftFit> fitShifts(const std::vector<BlockShift>& shifts, const geometry::Rectangle& roi, double side);
 
-// Covariance of x, as above, that comes of tissue which is no plane, or deforms: of the confident shifts' `median`
-// [px], what is more than measuring a block errs by. Zero where the shifts are as small, or fewer than eight.
+// Covariance of x that comes of tissue which is not a plane, or deforms: from the confident shifts' `median` [px], as far
+// as it exceeds the accuracy of block matching. Zero if it does not, or if fewer than eight shifts are confident.
 Matrix8d deformationCovariance(const std::vector<BlockShift>& shifts, double median, const geometry::Rectangle& roi);
 
-// px of the image that `g` leads to, the median of the confident shifts; NaN when there is none.
+// Median length of the confident shifts [px of the current image]; NaN if there is none.
 double medianShift(const std::vector<BlockShift>& shifts, const Eigen::Matrix3d& g);
 int confidentShifts(const std::vector<BlockShift>& shifts);
 

@@ -9,7 +9,7 @@ namespace laparoscope_servo::tracking {
 
 namespace {
 
-constexpr double kSingular = 1e-12;  // conditioning of equations that determine nothing
+constexpr double kSingular = 1e-12;  // conditioning below which the equations count as singular
 
 // px in the image, standard deviation of the image of a point of the ROI.
 double pointError(const Eigen::Matrix3d& g, const geometry::Rectangle& roi, const Eigen::Vector2d& point,
@@ -21,9 +21,9 @@ double pointError(const Eigen::Matrix3d& g, const geometry::Rectangle& roi, cons
 
 }  // namespace
 
-// The covariance that the residuals show is A^-1 B A^-1 with A = J'WJ and B the sum of the blocks' J'Wr times itself:
-// whatever the residuals within a block have in common is in it. `noise` is the one number that makes A/noise as large
-// as its inverse.
+// The covariance by the residuals is A^-1 B A^-1 with A = J'WJ and B the sum of the blocks' (J'Wr)(J'Wr)', which
+// includes the correlation of residuals within a block. `noise` is the scale for which A/noise matches the inverse of
+// that covariance.
 EstimateCovariance estimateCovariance(const Matrix10d& matrix, const std::vector<LightBlockSums>& blocks, double sigma,
                                       const Matrix8d& prior) {
   Matrix10d scores = Matrix10d::Zero();
@@ -42,7 +42,7 @@ EstimateCovariance estimateCovariance(const Matrix10d& matrix, const std::vector
     const Matrix8d shape = inverse.topLeftCorner<8, 8>();
     const Matrix8d seen = (inverse * scores * inverse).topLeftCorner<8, 8>();
     const Factors<8> of_shape(shape);
-    // Nine unknowns have been fitted to the blocks.
+    // Nine unknowns were fitted to the blocks.
     const double freedom = std::max(1.0, count - 9.0) / std::max(1, count);
     const double seen_noise = of_shape.solve(seen).trace() / 8.0 / freedom;
     if (std::isfinite(seen_noise)) result.noise = std::max(result.noise, seen_noise);

@@ -15,17 +15,17 @@ struct EstimateCovariance {
   double noise = 0.0;                  // see EsmResult
 };
 
-// `matrix` and `blocks`: the equations at the estimate, whose residuals scatter by `sigma` [grey levels]. `prior`:
-// inverse covariance of x before the image was seen, zero for none.
+// `matrix` and `blocks`: the equations at the estimate. `sigma`: standard deviation of the residuals [grey levels].
+// `prior`: inverse covariance of x before the image was used; zero for none.
 EstimateCovariance estimateCovariance(const Matrix10d& matrix, const std::vector<LightBlockSums>& blocks, double sigma,
                                       const Matrix8d& prior);
 
-// The covariance if residuals were independent noise of that variance [grey levels squared], without a prior.
+// The covariance for independent residuals of this variance [grey levels squared], without a prior.
 std::optional<Matrix8d> covarianceOfNoise(const Matrix10d& matrix, double variance);
 
-// px in the image, standard deviation of the worst of the ROI's corners as `g` shows it, for that covariance of x.
+// px in the image, standard deviation of the ROI's worst corner at `g`, for this covariance of x.
 double cornerError(const Eigen::Matrix3d& g, const geometry::Rectangle& roi, const Matrix8d& covariance);
-// The same of the ROI's centre.
+// px in the image, standard deviation of the ROI's centre at `g`, for this covariance of x.
 double centreError(const Eigen::Matrix3d& g, const geometry::Rectangle& roi, const Matrix8d& covariance);
 
 }  // namespace laparoscope_servo::tracking

@@ -19,11 +19,13 @@ namespace {
 
 // Steps shrink by about this factor from one to the next before that has been measured.
 constexpr double kContraction = 0.3;
-constexpr double kSlowest = 0.9;         // steps that shrink by less do not converge
-constexpr double kCoarseAccuracy = 0.1;  // px of the level: 0.2 px of the next finer one, which takes kFar for near
+constexpr double kSlowest = 0.9;  // steps that shrink by less do not converge
+// px of the level, which are 0.2 px of the next finer one and thus below kFar there
+constexpr double kCoarseAccuracy = 0.1;
 constexpr double kSettled = 0.2;  // standard deviations of the estimate that are still to go: they add 2 % to its error
 // Pixels of level 0 that have one error in common, from which on two steps there are enough: a pixel of level 1
-// takes in as many (4 x 4 with its smoothing), so that level has told all. Noise: 1 to 2; tissue that bends: 5 to 30.
+// takes in as many (4 x 4 with its smoothing), so level 0 adds no independent information. Noise: 1 to 2; tissue that
+// bends: 5 to 30.
 constexpr double kCorrelated = 16.0;
 // Steps that shrink by this factor or less reach their end soon; others are lengthened, by at most kLongest, where two
 // of them have the same direction (their cosine).
@@ -38,11 +40,11 @@ constexpr int kShifts = 4;    // first steps on a coarse level, if far
 constexpr double kSameLight = 0.5;  // of the residual's scale, for its mean
 constexpr int kTrials = 8;          // iterations with the light of the start, if far
 
-// Surprise, chi squared with 8 degrees of freedom, at which a prior begins to count less: Student's t with as many of
-// its own.
+// Squared Mahalanobis distance (8 degrees of freedom) from which the prior is down-weighted, as by Student's t with 8
+// degrees of freedom.
 constexpr double kFreedom = 8.0;
 
-// How much a prior counts that expected x = 0.
+// Weight of the motion prior for a deviation x from its prediction; 2 for x = 0.
 double credibility(const MotionPrior& prior, const geometry::Vector8d& x) {
   return 2.0 * kFreedom / (kFreedom + x.dot(prior.information * x));
 }
@@ -210,10 +212,10 @@ EsmStatus Esm::iterate(const image::RegionPyramid& current, int l, const MotionP
   return EsmStatus::kMaxIterations;
 }
 
-// Far from where the region belongs, the image says little of the light: a fit to what does not correspond would lower
-// the gain, and blocks with a bias each would take up the very differences that pull at the motion. So the light is
-// that of the start, and the first steps on a coarse level are shifts. If that leads nowhere, once more with the mean
-// matched at each step.
+// Far from alignment, gain and bias cannot be estimated reliably: a fit to pixels that do not correspond would lower
+// the gain, and a bias for each block would absorb the differences that drive the motion. So gain and bias are kept at
+// their start values, and the first steps on a coarse level are shifts only. If this does not converge, it is repeated
+// with the mean residual set to zero at each step.
 EsmStatus Esm::approach(const image::RegionPyramid& current, int l, const MotionPrior* prior, EsmResult& result) {
   EsmLevel& level = levels_[l];
   const EsmState start = result.state;

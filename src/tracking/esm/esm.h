@@ -6,6 +6,16 @@
 // by x = -(J'WJ)^-1 J'W r with J = (a J(grad of the warped image) + J(grad T)) / 2, and G <- G exp(A(x)).
 // G acts on normalised template coordinates p = N (u, v, 1): N puts the origin into the ROI's centre and divides by
 // half its larger side, so that G is the same at every level of the pyramid and J'J is well conditioned.
+//
+// Where the steps of Gauss-Newton are:
+//   warp, valid pixels                       Esm::warp, esm_level
+//   residual scale, weights                  residual (scale), esm_kernels (Tukey's weights)
+//   gradients, sums over cells of pixels     esm_kernels
+//   J'WJ, J'Wr; elimination of block biases  normal_equations
+//   x, prior                                 Esm::solve
+//   G <- G exp(A(x)), gain, biases           Esm::takeStep
+//   covariance, corner error                 Esm::judge, covariance
+// reference_esm has all of it in one short function, without illumination and weights.
 #pragma once
 
 #include <Eigen/Core>
@@ -30,7 +40,7 @@ struct EsmState {
   Eigen::Matrix3d g =
       Eigen::Matrix3d::Identity();  // pixels of the reference to pixels of the current image, determinant 1
   double gain = 1.0;                // gain * image + bias = reference
-  double bias = 0.0;                // grey levels; the mean of the blocks' with Light::kLocal
+  double bias = 0.0;                // grey levels; with Light::kLocal the mean of the blocks' biases
 };
 
 enum class EsmStatus {
@@ -45,30 +55,32 @@ struct EsmResult {
   EsmStatus status = EsmStatus::kMaxIterations;
   int iterations = 0;
   double last_step = 0.0;             // px, how far a corner moved in the last iteration
-  double last_step_deviations = 0.0;  // the same in standard deviations of the estimate, root mean square
+  double last_step_deviations = 0.0;  // last_step in standard deviations of the estimate, root mean square
   double sigma = 0.0;                 // grey levels, robust standard deviation of the residual at the finest level used
-  // Of the estimate, by the residuals and the prior; x as in MotionPrior. Meaningless where corner_error is infinite.
+  // Covariance of the estimate's error x (see MotionPrior), from residuals and prior. Undefined if corner_error is
+  // infinite.
   Matrix8d covariance = Matrix8d::Zero();
-  // Grey levels squared. Residuals of real tissue are not independent; they count as fewer. This is the variance of
-  // independent ones for which J'WJ would give as uncertain an estimate.
+  // Grey levels squared. Residuals of real tissue are correlated. This is the variance of independent residuals for
+  // which J'WJ would give an estimate of the same uncertainty.
   double noise = 0.0;
   double corner_error =
       0.0;  // px in the image, standard deviation of the worst corner, prior included; infinite if unknown
-  double centre_error = 0.0;  // the same of the ROI's centre
+  double centre_error = 0.0;  // px in the image, standard deviation of the ROI's centre
 };
 
 // What is known of the motion before the image is seen: the deviation x of G from `predicted`, G = predicted N^-1
-// exp(A(x)) N, has the inverse covariance `information` [normalised template units]. An estimate far off what was
-// expected counts the prior less.
+// exp(A(x)) N, has the inverse covariance `information` [normalised template units]. The prior is down-weighted when
+// the estimate deviates far from it.
 struct MotionPrior {
   Eigen::Matrix3d predicted = Eigen::Matrix3d::Identity();
   Matrix8d information = Matrix8d::Zero();
-  double noise = 100.0;  // grey levels squared, what a unit of J'WJ is worth: EsmResult::noise of images before
+  // grey levels squared, EsmResult::noise of earlier images: scales `information` to the units of J'WJ
+  double noise = 100.0;
 };
 
 class Esm {
  public:
-  // With a lens the pyramids are of raw images, and every other pixel that is spoken of is a rectified one.
+  // With a lens the pyramids are of raw images; all other pixel coordinates are rectified.
   explicit Esm(const EsmConfig& config, std::shared_ptr<const image::Lens> lens = nullptr)
       : config_(config), lens_(std::move(lens)) {}
 
@@ -77,16 +89,16 @@ class Esm {
   // in whole pixels.
   void setReference(const image::RegionPyramid& reference, const geometry::Rectangle& roi);
 
-  // Weights of the ROI's pixels, CV_32F of its size, for the following alignments. Coarser levels take the least of the
-  // weights that a pixel of theirs covers.
+  // Sets the weights of the ROI's pixels, CV_32F of its size, for the following alignments. A pixel of a coarser level
+  // gets the least of the weights that it covers.
   void setWeights(const cv::Mat1f& weights);
 
-  // With Light::kLocal the biases of the blocks go on from one alignment to the next; this starts them afresh from the
-  // image.
+  // With Light::kLocal each alignment starts with the blocks' biases of the last one. After this call they are
+  // estimated anew.
   void forgetLight();
 
-  // From level `coarsest` (by default the coarsest there is) down to level `finest`. What is said of
-  // uncertainty is known after level 0 only.
+  // Aligns from level `coarsest` (by default the coarsest there is) down to level `finest`. The members of the result
+  // on uncertainty are valid only if `finest` is 0.
   EsmResult align(const image::RegionPyramid& current, const EsmState& start, const MotionPrior* prior = nullptr,
                   int coarsest = 1000, int finest = 0);
 
@@ -97,7 +109,7 @@ class Esm {
   int levels() const { return static_cast<int>(levels_.size()); }
   const geometry::Rectangle& roi() const { return roi_; }
   const EsmLevel& level(int l) const { return levels_[l]; }
-  // N, see above.
+  // N of the head comment.
   const Eigen::Matrix3d& normalisation() const { return steps_.normalisation(); }
   const geometry::Sl3Steps& steps() const { return steps_; }
 
@@ -110,17 +122,21 @@ class Esm {
   void takeStep(EsmLevel& level, const Vector10d& x, EsmState& state);
   struct Iteration {
     Light light;      // that the equations have
-    bool shift_only;  // or all eight parameters
-    bool match_mean;  // of the residual, first
+    bool shift_only;  // false: all eight parameters
+    bool match_mean;  // sets the mean residual to zero first
   };
-  // kMaxIterations when there is nothing to say against it.
+  // One Gauss-Newton step. Returns kMaxIterations for "continue", otherwise the failure.
   EsmStatus iterate(const image::RegionPyramid& current, int l, const MotionPrior* prior, const Iteration& how,
                     EsmResult& result);
+  // Far from alignment, on the coarsest level: gain and bias stay fixed, and the first steps are shifts.
   EsmStatus approach(const image::RegionPyramid& current, int l, const MotionPrior* prior, EsmResult& result);
+  // Close to alignment: iterates until converged, with all unknowns.
   EsmStatus settle(const image::RegionPyramid& current, int l, int patience, const MotionPrior* prior,
                    EsmResult& result);
+  // One level: settle(), preceded by approach() if the first steps show that the region is far away.
   EsmStatus alignLevel(const image::RegionPyramid& current, int l, bool first, const MotionPrior* prior,
                        EsmResult& result);
+  // Fills in covariance, noise and expected errors of the final estimate.
   void judge(const MotionPrior* prior, EsmResult& result) const;
 
   EsmConfig config_;
@@ -131,11 +147,13 @@ class Esm {
   LevelEquations equations_;
   ResidualScale residual_scale_;
   std::vector<float> scratch_;
-  std::optional<Vector10d> last_step_;  // of this level, see accelerated(); empty after one that was lengthened
+  // the last step on this level, see accelerated(); empty after a step that was lengthened
+  std::optional<Vector10d> last_step_;
   bool light_known_ = false;
-  std::uint64_t alignments_ = 0;                               // of levels, so far
-  Light light_ = Light::kConstant;                             // that the equations have at this iteration
-  geometry::Vector8d deviation_ = geometry::Vector8d::Zero();  // from the prior's prediction
+  std::uint64_t alignments_ = 0;  // number of alignments of a level so far
+  // unknowns of the illumination in the equations of this iteration
+  Light light_ = Light::kConstant;
+  geometry::Vector8d deviation_ = geometry::Vector8d::Zero();  // x of the current iterate from the prior's prediction
 };
 
 }  // namespace laparoscope_servo::tracking

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kLanes = image::Patch::kStrip;
 
-// One row of a cell; those above and below for the gradient.
+// One row of a cell, with the rows above and below for the gradient.
 struct Rows {
   const float *image_above, *image, *image_below;
   const float *reference_above, *reference, *reference_below;
@@ -20,7 +20,7 @@ struct Rows {
 // The order of CellSums' members.
 enum Sum { kXX, kXY, kYY, kXR, kYR, kX, kY, kXM, kYM, kW, kR, kM, kMM, kMR, kSums };
 
-// What is added up, lane by lane. The lanes are summed when the cell is complete.
+// The sums, lane by lane. The lanes are added when the cell is complete.
 using Lanes = float[kSums][kLanes];
 
 // The first `cells` lanes of each sum become those of the cells: halves of each cell's lanes are added until one is
@@ -50,7 +50,7 @@ void sumCell(const Rows* rows, int count, float gain, float bias, float inverse_
       const float t = 1.0f - e * e;
       const float tukey = t > 0.0f ? t : 0.0f;
       const float w = row.weight[i] * tukey * tukey;
-      // Image and reference alike, which makes the step second-order.
+      // The gradients of image and reference are added, which makes the step second-order.
       const float gx =
           0.5f * (gain * (row.image[i + 1] - row.image[i - 1]) + (row.reference[i + 1] - row.reference[i - 1]));
       const float gy =
@@ -74,7 +74,7 @@ void sumCell(const Rows* rows, int count, float gain, float bias, float inverse_
       s[kMM][i] += wm * m;
       s[kMR][i] += wm * r;
     }
-    // The next strip: columns are walked down, which the processor does not foresee.
+    // Prefetches the next strip: the processor does not predict accesses down a column.
     __builtin_prefetch(row.image + 2 * kLanes);
     __builtin_prefetch(row.reference + 2 * kLanes);
     __builtin_prefetch(row.weight + 2 * kLanes);

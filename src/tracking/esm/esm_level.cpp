@@ -16,8 +16,8 @@ constexpr int kMinSide = 8;  // px
 // own contrast to the motion.
 constexpr int kLightBlocksAlong = 12;
 
-// Begins of about equal parts of `size`, each a multiple of `unit` but for the last, as many as fit with at least
-// `least` each.
+// Splits `size` into about equal parts, as many as fit with at least `least` each, and returns where they begin. All
+// but the last are multiples of `unit`.
 std::vector<int> split(int size, int unit, int least) {
   const int parts = std::clamp((size + least / 2) / least, 1, kLightBlocksAlong);
   std::vector<int> begins;
@@ -51,7 +51,8 @@ void keepInside(const float* __restrict weight, const float* __restrict above, c
 EsmLevel::EsmLevel(const image::RegionPyramid& reference, const geometry::Rectangle& roi, int l,
                    const image::Lens* lens) {
   const int size = 1 << l;
-  // Without a lens the level's pixels are taken as they are; with one they are sampled anyway, from the ROI's first on.
+  // Without a lens the level's pixels are used as they are. With a lens they are resampled, starting at the ROI's first
+  // pixel.
   const int x = lens != nullptr ? 0 : static_cast<int>(roi.x) - reference.origin().x;
   const int y = lens != nullptr ? 0 : static_cast<int>(roi.y) - reference.origin().y;
   const cv::Point begin((x + size - 1) / size, (y + size - 1) / size);
@@ -69,7 +70,7 @@ EsmLevel::EsmLevel(const image::RegionPyramid& reference, const geometry::Rectan
   weight.view().setTo(1.0f);
   used.resize(width, height);
   valid.resize(width, height);
-  // Cells of an eighth of the patch or less: the Jacobian's polynomials hardly change within.
+  // Cells are an eighth of the patch or less, within which the Jacobian's polynomials hardly change.
   cells_per_strip = width >= 128 ? 1 : width >= 64 ? 2 : 4;
   cell_rows = height >= 256 ? 16 : height >= 128 ? 8 : height >= 64 ? 4 : 2;
   const std::vector<int> columns = split(width, image::Patch::kStrip, image::Patch::kStrip);
@@ -124,7 +125,7 @@ void EsmLevel::useValid() {
 
 void matchLightBlocks(const EsmLevel& coarse, EsmLevel& fine) {
   fine.coarser_light_block.clear();
-  // A pixel of the fine level, along one direction, to that of the coarse one.
+  // Takes a pixel coordinate of the fine level to the coarse one.
   const auto coarser = [&](double pixel, int fine_first, int coarse_first, int size) {
     return std::clamp(static_cast<int>((pixel * fine.scale + fine_first - coarse_first) / coarse.scale), 0, size - 1);
   };

@@ -1,4 +1,4 @@
-// One level of ESM's reference, and what an alignment works with there.
+// One level of ESM's reference, with the buffers of an alignment on that level.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,33 +14,33 @@
 
 namespace laparoscope_servo::tracking {
 
-// Of one channel.
+// One channel of a level.
 struct EsmPlane {
   image::Patch value;
   image::Patch warped;  // the image at the last iteration
-  // Of the light, per block, row by row [grey levels]. With Light::kLocal each block's bias is kept for intensities
-  // about the block's own mean in the reference: it then stays when the gain changes, from level to level and from
-  // image to image.
+  // Illumination of each block, row by row [grey levels]. With Light::kLocal a block's bias refers to intensities
+  // relative to the block's mean in the reference, so that it does not depend on the gain and holds from level to level
+  // and from image to image.
   std::vector<double> mean;
   std::vector<double> bias;    // from the last alignment
-  std::vector<double> before;  // from the one before
+  std::vector<double> before;  // bias before the current alignment
 
-  // What gain * image lacks in a block.
+  // Bias of the block at this gain: gain * image + biasOf() = reference.
   double biasOf(std::size_t block, double gain) const { return bias[block] + (1.0 - gain) * mean[block]; }
 };
 
 struct EsmLevel {
-  // Of the pyramid's level `l`; `roi` in whole pixels. No planes when the ROI's smaller side has fewer than 8 px there.
-  // With a lens (null: none) the pyramid is of a raw image, and the ROI in rectified pixels.
+  // Takes level `l` of the pyramid; `roi` in whole pixels. Has no planes if the ROI's smaller side has fewer than 8 px
+  // there. With a lens (null: none) the pyramid is of a raw image, and the ROI in rectified pixels.
   EsmLevel(const image::RegionPyramid& reference, const geometry::Rectangle& roi, int l,
            const image::Lens* lens = nullptr);
 
-  // Fills in the blocks' means, which are 0 without.
+  // Fills in the blocks' means, which are 0 otherwise.
   void centreLight();
 
   // Weights where the image was valid at the last iteration.
   const image::Patch& usedWeight() const { return all_valid ? weight : used; }
-  // After a warp that was not valid everywhere: a pixel beside one that is not valid has no gradient.
+  // Call after a warp that was not valid everywhere. A pixel beside an invalid one has no gradient and gets no weight.
   void useValid();
 
   std::vector<EsmPlane> planes;
@@ -59,19 +59,19 @@ struct EsmLevel {
   int cell_rows = 8;
   // Blocks of light: whole strips of columns, whole cells of rows.
   std::vector<int> light_column_of_strip;
-  std::vector<int> light_row_begin;  // rows; the last is the height
+  std::vector<int> light_row_begin;  // first row of each row of blocks; the last entry is the height
   int light_columns = 0;
-  std::vector<int> coarser_light_block;  // of the next coarser level, where a block's centre lies
+  std::vector<int> coarser_light_block;  // the block of the next coarser level in which a block's centre lies
   std::uint64_t aligned = 0;             // number of the last alignment, among those of all levels
 };
 
-// Once both levels have their blocks: fills in the finer one's coarser_light_block.
+// Fills in the finer level's coarser_light_block, once both levels have their blocks.
 void matchLightBlocks(const EsmLevel& coarse, EsmLevel& fine);
 
-// The light of the finer level's blocks changes by as much as that of the coarser ones did in the last alignment there.
+// Adds to the biases of the finer level's blocks the change of the coarser blocks' biases in the last alignment there.
 void inheritLight(const EsmLevel& coarse, EsmLevel& fine);
 
-// Weights of a level from those of the next finer one: the least that a pixel covers.
+// Weights of a level: each the least of those of the finer level that the pixel covers.
 void coarsenWeights(const EsmLevel& fine, std::vector<float>& scratch, EsmLevel& coarse);
 
 }  // namespace laparoscope_servo::tracking

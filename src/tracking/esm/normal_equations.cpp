@@ -22,7 +22,7 @@ constexpr std::array<Monomial, 8> kP = {
 constexpr std::array<Monomial, 8> kQ = {
     {{0, 0, 0}, {1, 0, 0}, {0, 0, 0}, {1, 1, 0}, {-1, 0, 1}, {-2, 0, 1}, {-1, 1, 1}, {-1, 0, 2}}};
 
-// Where the moment of u^a v^b is kept; monomials are ordered by a, then by b.
+// Index of the moment of u^a v^b; monomials are ordered by a, then by b.
 constexpr int indexOfDegree4(int a, int b) {
   return a * 5 - a * (a - 1) / 2 + b;
 }
@@ -52,7 +52,7 @@ double halfSize(const geometry::Rectangle& roi) {
 }
 
 double lengthUnit(const geometry::Rectangle& roi) {
-  constexpr double kMeasured = 340.0;  // px, the larger side
+  constexpr double kMeasured = 340.0;  // px, larger side of the largest region on which lengths were measured
   return std::max(1.0, std::max(roi.width, roi.height) / kMeasured);
 }
 
@@ -152,7 +152,7 @@ void LevelEquations::sum(const EsmLevel& level, const geometry::Rectangle& roi, 
   input.weight = &level.usedWeight();
   input.gain = static_cast<float>(gain);
   input.inverse_rejection = rejection > 0.0 ? static_cast<float>(1.0 / rejection) : 0.0f;
-  // The kernel adds both gradients; J takes their mean, per normalised unit.
+  // The kernel adds both gradients; J needs their mean, per normalised unit.
   const Eigen::Matrix3d unit_T_patch = templateFromPixels(roi) * level.image_T_patch;
   equations_.reset(light, 0.5 * halfSize(roi) / level.scale);
   blocks_.clear();

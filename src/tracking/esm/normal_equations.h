@@ -5,8 +5,8 @@
 //   J = [gx, gy, gx v, gy u, gx u - gy v, g3 - gy v, g3 u, g3 v],  g3 = -(u gx + v gy)
 // so J'WJ and J'Wr are sums of {gx^2, gx gy, gy^2} and {gx, gy} r times monomials in u and v. The gradient changes from
 // pixel to pixel, the monomials hardly do: pixels are summed over cells of up to 16 x 8, and the monomials taken at the
-// cell's centre. J'WJ and J'Wr are then those of one and the same slightly different Jacobian, so that what the
-// iteration converges to has no bias; with cells of one pixel they are exact.
+// cell's centre. J'WJ and J'Wr are then those of one and the same slightly different Jacobian, so that the iteration
+// converges to an unbiased estimate; with cells of one pixel they are exact.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -26,72 +26,73 @@ using Matrix10d = Eigen::Matrix<double, 10, 10>;
 using Vector10d = Eigen::Matrix<double, 10, 1>;
 using Matrix8d = Eigen::Matrix<double, 8, 8>;
 
-// N takes pixels of the reference to normalised template coordinates: their origin is the ROI's centre, their unit half
-// its larger side [px].
+// Half the ROI's larger side [px]: the unit of the normalised template coordinates, whose origin is the ROI's centre. N
+// takes pixels of the reference to them.
 double halfSize(const geometry::Rectangle& roi);
 Eigen::Matrix3d templateFromPixels(const geometry::Rectangle& roi);
 
-// px of the image, the unit of lengths that grow with a region: how far it moves, what a plane cannot follow. They were
-// measured on films, in regions whose larger side is 60 to 340 px, where the unit is 1. In a larger region, or the same
-// one in an image with more pixels, it grows in proportion.
+// px of the image: the unit of lengths that scale with the region, such as how far it moves and how far tissue deviates
+// from a plane. They were measured on films in regions with a larger side of 60 to 340 px, where the unit is 1 px. It
+// grows in proportion for a larger region, or for the same region in an image with more pixels.
 double lengthUnit(const geometry::Rectangle& roi);
 
-// The eight entries of J for one pixel, as above. Reference for tests, and readable beside the papers.
+// The eight entries of J for one pixel, as above. Used as the reference in tests; written as in the papers.
 Eigen::Matrix<double, 1, 8> esmJacobianRow(double gx, double gy, double u, double v);
-// The derivative by x of where exp(A(x)) takes the point p, all in normalised template units: rows for unit gradients.
+// Derivative by x of the point exp(A(x)) p, in normalised template units: esmJacobianRow() for the two unit gradients.
 Eigen::Matrix<double, 2, 8> pointJacobian(const Eigen::Vector2d& p);
 
-// Sums over a cell of the weight times: products of the gradient (gx, gy), the residual r and the intensity m.
+// Weighted sums over a cell of products of the gradient (gx, gy), the residual r and the intensity m.
 struct CellSums {
-  float xx, xy, yy;  // gradient with itself
-  float xr, yr;      // gradient with residual
+  float xx, xy, yy;  // products of the gradient with itself
+  float xr, yr;      // products of gradient and residual
   float x, y;        // gradient
-  float xm, ym;      // gradient with intensity: (image + template) / 2, the derivative for the gain
+  float xm, ym;      // products of gradient and intensity (image + template) / 2, the derivative for the gain
   float w, r;        // weight, residual
-  float m, mm, mr;   // intensity, with itself, with residual
+  float m, mm, mr;   // intensity, its square, its product with the residual
 };
 
 class NormalEquations {
  public:
-  // Starts a sum. Blocks follow: cells, then endBlock(). Gradients in cells count `gradient_scale` times, which brings
-  // them to normalised units.
+  // Starts a sum. For each block, call addCell() for its cells, then endBlock(). `gradient_scale` takes the cells'
+  // gradients to normalised units.
   void reset(Light light, double gradient_scale);
   // (u, v): normalised template coordinates of the cell's centre.
   void addCell(const CellSums& cell, double u, double v);
-  // Ends the cells since the last call. With Light::kLocal the block's own bias is eliminated: what remains are the
-  // equations of the other unknowns at the bias that is best for them.
+  // Ends the block of the cells since the last call. With Light::kLocal the block's own bias is eliminated, which
+  // leaves the equations of the other unknowns (Schur complement).
   void endBlock();
 
   // J'WJ and J'Wr of all blocks. Unknowns that `light` does not have get a row of the identity, and 0.
   Matrix10d matrix() const;
   const Vector10d& vector() const { return vector_; }
-  // Of the last block that ended: sum w, sum w r, and sum w J. The bias of the block after a step x changes by -(sum w
-  // r + sum w J x) / sum w.
+  // Sums of the last block that ended: sum w, sum w r, and sum w J. A step x changes the block's bias by -(sum w r +
+  // sum w J x) / sum w.
   double blockWeight() const { return block_weight_; }
   double blockResidual() const { return block_residual_; }
   const Vector10d& blockJacobian() const { return block_jacobian_; }
-  // What the block added to vector().
+  // The last block's contribution to vector().
   Vector10d blockScore() const { return vector_ - vector_before_; }
 
  private:
-  static constexpr int kSecond = 15;  // monomials u^a v^b with a + b <= 4
+  static constexpr int kSecond = 15;  // number of monomials u^a v^b with a + b <= 4
   struct Moments {
     double xx[kSecond], xy[kSecond], yy[kSecond];
   };
-  Moments moments_ = {};  // of all cells
+  Moments moments_ = {};  // sums over all cells
   Light light_ = Light::kConstant;
   double gradient_scale_ = 1.0;
   Matrix10d matrix_ = Matrix10d::Identity();
-  Vector10d gain_column_ = Vector10d::Zero();  // of matrix_, apart from what blocks subtract
+  Vector10d gain_column_ = Vector10d::Zero();  // column of matrix_ for the gain, without the parts that blocks subtract
   Vector10d vector_ = Vector10d::Zero();
-  Vector10d vector_before_ = Vector10d::Zero();  // without the last block
+  Vector10d vector_before_ = Vector10d::Zero();  // vector_ without the last block
   Vector10d block_jacobian_ = Vector10d::Zero();
   double block_weight_ = 0.0;
   double block_residual_ = 0.0;
   bool block_open_ = false;
 };
 
-// What a block of a plane adds, see NormalEquations: its weight, weighted residual and Jacobian, and its part of J'Wr.
+// Sums of one block of a plane, see NormalEquations: weight, weighted residual, weighted Jacobian, and its part of
+// J'Wr.
 struct LightBlockSums {
   double weight;
   double residual;
@@ -101,9 +102,9 @@ struct LightBlockSums {
 
 class LevelEquations {
  public:
-  // Those of the level's image as it is warped now, with the biases that its planes have. `light`: what of the light is
-  // unknown. `rejection` [grey levels]: residuals from which on Tukey's weights are 0; 0 gives every residual its full
-  // weight.
+  // Sums the equations of the level's warped image, at the biases of its planes. `light`: which unknowns of the
+  // illumination there are. `rejection` [grey levels]: residuals from which Tukey's weights are 0; 0 gives all
+  // residuals full weight.
   void sum(const EsmLevel& level, const geometry::Rectangle& roi, Light light, double gain, double rejection);
 
   Matrix10d matrix() const { return equations_.matrix(); }
@@ -117,11 +118,11 @@ class LevelEquations {
   NormalEquations equations_;
   std::vector<LightBlockSums> blocks_;
   std::vector<float> strip_bias_;
-  std::vector<CellSums> cells_;  // of a block row: cell rows times strips
+  std::vector<CellSums> cells_;  // cells of a row of blocks: cell rows times strips
 };
 
-// Solves symmetric equations whose unknowns have different units: the matrix has its diagonal divided out, as grey
-// levels and normalised coordinates have nothing to do with each other.
+// Solves symmetric equations whose unknowns have different units (grey levels, normalised coordinates): the matrix is
+// scaled to a unit diagonal first.
 template <int N>
 class Factors {
  public:

@@ -52,7 +52,7 @@ Eigen::Matrix3d referenceEsm(const cv::Mat1f& reference, const geometry::Rectang
     geometry::Vector8d jtr = geometry::Vector8d::Zero();
     for (int j = 0; j < t.rows; ++j) {
       for (int i = 0; i < t.cols; ++i) {
-        // The mean of both gradients makes the step right to second order; a template unit is halfSize pixels.
+        // The mean of both gradients makes the step second-order; a template unit is halfSize pixels.
         const Eigen::Vector2d mean = 0.5 * halfSize(roi) * (gradient(image, j, i) + gradient(t, j, i));
         const Eigen::Vector2d p = geometry::apply(n, Eigen::Vector2d(roi.x + i, roi.y + j));
         const Eigen::Matrix<double, 1, 8> row = esmJacobianRow(mean.x(), mean.y(), p.x(), p.y());  // J

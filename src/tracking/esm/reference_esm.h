@@ -1,5 +1,5 @@
-// ESM as the papers write it: one level, every pixel, nothing but the equations. It is slow, and what esm.cpp and the
-// kernels do must come to the same: their tests compare.
+// ESM as in the papers: one level, every pixel, no weights, no illumination. It is slow; tests compare esm.cpp and the
+// kernels with it.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,8 +10,8 @@
 namespace laparoscope_servo::tracking {
 
 // G (pixels of the reference to pixels of the current image, determinant 1) after at most `iterations` steps from
-// `start`, fewer when no corner of the ROI moves by more than `min_step` [px] any more. `roi` is in whole pixels of
-// `reference`, and its image lies within `current`: what is beyond is taken for 0.
+// `start`, fewer if no corner of the ROI moves by more than `min_step` [px] any more. `roi` is in whole pixels of
+// `reference`, and its image must lie within `current`; pixels beyond count as 0.
 Eigen::Matrix3d referenceEsm(const cv::Mat1f& reference, const geometry::Rectangle& roi, const cv::Mat1f& current,
                              const Eigen::Matrix3d& start, int iterations, double min_step);
 

@@ -9,10 +9,11 @@ namespace laparoscope_servo::tracking {
 
 namespace {
 
-constexpr double kMinSigma = 1.0;      // grey levels; below it quantisation is mistaken for outliers
-constexpr int kMaxSamples = 1024;      // of the residual, for its scale
-constexpr int kRun = 4;                // px side by side, which share what is fetched from memory
-constexpr double kBinsPerLevel = 8.0;  // of the histogram of residuals, which ends at 128 grey levels
+constexpr double kMinSigma = 1.0;  // grey levels; below it quantisation errors would count as outliers
+constexpr int kMaxSamples = 1024;  // samples of the residual, for its scale
+constexpr int kRun = 4;            // px side by side, which share a cache line
+// bins per grey level of the histogram of residuals, which ends at 128 grey levels
+constexpr double kBinsPerLevel = 8.0;
 constexpr int kBins = 1024;
 
 }  // namespace
@@ -53,7 +54,7 @@ double ResidualScale::of(const EsmLevel& level, double gain) {
       const float* weights = weight.row(j);
       const float* image = plane.warped.row(j);
       const float* reference = plane.value.row(j);
-      // Runs that start elsewhere in each row, so that no pattern of the image is preferred.
+      // The runs start at another pixel in each row, so that they do not align with a pattern of the image.
       for (int first = (j * 7 * kRun) % stride / kRun * kRun; first < level.width; first += stride) {
         const std::size_t block =
             block_row * level.light_columns + level.light_column_of_strip[first / image::Patch::kStrip];
@@ -68,7 +69,7 @@ double ResidualScale::of(const EsmLevel& level, double gain) {
     }
   }
   if (count == 0) return kMinSigma;
-  // The median lies in the bin where half of the samples are reached, as far along as they are reached there.
+  // The median lies in the bin that reaches half of the samples, linearly interpolated within the bin.
   double below = 0.0;
   int bin = 0;
   while (below + histogram_[bin] < 0.5 * count) below += histogram_[bin++];

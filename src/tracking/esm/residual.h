@@ -1,5 +1,4 @@
-// What is left between reference and image at an iteration of ESM: gain * image + bias - reference, where pixels have a
-// weight.
+// The residual at an iteration of ESM, gain * image + bias - reference, over the pixels that have a weight.
 #pragma once
 
 #include <vector>
@@ -8,18 +7,18 @@
 
 namespace laparoscope_servo::tracking {
 
-// Adds one bias to those of all of a plane's blocks, which leaves no mean residual. Returns it, the mean of the planes'
-// [grey levels].
+// Adds one value to the biases of all blocks of a plane so that the plane's mean residual is zero. Returns the mean of
+// these values over the planes [grey levels].
 double matchMean(EsmLevel& level, double gain);
 
-// The residual's robust standard deviation, by the median of its magnitudes over about a thousand pixels.
+// Robust standard deviation of the residual, from the median of its magnitudes over about a thousand pixels.
 class ResidualScale {
  public:
-  // Grey levels, never below that of quantisation; that, too, where no pixel has a weight.
+  // Grey levels, at least 1 (quantisation); 1 if no pixel has a weight.
   double of(const EsmLevel& level, double gain);
 
  private:
-  std::vector<int> histogram_;  // of the magnitudes
+  std::vector<int> histogram_;  // histogram of the magnitudes
 };
 
 }  // namespace laparoscope_servo::tracking

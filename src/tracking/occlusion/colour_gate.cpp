@@ -10,7 +10,7 @@ namespace laparoscope_servo::tracking {
 
 namespace {
 
-// Grey levels added to the intensity, so that the colour of dark pixels, which is noise, does not fill the histogram.
+// Grey levels added to the intensity, so that dark pixels, whose colour is noise, do not spread over the histogram.
 constexpr float kDark = 16.0f;
 
 // Range of the normalised feature.

@@ -1,8 +1,9 @@
-// Which areas of the region of interest (ROI) are occluded, by their colour: section II of Bourger et al. (2007).
+// Colour distances of the areas of the region of interest (ROI), to find occluders: section II of Bourger et al.
+// (2007).
 //
 // Each area's histogram (1) of a colour feature is compared with that of the reference by the Bhattacharyya distance
-// (2); an area at a distance above tau_b is taken for occluded. Works on the ROI's patch, warped by the predicted
-// homography, before ESM.
+// (2); OcclusionGates takes an area at a distance above tau_b for occluded. Works on the ROI's patch, warped by the
+// predicted homography, before ESM.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -18,7 +19,7 @@ namespace laparoscope_servo::tracking {
 // Eq. (4) with (5): S0 cos H, in [-255, 255] for components in [0, 255]; 0 for grey pixels, where H is not defined.
 float hueSaturationFeature(float r, float g, float b);
 
-// The same over the mean of r, g and b, which a change of the lamp's brightness scales alike; in [-1.5, 3]. Dark
+// hueSaturationFeature() divided by the mean of r, g and b, so that the lamp's brightness cancels; in [-1.5, 3]. Dark
 // pixels, whose colour is noise, go towards 0.
 float normalisedFeature(float r, float g, float b);
 
@@ -32,20 +33,20 @@ class ColourHistograms {
  public:
   ColourHistograms(ColourGate mode, int bins) : mode_(mode), bins_(bins) {}
 
-  // `patch` has colour and the grid's size; pixels with valid = 0 do not count. What counts is how the colours would
-  // look after `light`, within 0 to 255.
+  // `patch` has colour and the grid's size; pixels with valid = 0 do not count. `light` is applied to the colours
+  // first, and the result clamped to 0 to 255.
   void compute(const image::ColourPatch& patch, const image::AreaGrid& grid, const ColourLight& light = {});
 
   // The area's histogram, eq. (1), `bins` numbers that sum to 1 when pixels(area) > 0.
   const float* histogram(int area) const { return histograms_.data() + static_cast<std::size_t>(area) * bins_; }
-  // How many pixels counted.
+  // Number of pixels in the area's histogram.
   int pixels(int area) const { return pixels_[area]; }
 
  private:
   ColourGate mode_;
   int bins_;
   std::vector<int> counts_;  // like histograms_
-  std::vector<int> bin_of_;  // of a row
+  std::vector<int> bin_of_;  // of a row's pixels
   std::vector<float> histograms_;
   std::vector<int> pixels_;
 };

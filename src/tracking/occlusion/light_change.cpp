@@ -11,12 +11,12 @@ namespace laparoscope_servo::tracking {
 namespace {
 
 constexpr float kWhite = 255.0f;
-constexpr float kMaxGain = 2.5f;      // a lamp twice as bright, and some shading
+constexpr float kMaxGain = 2.5f;      // allows for a lamp twice as bright, and some shading
 constexpr float kLeastLevel = 16.0f;  // grey levels of a median; below it the ratio is noise
-// The share of an area that has to clip before clipping can account for another colour: a distance (2) of 0.5, the
-// paper's threshold, takes about as much of the area in other bins.
+// Share of an area that must clip before clipping can explain a difference in colour: a distance (2) of 0.5, the
+// paper's threshold, needs about that share of the area in other bins.
 constexpr float kLeastClipped = 0.1f;
-// Grey levels by which lights differ that are worth a comparison: the noise of a pixel.
+// Grey levels. Illuminations that differ by less, the noise of a pixel, count as equal.
 constexpr float kSameLight = 2.0f;
 
 }  // namespace
@@ -33,7 +33,7 @@ LightChange::LightChange(const image::ColourPatch& reference, int bins, const im
   colours_ = reference_colours_;
   int most = 0;
   for (int area = 0; area < grid.count(); ++area) most = std::max(most, grid.pixelsIn(area));
-  for (std::vector<Colour>* pixels : {&before_, &now_}) pixels->reserve(most);  // nothing is allocated while tracking
+  for (std::vector<Colour>* pixels : {&before_, &now_}) pixels->reserve(most);  // no allocation while tracking
   channel_.reserve(most);
   for (int area = 0; area < grid.count(); ++area) reference_clipped_.push_back(clippedShare(reference_, area));
 }
@@ -110,7 +110,7 @@ float LightChange::clippedDistance(const image::ColourPatch& current, const Colo
     now = b;
   }
   if (std::min(before, now) < kLeastLevel || std::max(before, now) > kMaxGain * std::min(before, now)) return kNone;
-  // The darker one as the brighter one would show it.
+  // Brightens the darker image to the level of the brighter one.
   const float gain_before = std::max(1.0f, now / before), gain_now = std::max(1.0f, before / now);
   Colour ceiling;
   for (int c = 0; c < 3; ++c) {

@@ -1,9 +1,9 @@
-// What the light does to the colours of a region that nothing covers, so that the colour gate compares colours as they
-// would look in the light of the reference.
+// Estimates the change of illumination between reference and image, so that the colour gate compares colours as they
+// would look under the reference's illumination.
 //
-// White balance, a lamp, a veil of smoke change every area alike: a gain and an offset per channel undo that. A lamp
-// that comes nearer also takes the red channel of bright tissue to its limit, which nothing undoes: what it is compared
-// with is then clipped as well.
+// White balance, the lamp and a veil of smoke change all areas alike: a gain and an offset per channel undo that. A
+// lamp that comes nearer also saturates the red channel of bright tissue, which cannot be inverted; the other image is
+// then clipped too before both are compared.
 #pragma once
 
 #include <optional>
@@ -18,40 +18,43 @@ namespace laparoscope_servo::tracking {
 class LightChange {
  public:
   LightChange() = default;
-  // reference: has colour. bins: of the histograms, 1 to 256. grid: of the patches.
+  // reference: must have colour. bins: number of bins of the histograms, 1 to 256. grid: the areas of the patches.
   LightChange(const image::ColourPatch& reference, int bins, const image::AreaGrid& grid);
 
-  // The light that is known from images before; at first, that of the reference.
+  // The last accepted illumination; at first, that of the reference.
   const ColourLight& known() const { return known_; }
-  // What was found for the current image has turned out to be true.
+  // Accepts the illumination that was found for the current image.
   void learn(const ColourLight& light) { known_ = light; }
 
-  // Before propose(): the current image, which has colour.
+  // Call before follow() or find(): sets the current image, which must have colour.
   void look(const image::ColourPatch& current) { colours_.compute(current, grid_); }
 
-  // A light that explains the image better than the known one may. By the areas that agree with that one, as an
-  // occluder leaves them as they are.
+  // Estimates the illumination from the areas that agree under the known one, since an occluder does not change those.
+  // Empty if there is no estimate, or if it hardly differs from the known one.
   std::optional<ColourLight> follow(const std::vector<char>& agree) { return propose(agree, &known_, -1.0); }
-  // By what more than half of the areas agree on, and differ by from each other: all have changed at once.
+  // Estimates an illumination change that more than half of the areas share, when all changed at once. The means of the
+  // areas must correlate between both images.
   std::optional<ColourLight> find() { return propose(all_, nullptr, kLeastCorrelation); }
 
-  // Distance (2) between the histograms of an area's normalisedFeature in both images, the current one in `light` and
-  // in the area's own gain beyond it, each clipped where the other one is. That gain is the ratio of the medians of the
-  // area's least bright channel. NaN when clipping cannot account for another colour: a gain beyond 2.5, hardly
-  // anything that clips, too dark, or less than half of the area valid in either.
+  // Distance (2) between the histograms of an area's normalisedFeature in both images, both clipped at the lower of
+  // their saturation levels. The current image is first corrected by `light`, the darker one then by the area's own
+  // gain, the ratio of the medians of the area's least bright channel. NaN when clipping cannot explain a difference in
+  // colour: the gain is above 2.5, hardly any pixel clips, the area is too dark, or less than half of it is valid in
+  // either image.
   float clippedDistance(const image::ColourPatch& current, const ColourLight& light, int area);
 
  private:
-  // Of a channel's values, or what else there is for each channel.
+  // One value for each channel.
   using Colour = std::array<float, 3>;  // blue, green, red
-  // Of an area's valid pixels.
+  // Share of an area's valid pixels that clip in any channel.
   float clippedShare(const image::ColourPatch& patch, int area) const;
   void collect(const image::ColourPatch& patch, const ColourLight& light, int area, std::vector<Colour>& pixels) const;
   float median(const std::vector<Colour>& pixels, int channel);
   void fill(const std::vector<Colour>& pixels, float gain, const Colour& ceiling, std::vector<float>& histogram) const;
   std::optional<ColourLight> propose(const std::vector<char>& use, const ColourLight* start, double least_correlation);
 
-  // Of an occluder's shading with the region's, which is chance; of a region's with its own, hardly less than one.
+  // Least correlation of the areas' means in both images: that of an occluder's shading with the region's is random,
+  // that of a region with itself is close to one.
   static constexpr double kLeastCorrelation = 0.8;
 
   int bins_ = 0;
@@ -63,7 +66,7 @@ class LightChange {
   std::vector<char> all_;
   std::vector<Colour> before_, now_;
   std::vector<float> channel_, histogram_, relit_;
-  std::vector<float> reference_clipped_;  // share of each area
+  std::vector<float> reference_clipped_;  // clippedShare() of each area of the reference
 };
 
 }  // namespace laparoscope_servo::tracking

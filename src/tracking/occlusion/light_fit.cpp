@@ -11,13 +11,14 @@ namespace laparoscope_servo::tracking {
 
 namespace {
 
-constexpr int kClipped = 250;              // grey levels
-constexpr float kMostClipped = 0.02f;      // share of an area; its mean is that of a ceiling beyond
-constexpr int kIterations = 6;             // of the weights; by then they hardly change
-constexpr float kLeastSigma = 2.0f;        // grey levels, of an area's mean: texture that has moved by a pixel
-constexpr double kLeastWeight = 8.0;       // areas, for a line through them
-constexpr double kLeastCorrelation = 0.7;  // of the areas' means, for their spread to tell the gain from the offset
-// What light does: see the bounds of a lamp and of smoke that comes or clears.
+constexpr int kClipped = 250;          // grey levels
+constexpr float kMostClipped = 0.02f;  // share of an area's pixels; if more clip, the area's mean is biased
+constexpr int kIterations = 6;         // of the weights, which hardly change any more after these
+// grey levels, of an area's mean: the effect of texture that moved by a pixel
+constexpr float kLeastSigma = 2.0f;
+constexpr double kLeastWeight = 8.0;       // areas that a fitted line needs
+constexpr double kLeastCorrelation = 0.7;  // of the areas' means; below it gain and offset cannot be separated
+// Bounds of a plausible change of illumination: a lamp, and smoke that comes or clears.
 constexpr float kMaxGain = 4.0f;
 constexpr float kMaxVeil = 200.0f;  // grey levels that smoke adds to black
 
@@ -27,7 +28,8 @@ struct Line {
   bool known = false;
 };
 
-// Both means err, so that the line's gain is the ratio of their spreads: a regression would lower it.
+// Both means have errors, so the line's gain is the ratio of their spreads; an ordinary regression would underestimate
+// it.
 Line lineThrough(const AreaColours& image, const AreaColours& reference, int channel,
                  const std::vector<float>& weights) {
   double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, yy = 0.0, xy = 0.0;
@@ -105,7 +107,7 @@ LightFit::LightFit(int areas) {
   for (std::vector<float>* buffer : {&weights_, &distances_, &values_}) buffer->reserve(areas);
 }
 
-// Half of the areas or more having it: the median of their ratios.
+// The median of the areas' ratios, which is right if half of the areas or more share the gain.
 ChannelLight LightFit::commonGain(const AreaColours& image, const AreaColours& reference, int channel,
                                   const std::vector<char>& use) {
   values_.clear();
@@ -116,12 +118,13 @@ ChannelLight LightFit::commonGain(const AreaColours& image, const AreaColours& r
   return {values_.empty() ? 1.0f : robust::median(values_), 0.0f};
 }
 
-// Tukey's, of an area's mean squared residual over the channels that it tells of, each in units of its own scale.
+// Tukey's weight of each area, by its squared residual, mean over the channels that are not NaN, each in units of its
+// own scale.
 void LightFit::weigh(const AreaColours& image, const AreaColours& reference, const std::vector<char>& use,
                      const ColourLight& light) {
   const int areas = image.count();
-  weights_.assign(areas, 0.0f);    // until the end: of how many channels
-  distances_.assign(areas, 0.0f);  // squared
+  weights_.assign(areas, 0.0f);    // number of channels until the end of this function
+  distances_.assign(areas, 0.0f);  // sums of squared residuals
   for (int c = 0; c < 3; ++c) {
     const auto residual = [&](int area) {
       return light[c].gain * image.mean(c, area) + light[c].offset - reference.mean(c, area);
@@ -159,7 +162,7 @@ std::optional<LightFit::Result> LightFit::fit(const AreaColours& image, const Ar
       if (lines[c].known) result.light[c] = lines[c].light;
     }
   }
-  // A channel that clips everywhere shares what the others have in common: the lamp.
+  // A channel that clips everywhere gets the common gain of the others, that of the lamp.
   ChannelLight common = {0.0f, 0.0f};
   float known = 0.0f;
   for (const Line& line : lines) {

@@ -1,4 +1,5 @@
-// The light of an image's channels against that of the reference: white balance, a lamp, a veil of smoke.
+// Fits the illumination of an image, channel by channel, to that of the reference: white balance, lamp, a veil of
+// smoke.
 #pragma once
 
 #include <array>
@@ -17,11 +18,11 @@ struct ChannelLight {
 };
 using ColourLight = std::array<ChannelLight, 3>;  // blue, green, red
 
-// Grey levels by which the two differ at most, over all values of an image's pixel.
+// Largest difference [grey levels] between what both make of a pixel, over all pixel values.
 float largestDifference(const ColourLight& a, const ColourLight& b);
 
-// Mean colour of each area of a patch, blue, green, red; NaN where it tells nothing: clipped in the channel, or less
-// than half of it valid.
+// Mean colour of each area of a patch, blue, green, red; NaN if the area clips in the channel, or if less than half of
+// it is valid.
 class AreaColours {
  public:
   void compute(const image::ColourPatch& patch, const image::AreaGrid& grid);
@@ -32,7 +33,7 @@ class AreaColours {
   std::array<std::vector<float>, 3> means_;
 };
 
-// Fits a line per channel to the means of the areas; those that do not agree with the others in all channels have no
+// Fits a line per channel to the means of the areas; areas that do not agree with the others in all channels get no
 // weight.
 class LightFit {
  public:
@@ -40,10 +41,11 @@ class LightFit {
 
   struct Result {
     ColourLight light;
-    double correlation;  // -1 to 1, between both images' areas that have a weight, mean over the channels
+    double correlation;  // -1 to 1, of the means of the weighted areas in both images, mean over the channels
   };
-  // From the areas with use[area] != 0. `start`: a light that these agree with, null when none is known; then more than
-  // half of them have to agree. Nothing when too few tell something, or what is found is not what light does.
+  // Uses the areas with use[area] != 0. `start`: an illumination under which these agree, or null if none is known;
+  // more than half of them must then share one. Empty if too few areas have a mean, or if the result is not a plausible
+  // change of illumination.
   std::optional<Result> fit(const AreaColours& image, const AreaColours& reference, const std::vector<char>& use,
                             const ColourLight* start);
 

@@ -12,26 +12,28 @@ namespace laparoscope_servo::tracking {
 
 namespace {
 
-// px, by which saturated pixels are grown: a highlight has a bleached rim. Where more than kMuch of the region is
-// saturated it is the light and no highlight; then they are grown by as much as the gradient reaches, to leave pixels.
+// px, by which the saturated area is dilated, since a highlight has a bleached rim. If more than kMuch of the region is
+// saturated, the cause is the illumination, not a highlight; it is then dilated by kGrowClipped only, the reach of the
+// gradient, so that enough pixels remain.
 constexpr int kGrowSaturated = 2;
 constexpr int kGrowClipped = 1;
 constexpr double kMuch = 0.5;  // of the samples
-constexpr int kHidden = 2;     // one sample of so many
+constexpr int kHidden = 2;     // an area is hidden if 1 / kHidden of its samples or more are unusable
 
-// For another light to be believed. Of the areas that can be compared, so many agree in the known one, and so many of
-// these in the other one as well:
+// A new illumination estimate is accepted in two cases. Either a share kLeastAgreed of the comparable areas agree under
+// the known one, a share kLeastKept of these also agree under the new one,
 constexpr double kLeastAgreed = 0.1;
 constexpr double kLeastKept = 0.9;
-// and the distance is less by so much on average;
+// and the mean distance falls by kLeastBetter;
 constexpr double kLeastBetter = 0.01;
-// or so many agree in the other one, and so many times as many as in the known one.
+// or a share kLeastFound agree under the new one, and these are kManyMore times as many as under the known one.
 constexpr double kLeastFound = 0.5;
 constexpr double kManyMore = 2.0;
 
-constexpr double kAsBefore = 0.9;  // of the areas that agreed
+// share of the areas that agreed before, below which the illumination is estimated anew
+constexpr double kAsBefore = 0.9;
 
-// Pixels of an area that its histogram needs: the paper's areas have as many.
+// Pixels that the histogram of an area needs: the areas of the paper have 14 x 14.
 constexpr int kSamples = 14 * 14;
 
 LAPAROSCOPE_SERVO_CLONES
@@ -104,7 +106,7 @@ void OcclusionGates::markSaturated(const image::ColourPatch& patch, cv::Mat1b& m
   image::saturatedPixels(patch, limits_, kGrowClipped, mask);
 }
 
-// From the samples to all pixels.
+// Expands the masks of the samples to all pixels.
 void OcclusionGates::spread(const cv::Mat1b& saturated, const cv::Mat1b& valid) {
   row_.resize(samples_.width());
   for (int j = 0; j < samples_.height(); ++j) {
@@ -139,7 +141,7 @@ void OcclusionGates::observeColour(const image::ColourPatch& patch) {
   forgiveClipping(patch);
 }
 
-// Whether there is an area that is rejected.
+// Returns whether any area is rejected.
 bool OcclusionGates::rejectByColour() {
   bool any = false;
   for (int area = 0; area < grid_.count(); ++area) {
@@ -149,8 +151,9 @@ bool OcclusionGates::rejectByColour() {
   return any;
 }
 
-// Where areas have another colour, the light may: as long as it does not cost what agrees in the light that is known.
-// Skipped while at least half of all areas agree, and about as many as when the light was fitted last.
+// If areas are rejected by colour, the illumination may have changed. A new illumination estimate is accepted only if
+// explains() finds that it fits better. Skipped while at least half of all areas agree, and about as many as at the
+// last estimate.
 void OcclusionGates::accountForLight(const image::ColourPatch& patch) {
   for (int area = 0; area < grid_.count(); ++area) {
     agree_[area] = distances_[area] <= static_cast<float>(config_.threshold);  // false for NaN
@@ -178,9 +181,9 @@ void OcclusionGates::accountForLight(const image::ColourPatch& patch) {
   }
 }
 
-// Whether the areas are better explained by another light, in which they have these distances: if it keeps what agrees
-// in the known one, as no light does that explains an occluder; or, found by the pattern of all areas, if many more
-// agree than in the known one, where some do by chance.
+// Whether a new illumination estimate, under which the areas have these distances, fits better than the known one. It
+// does if the areas that matched before still match (an estimate fitted to an occluder would lose them) and the mean
+// distance falls; or, if it was estimated from all areas, when many more match than before.
 bool OcclusionGates::explains(const std::vector<float>& distances, bool by_all) const {
   const float threshold = static_cast<float>(config_.threshold);
   int comparable = 0, agreed = 0, kept = 0, agree = 0;
@@ -199,19 +202,18 @@ bool OcclusionGates::explains(const std::vector<float>& distances, bool by_all) 
   return by_all && agree >= kLeastFound * comparable && agree >= kManyMore * agreed;
 }
 
-// An area of another colour is compared again as the light that it shows would have clipped the reference, or the
-// reference's light it.
+// Compares rejected areas again after clipping both histograms at the saturation level of the brighter illumination.
 void OcclusionGates::forgiveClipping(const image::ColourPatch& patch) {
   for (int area = 0; area < grid_.count(); ++area) {
     if (!colour_rejects_[area]) continue;
     const float distance = light_change_.clippedDistance(patch, light_, area);
-    if (!(distance <= static_cast<float>(config_.threshold))) continue;  // also where there is nothing to compare
+    if (!(distance <= static_cast<float>(config_.threshold))) continue;  // also for NaN: nothing to compare
     colour_rejects_[area] = 0;
     distances_[area] = distance;
   }
 }
 
-// Another light was true if most of the areas that it let through look like the reference.
+// Keeps the illumination estimate if most areas that pass the colour gate under it correlate with the reference.
 void OcclusionGates::learnLight(double gain, double sigma) {
   int passed = 0, alike = 0;
   for (int area = 0; area < grid_.count(); ++area) {

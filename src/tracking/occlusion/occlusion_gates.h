@@ -1,4 +1,5 @@
-// Both gates together, over time: which pixels of the region of interest (ROI) drive ESM in an image.
+// Decides, with both gates, which pixels of the region of interest (ROI) drive ESM in an image. Colour distances are
+// those of colour_gate.h, structure distances those of structure_gate.h; this class compares them with the thresholds.
 //
 // The colour gate decides before ESM and afresh in each image. The structure gate decides after ESM: what it rejects
 // stays out for the next images, too, so that an occluder that moves on does not pull the estimate with it.
@@ -16,33 +17,34 @@
 
 namespace laparoscope_servo::tracking {
 
-// Of the pixels of an ROI of this size, in rows and columns, so many as its areas' histograms need: each, every second,
-// ...
+// The step, in rows and columns, at which an ROI of this size is sampled for its areas' histograms: 1 for every pixel,
+// 2 for every second, ...
 int samplingStep(const cv::Size& size, const OcclusionConfig& config);
 
 class OcclusionGates {
  public:
   OcclusionGates(const OcclusionConfig& config, int saturation);
 
-  // The reference's ROI, `size` px, every samplingStep-th pixel of which is in the patch. Of the constructor's
-  // saturation, `tracked` says for which of the channels, blue, green and red, it counts. Throws std::invalid_argument
-  // when the patch is of another size, or the ROI has fewer pixels than areas in a direction.
+  // `patch`: every samplingStep-th pixel of the reference's ROI, which has `size` px. `tracked`: the channels (blue,
+  // green, red) to which the constructor's saturation applies. Throws std::invalid_argument when the patch is of
+  // another size, or the ROI has fewer pixels than areas in a direction.
   void setReference(const image::ColourPatch& patch, const cv::Size& size,
                     const std::array<bool, 3>& tracked = {true, true, true});
 
-  // Before ESM: `patch` is the ROI, sampled likewise, as the current image shows it where it is expected, see
-  // image::warpNearest. Colours are compared in the light of the reference: see LightChange.
+  // Call before ESM. `patch`: the current image at the expected place of the ROI, sampled with the same step, see
+  // image::warpNearest. If areas differ in colour, the current illumination is estimated and the colours are compared
+  // as they would look under that of the reference (see LightChange); otherwise the last known illumination is used.
   void observeColour(const image::ColourPatch& patch);
 
-  // After ESM: the warped image and the reference, in one channel or several, where the former is valid (1, else 0),
-  // the gain that brings it to the reference's light, and the standard deviation of the residual [grey levels]. Returns
-  // how many areas that drove ESM turned out to be occluded.
+  // Call after ESM. `channels`: the warped image and the reference in one channel or several. `valid`: 1 where the
+  // warped image is valid, else 0. `gain`: that of ESM. `sigma`: standard deviation of the residual [grey levels].
+  // Returns how many areas that drove ESM turned out to be occluded.
   int observeStructure(const PatchPair* channels, int count, const image::Patch& valid, double gain, double sigma);
 
-  // Of the last observeStructure: the zero-mean normalised cross-correlation over the areas that are not occluded, -1
-  // to 1, each area's own means taken out; 0 when there is nothing to compare. Light and shade do not raise it.
+  // Zero-mean normalised cross-correlation at the last observeStructure(), over the areas that are not occluded, -1 to
+  // 1; 0 when there is nothing to compare. Each area's own mean is subtracted, so that light and shade do not raise it.
   double correlation() const;
-  // Share of the ROI's pixels that are used in those areas, 0 to 1.
+  // Share of the ROI's pixels that correlation() uses, 0 to 1.
   double visibleFraction() const;
 
   // See OcclusionConfig::threshold; from the next image on.
@@ -51,21 +53,21 @@ class OcclusionGates {
   // Forgets what the structure gate rejected: the place has changed.
   void forget();
 
-  // Called once when an image is done: time passes for what is held.
+  // Call once at the end of each image: counts down how long rejected areas stay out.
   void advance();
 
   // 1 for the ROI's pixels that may drive ESM, else 0: area not occluded, in the image, not saturated in it or the
   // reference.
   const image::Patch& weights();
 
-  // Of the channels on average, the gain of the image's light against that of the reference; 0 where the colours show
-  // the same light.
+  // Gain that takes the image's illumination to the reference's, by the colours, mean of the channels; 0 if the colours
+  // show no change of illumination.
   double lightGain() const;
 
-  // False when the image has no colour, or the gate is off: the colour gate then stands aside.
+  // False when the image has no colour, or the gate is off: the colour gate is then inactive.
   bool colourUsed() const { return colour_used_; }
   bool occluded(int area) const { return colour_rejects_[area] || held_[area] > 0; }
-  // Of every area, for people: nothing is decided by it.
+  // Causes for all areas, for display only: no decision depends on them.
   void causes(std::vector<AreaCause>& causes) const;
   const std::vector<float>& distances() const { return distances_; }
   const image::AreaGrid& grid() const { return grid_; }
@@ -82,25 +84,26 @@ class OcclusionGates {
 
   OcclusionConfig config_;
   int saturation_;
-  std::array<int, 3> limits_ = {256, 256, 256};  // grey levels, of each channel
+  std::array<int, 3> limits_ = {256, 256, 256};  // grey levels: saturation of each channel; 256: none
   image::AreaGrid grid_;
   ColourHistograms reference_;
   ColourHistograms current_;
   LightChange light_change_;
-  ColourLight light_;  // of this image, as the colours show it
+  ColourLight light_;  // illumination of the current image, by its colours
   bool reference_has_colour_ = false;
   bool colour_used_ = false;
   int step_ = 1;
-  image::AreaGrid samples_;                    // of the patches
+  image::AreaGrid samples_;                    // the areas in the sampled patches
   cv::Mat1b reference_saturated_, saturated_;  // 255 or 0 per sample
   cv::Mat1b valid_;                            // 255 per sample in the image, or 0
   image::Patch usable_;           // 1 per pixel of the ROI, or 0: saturated in image or reference, or not valid
-  std::vector<float> distances_;  // (2) per area
+  std::vector<float> distances_;  // eq. (2) of each area
   std::vector<float> relit_distances_;
-  std::vector<char> colour_rejects_;  // per area, in this image
-  std::vector<char> agree_;           // per area: not so in the light that is known
-  int agreed_before_ = 0;             // areas, after the last look for another light, or more since
-  std::vector<int> held_;             // per area: images for which the structure gate keeps it out
+  std::vector<char> colour_rejects_;  // 1 if the colour gate rejects the area in this image
+  // 1 if the area's distance under the last known illumination is within the threshold
+  std::vector<char> agree_;
+  int agreed_before_ = 0;  // areas that agreed after the last illumination estimate, or later if more
+  std::vector<int> held_;  // images for which the structure gate still rejects the area
   StructureStatistics statistics_;
   image::Patch unsaturated_;  // 1 where the aligned image is valid and neither it nor the reference saturated
   std::vector<float> row_, areas_;

@@ -9,7 +9,7 @@ namespace laparoscope_servo::tracking {
 
 namespace {
 
-// Adds a row of pixels to the sums of the columns: six arrays, one after the other.
+// Adds a row of pixels to the sums of the columns, which are six arrays one after the other.
 LAPAROSCOPE_SERVO_CLONES
 void addRow(const float* __restrict image, const float* __restrict reference, const float* __restrict weight, int count,
             float* __restrict sums) {

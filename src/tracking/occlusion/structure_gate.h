@@ -1,8 +1,8 @@
-// Which areas of the aligned region do not look like the reference, whatever their colour: an occluder of tissue,
-// smoke, blood; and how alike the rest is.
+// Measures how well each area of the aligned region matches the reference's structure, whatever its colour, to find
+// occluders such as tissue, smoke and blood. OcclusionGates compares the result with kMaxDissimilarity.
 //
-// Works after ESM on the warped patch, area by area, with each area's mean taken out: shading tells nothing of where
-// the tissue is.
+// Works after ESM on the warped patch, area by area, with each area's mean taken out: shading has no information on
+// where the tissue is.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -13,8 +13,7 @@
 
 namespace laparoscope_servo::tracking {
 
-// Of the pixels of an area that are used: their share, and the second moments about their means, per pixel [grey levels
-// squared].
+// Share of an area's pixels that are used, and their second moments about their means, per pixel [grey levels squared].
 struct AreaMoments {
   float share = 0.0f;  // 0 to 1, of the area's pixels
   float image = 0.0f;
@@ -22,7 +21,7 @@ struct AreaMoments {
   float both = 0.0f;  // covariance
 };
 
-// What is compared: the image, warped, and the reference.
+// The warped image and the reference, which are compared.
 struct PatchPair {
   const image::Patch* image;
   const image::Patch* reference;
@@ -30,8 +29,8 @@ struct PatchPair {
 
 class StructureStatistics {
  public:
-  // Of one patch, or of as many channels of it, whose moments are then their mean over the channels. `weight`: 1 for
-  // pixels that are used, 0 for the others. Sizes must agree with the grid's.
+  // Computes the moments of all areas, means over the `count` channels of the patch. `weight`: 1 for pixels that are
+  // used, 0 for the others. Sizes must agree with the grid's.
   void compute(const PatchPair* channels, int count, const image::Patch& weight, const image::AreaGrid& grid);
 
   const AreaMoments& area(int k) const { return areas_[k]; }
@@ -49,7 +48,7 @@ class StructureStatistics {
   std::vector<float> columns_;  // six sums for each column of a row of areas
 };
 
-// Areas above this are occluded: for two patches of equal contrast it is a correlation of 0.5.
+// Areas above this are occluded: for two patches of equal contrast 1 corresponds to a correlation of 0.5.
 constexpr float kMaxDissimilarity = 1.0f;
 
 }  // namespace laparoscope_servo::tracking

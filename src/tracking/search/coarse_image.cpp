@@ -8,7 +8,7 @@ namespace laparoscope_servo::tracking {
 
 namespace {
 
-constexpr int kGrowBright = 3;  // px, of the coarse image
+constexpr int kGrowBright = 3;  // px of the coarse image, by which saturated pixels are dilated
 
 }  // namespace
 

@@ -11,8 +11,7 @@ namespace laparoscope_servo::tracking {
 
 namespace {
 
-// Of the ROI's diagonal: how far a region that has been found may have gone by the next image, its motion being
-// unknown.
+// Share of the ROI's diagonal by which a region of unknown motion may move until the next image.
 constexpr double kUnknownMotion = 0.15;
 
 }  // namespace
@@ -22,7 +21,7 @@ Eigen::Matrix3d Confirmation::expected() const {
 }
 
 bool Confirmation::add(const EsmResult& found, const geometry::Rectangle& roi, const TrackRecord& record) {
-  // The target may have been moving all the time.
+  // The target may move at a steady speed, so the expected place includes the last step.
   if (count_ > 0) {
     const double apart = geometry::cornerDistance(expected(), found.state.g, roi);
     const double share = count_ == 1 ? kUnknownMotion : 0.0;

@@ -16,10 +16,10 @@ namespace laparoscope_servo::tracking {
 namespace {
 
 constexpr double kInlier = 4.0;   // px, of the coarse image
-constexpr int kManyInliers = 30;  // from here on eight parameters are better determined than four
+constexpr int kManyInliers = 30;  // from here on a fit of eight parameters is better than one of four
 constexpr int kMaxTrials = 1000;
-constexpr int kOverlap = 16;         // px, of the coarse image: what a strip sees beyond its borders
-constexpr double kStripShare = 0.5;  // of the budget, that a strip may cost
+constexpr int kOverlap = 16;         // px of the coarse image, by which strips overlap
+constexpr double kStripShare = 0.5;  // share of the budget that a strip may cost
 
 #if CV_VERSION_MAJOR * 10000 + CV_VERSION_MINOR * 100 + CV_VERSION_REVISION >= 40501
 constexpr int kRobustMethod = cv::USAC_MAGSAC;
@@ -39,7 +39,7 @@ Eigen::Matrix3d toEigen(const cv::Mat& m) {
   return result;
 }
 
-// Those of `more` that `keep` takes to a place are added there.
+// Appends the points of `more` for which `keep` returns a place, at that place.
 template <typename Keep>
 void append(const DescribedPoints& more, const Keep& keep, DescribedPoints& features) {
   for (std::size_t k = 0; k < more.points.size(); ++k) {
@@ -50,7 +50,7 @@ void append(const DescribedPoints& more, const Keep& keep, DescribedPoints& feat
   }
 }
 
-// Raw points to rectified ones; empty for those that the lens cannot have shown.
+// Takes a raw point to a rectified one; empty if the lens cannot show such a point.
 std::optional<cv::Point2f> rectified(const image::Lens* lens, const cv::Point2f& point) {
   if (lens == nullptr) return point;
   const auto p = lens->toRectified(Eigen::Vector2d(point.x, point.y));
@@ -122,7 +122,7 @@ void FeatureSearch::work(Keyframes& keyframes) {
   match(keyframe, keyframes.roi());
 }
 
-// Each strip gives its share, so that an instrument does not take all of them.
+// Each strip gets its share of the points, so that an instrument does not take all of them.
 void FeatureSearch::drawStrip() {
   const cv::Rect own = strip(strip_++);
   if (own.empty()) return;
@@ -137,8 +137,8 @@ void FeatureSearch::drawStrip() {
   if (strip_ == strips_ && static_cast<int>(seen_.points.size()) < config_.min_inliers) asked_.clear();
 }
 
-// All that a keyframe shows but what was covered in the ROI: what lies around the ROI moves with it, and small or
-// smooth regions are found by that.
+// Uses the whole crop except the covered parts of the ROI: the tissue around the ROI moves with it, and small or smooth
+// regions are found by their surroundings.
 void FeatureSearch::describe(Keyframe& keyframe, const geometry::Rectangle& roi) {
   Eigen::Matrix3d from_roi = Eigen::Matrix3d::Identity();
   from_roi.topRightCorner<2, 1>() << roi.x, roi.y;
@@ -171,7 +171,7 @@ std::vector<FeatureCandidate> FeatureSearch::find(const cv::Mat& image, const im
   return found();
 }
 
-// Nearest and second nearest of the image's points for each of the keyframe's, and the other way.
+// Matches each point of the keyframe to its nearest and second nearest of the image, and the other way round.
 void FeatureSearch::match(const Keyframe& keyframe, const geometry::Rectangle& roi) {
   const int count = static_cast<int>(keyframe.features.points.size());
   if (count < config_.min_inliers) return;
@@ -197,7 +197,7 @@ void FeatureSearch::match(const Keyframe& keyframe, const geometry::Rectangle& r
   fit(from, to, keyframe.g, roi);
 }
 
-// Four parameters hold where few matches would let eight run away; what they miss of the tilt, the alignment mends.
+// With few matches a fit of eight parameters is unstable, so only four are fitted; the alignment corrects the tilt.
 void FeatureSearch::fit(const std::vector<cv::Point2f>& from, const std::vector<cv::Point2f>& to,
                         const Eigen::Matrix3d& keyframe_g, const geometry::Rectangle& roi) {
   if (static_cast<int>(from.size()) < config_.min_inliers) return;

@@ -1,5 +1,5 @@
-// Finds a lost region of interest (ROI) by points matched between an image and the keyframes of it. One pass over an
-// image is cut into pieces of known cost, so that it can go on while the next images come.
+// Finds a lost region of interest (ROI) by points matched between an image and the keyframes. A pass over an image is
+// split into pieces of known cost, so that it can continue while the next images come.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,35 +17,35 @@ namespace laparoscope_servo::tracking {
 
 struct FeatureCandidate {
   Eigen::Matrix3d g;  // reference to current pixels, determinant 1
-  int inliers = 0;    // matches that agree with it
+  int inliers = 0;    // matches that agree with `g`
 };
 
 class FeatureSearch {
  public:
   // With a lens the images are raw, homographies and the ROI rectified.
-  // Of the configuration `search`, what `esm` calls saturated, and which sizes `quality` will accept.
+  // Of the configuration it uses `search`, esm/saturation and quality/max_area_ratio.
   explicit FeatureSearch(const TrackerConfig& config, std::shared_ptr<const image::Lens> lens = nullptr);
 
-  // A pass over an image begins. It asks the reference, the most recent keyframe, and one other in turn, so that the
-  // time is bounded whatever is stored. `weights`: of the channel that the image shows.
+  // Begins a pass over an image. It matches the reference, the most recent keyframe and, in turn, one of the others, so
+  // that its time is bounded. `weights`: of the tracked channel, in which the coarse image was made.
   void begin(const CoarseImage& image, const image::ChannelWeights& weights, const Keyframes& keyframes);
-  // There is something left to do in this pass.
+  // Whether pieces of this pass are left.
   bool busy() const { return strip_ < strips_ || !asked_.empty(); }
-  // What the next piece costs, s: see nominal_cost.
+  // Cost of the next piece [s], see nominal_cost.
   double nextCost(const Keyframes& keyframes) const;
-  // Does the next piece: draws the points of a strip of the image, or of a keyframe when it is asked for the first
-  // time, or compares both.
+  // Does the next piece: detects the points of a strip of the image or, at its first use, of a keyframe; or matches
+  // both.
   void work(Keyframes& keyframes);
-  // Where the keyframes said, in this pass, that the ROI was in the image, best first; none when nothing agreed.
+  // Places of the ROI by the keyframes matched in this pass, best first; empty if no matches agreed.
   std::vector<FeatureCandidate> found() const;
 
-  // A whole pass over `image` (CV_8UC1 or CV_8UC3).
+  // Does a whole pass over `image` (CV_8UC1 or CV_8UC3).
   std::vector<FeatureCandidate> find(const cv::Mat& image, const image::ChannelWeights& weights, Keyframes& keyframes);
 
   // See RegionTracker::retune.
   void retune(const TrackerConfig& config);
 
-  // Starts the turns again, and leaves the pass.
+  // Ends the pass, and starts again with the first keyframe.
   void restart();
 
  private:
@@ -59,15 +59,15 @@ class FeatureSearch {
 
   SearchConfig config_;
   int saturation_;         // grey levels
-  double max_area_ratio_;  // of the ROI, to the reference
+  double max_area_ratio_;  // ratio of the ROI's areas in image and reference
   std::shared_ptr<const image::Lens> lens_;
   int turn_ = 0;
 
-  // The pass.
+  // State of the pass.
   CoarseImage coarse_;
   image::ChannelWeights weights_ = image::kLuma;
   int strip_ = 0, strips_ = 0;
-  std::vector<int> asked_;  // keyframes, the next one last
+  std::vector<int> asked_;  // indices of the keyframes still to match, the next one last
   DescribedPoints seen_;
   std::vector<FeatureCandidate> found_;
 };

@@ -13,16 +13,16 @@ namespace laparoscope_servo::tracking {
 
 namespace {
 
-constexpr int kUsualIterations = 40;    // of an alignment that leads somewhere: nine of ten
-constexpr std::size_t kCandidates = 2;  // that are looked at, of each stage of the search
-constexpr double kSlidingScale = 4.0;   // px of the image per pixel of that over which the region is slid, about
-// Of 4,800 alignments on eight films, those that started where the ROI correlates with less led to one true place in
-// 3,200; half covered, it correlates with 0.3 or more (see bench_returns).
+constexpr int kUsualIterations = 40;    // iterations that suffice for nine of ten successful alignments
+constexpr std::size_t kCandidates = 2;  // places that are tried from each stage of the search
+constexpr double kSlidingScale = 4.0;   // px of the image per px of the coarse image of the template search, about
+// Least correlation of a start that is worth an alignment. Of 4,800 alignments on eight films, one in 3,200 of those
+// from a lower correlation led to the true place; a half-covered ROI correlates with 0.3 or more (see bench_returns).
 constexpr double kWorthAligning = 0.25;
-// A keyframe is worth storing that was seen nearly whole, and clearly.
+// A keyframe is stored only if the ROI was almost wholly visible and correlated well.
 constexpr double kKeyframeVisible = 0.7;
 constexpr double kKeyframeZncc = 0.85;
-// The most recent keyframe may be worse: tissue that has changed is what it is for.
+// The most recent keyframe may be worse, since it is there for tissue that has changed.
 constexpr double kRecentVisible = 0.5;
 constexpr double kRecentAge = 0.4;  // s
 
@@ -65,8 +65,8 @@ void RegionSearch::restart() {
   worked_ = true;  // the first image tries the last place before it begins a pass
 }
 
-// What was found in the image before comes first, then what images suggested for which there was no time, then where
-// the ROI was when it was last believed.
+// The order of the places: the candidate of the last image, then places of earlier images for which there was no time,
+// then the place by the ego-motion, then that of the last accepted estimate.
 void RegionSearch::begin(const EsmState& last, const std::optional<Eigen::Matrix3d>& carried) {
   budget_.start(config_.search.budget);
   last_ = last;
@@ -97,7 +97,7 @@ void RegionSearch::suggest(const Eigen::Matrix3d& g, Suggestion by) {
   suggested_.push_back({start, by});
 }
 
-// Where places take all the time, every second image is for the pass, so that it comes to an end.
+// If the suggested places use up the budget, every second image starts with a piece of the pass, so that it gets done.
 std::optional<SearchPlace> RegionSearch::next(const cv::Mat& image, const RegionAligner& aligner) {
   if (hungry_) work(image, aligner);
   hungry_ = false;
@@ -110,7 +110,7 @@ std::optional<SearchPlace> RegionSearch::next(const cv::Mat& image, const Region
   return std::nullopt;
 }
 
-// Why nothing was aligned.
+// The reason why no alignment was tried.
 std::string RegionSearch::whyNone() const {
   if (likeliest_ >= kWorthAligning) return "a place that looks like the ROI is aligned in the next image";
   std::ostringstream why;
@@ -146,7 +146,7 @@ double RegionSearch::alignmentCost(int iterations) const {
 }
 
 bool RegionSearch::judge(const Attempt& attempt, const RegionAligner& aligner) {
-  // What it has cost is known now.
+  // The actual number of iterations is known now.
   budget_.charge(alignmentCost(attempt.evidence.esm.iterations) - alignmentCost(kUsualIterations));
   Attempt tried = attempt;
   if (tried.doubt.empty()) tried.doubt = doubtOf(tried, aligner);
@@ -160,7 +160,7 @@ bool RegionSearch::judge(const Attempt& attempt, const RegionAligner& aligner) {
   return found;
 }
 
-// A search aligns at many places, one of which may pass the usual tests by chance, so its result has to pass two more.
+// A search tries many places, one of which may pass the usual tests by chance, so its result must pass two more tests.
 std::string RegionSearch::doubtOf(const Attempt& found, const RegionAligner& aligner) const {
   const double detail = aligner.detail();
   std::ostringstream why;
@@ -174,7 +174,7 @@ std::string RegionSearch::doubtOf(const Attempt& found, const RegionAligner& ali
   return why.str();
 }
 
-// The next piece of the pass, if there is time for it.
+// Does the next piece of the pass, if the budget allows it.
 bool RegionSearch::work(const cv::Mat& image, const RegionAligner& aligner) {
   const SearchConfig& search = config_.search;
   if (!passing_) {
@@ -218,7 +218,7 @@ void RegionSearch::slide(const RegionAligner& aligner) {
   int l = 0;
   while (l + 1 < aligner.esm().levels() && aligner.esm().level(l + 1).scale <= scale) ++l;
   const EsmLevel& level = aligner.esm().level(l);
-  // The first pixel that is slid over to that of the image, or to rectified ones.
+  // Offset of the coarse image's first pixel in the image, or in rectified pixels.
   const double middle = 0.5 * (scale - 1.0);
   Eigen::Matrix3d offset = Eigen::Matrix3d::Identity();
   offset.topRightCorner<2, 1>() << middle, middle;

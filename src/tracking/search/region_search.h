@@ -1,5 +1,5 @@
-// Searches a region of interest (ROI) that was lost: says where to align it, one place after another. What it takes to
-// find such places is spread over as many images as the budget asks for.
+// Search for a lost region of interest (ROI): suggests places at which to align it, one after another. Finding such
+// places is spread over as many images as the budget requires.
 #pragma once
 
 #include <Eigen/Core>
@@ -22,17 +22,17 @@
 
 namespace laparoscope_servo::tracking {
 
-// An alignment with an image, and why it is not believed; empty when it is.
+// An alignment with an image, and its rejection reason; empty if it is accepted.
 struct Attempt {
   Evidence evidence;
   std::string doubt;
 };
 
-// What suggested a place.
+// The source of a suggested place.
 enum class Suggestion {
-  kConfirmation,  // it was found there in the image before
-  kCarried,       // somebody else than the images knows how it moved
-  kLast,          // it was there when it was last believed
+  kConfirmation,  // the candidate of the last image
+  kCarried,       // the last accepted estimate moved by the ego-motion
+  kLast,          // the last accepted estimate
   kFeatures,
   kCorrelation,
 };
@@ -47,34 +47,33 @@ class RegionSearch {
   // With a lens images are raw; homographies and the ROI are in rectified pixels.
   explicit RegionSearch(const TrackerConfig& config, std::shared_ptr<const image::Lens> lens = nullptr);
 
-  // `aligner` has the image and its ROI for the reference.
+  // `aligner` must have this image and its ROI as its reference.
   void setReference(const cv::Mat& image, RegionAligner& aligner);
-  // The ROI was tracked at `g`, as `aligner` has just seen it at `stamp` [s]: stores what the image shows of it, when
-  // it is clear, and new, or none was stored for some time.
+  // Call after `aligner` tracked the ROI at `g` in the image of `stamp` [s]. Stores a keyframe if the ROI is clearly
+  // visible and the view is new, or if no most recent keyframe was stored for some time.
   void keepKeyframe(const cv::Mat& image, double stamp, const Evidence& seen, const Eigen::Matrix3d& g,
                     RegionAligner& aligner);
 
   // See RegionTracker::retune.
   void retune(const TrackerConfig& config);
 
-  // The ROI has been lost: the search starts.
+  // Starts the search, when the ROI has been lost.
   void restart();
 
-  // The next image. `last`: the last estimate that was believed; `carried`: the same, moved by what somebody else than
-  // the images knows.
+  // Begins the next image. `last`: the last accepted estimate; `carried`: its G moved by the ego-motion.
   void begin(const EsmState& last, const std::optional<Eigen::Matrix3d>& carried);
-  // Where to align `aligner`'s reference with that image, likely places first; empty when there is no place left, or no
-  // time. To be asked again after each attempt, until one is without a doubt.
+  // The next place at which to align `aligner`'s reference with the image, likely places first; empty if no place or no
+  // budget is left. Call again after each attempt until one is accepted.
   std::optional<SearchPlace> next(const cv::Mat& image, const RegionAligner& aligner);
-  // The result of aligning at the place that next() returned last, with `aligner` as that alignment left it. True when
-  // the result is accepted.
+  // Takes the result of the alignment at the place that next() returned last; `aligner` must be as that alignment left
+  // it. Returns true if the result is accepted.
   bool judge(const Attempt& attempt, const RegionAligner& aligner);
 
-  // The accepted attempt in this image; when there is none, the one with the highest correlation, which tells best why.
+  // The accepted attempt in this image; if there is none, the attempt with the highest correlation, for its reason.
   const Attempt& best() const { return best_; }
   Suggestion suggestedBy() const { return best_by_; }
 
-  // What was found waits there until it is confirmed.
+  // Holds the candidate until it is confirmed.
   Confirmation& confirmation() { return confirmation_; }
   const Confirmation& confirmation() const { return confirmation_; }
 
@@ -89,28 +88,28 @@ class RegionSearch {
   void slide(const RegionAligner& aligner);
 
   TrackerConfig config_;
-  std::shared_ptr<const image::Lens> lens_;  // null: none
+  std::shared_ptr<const image::Lens> lens_;  // null: no lens
   Keyframes keyframes_;
   std::optional<double> recent_stamp_;  // s, of the most recent keyframe; at first, of the first image
   FeatureSearch feature_search_;
   StartCheck start_check_;
   Confirmation confirmation_;
 
-  // A pass over one image, which may take several: by points, then by correlation.
+  // State of a pass over one image, by points and then by correlation, which may last for several images.
   bool passing_ = false;
   bool to_slide_ = false;
   CoarseImage coarse_;
 
-  // The present image.
+  // State of the present image.
   SearchBudget budget_;
   EsmState last_;
-  std::deque<SearchPlace> suggested_;  // those that there was no time for stay for the next one
-  bool began_ = false;                 // a pass has begun in this image: a second one would find the same places
+  std::deque<SearchPlace> suggested_;  // places not tried for want of budget stay for the next image
+  bool began_ = false;                 // a pass has begun in this image; a second one would find the same places
   bool worked_ = true;                 // a piece of a pass was done in this image
-  bool hungry_ = false;                // none was done in the image before: this image begins with one
+  bool hungry_ = false;                // no piece was done in the last image: this image begins with one
   Suggestion tried_ = Suggestion::kLast;
-  double likeliest_ = 0.0;  // correlation of the places that were looked at
-  bool aligned_ = false;    // one of them was
+  double likeliest_ = 0.0;  // largest correlation of the places that were checked
+  bool aligned_ = false;    // an alignment was tried in this image
   Attempt best_;
   Suggestion best_by_ = Suggestion::kLast;
 };

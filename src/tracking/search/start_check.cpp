@@ -12,19 +12,20 @@ namespace laparoscope_servo::tracking {
 
 namespace {
 
-constexpr double kSide = 64.0;         // px, of the larger side of what is compared
-constexpr double kSurroundings = 4.0;  // px there: local contrast is what differs from its surroundings ...
-constexpr float kLeast = 1.5f;         // grey levels: ... over its deviation, which noise alone would have
-constexpr float kMost = 3.0f;          // of these: highlights do not outweigh the rest
+constexpr double kSide = 64.0;         // px, larger side of the ROI when compared
+constexpr double kSurroundings = 4.0;  // px of the compared patch: blur of the local mean and deviation
+constexpr float kLeast = 1.5f;         // grey levels: smaller local deviations are noise
+// deviations, at which local contrast is clipped so that highlights do not dominate
+constexpr float kMost = 3.0f;
 
-// Means of the valid pixels around each.
+// Means over the valid pixels around each pixel.
 cv::Mat1f around(const cv::Mat1f& value, const cv::Mat1f& valid, const cv::Mat1f& share, double sigma) {
   cv::Mat1f mean;
   cv::GaussianBlur(value.mul(valid), mean, cv::Size(), sigma);
   return mean / share;
 }
 
-// What differs from its surroundings, over how much that does; 0 where not valid.
+// Local contrast: deviation from the local mean over the local standard deviation; 0 where not valid.
 cv::Mat1f localContrast(const cv::Mat1f& grey, const cv::Mat1f& valid) {
   cv::Mat1f share, smooth;
   cv::GaussianBlur(valid, share, cv::Size(), kSurroundings);
@@ -56,8 +57,8 @@ void StartCheck::setReference(const cv::Mat& image, const geometry::Rectangle& r
   reference_ = contrast(image, Eigen::Matrix3d::Identity(), 0);
 }
 
-// The image where `g` shows the ROI and a margin [px of what is compared] around it; empty where nothing of that is in
-// the image.
+// Local contrast of the image where `g` puts the ROI and `margin` [px of the compared patch] around it; empty if no
+// part of that is in the image.
 cv::Mat1f StartCheck::contrast(const cv::Mat& image, const Eigen::Matrix3d& g, int margin) const {
   const double grow = margin * step_;
   const geometry::Rectangle wide = {roi_.x - grow, roi_.y - grow, roi_.width + 2.0 * grow, roi_.height + 2.0 * grow};
@@ -77,9 +78,9 @@ cv::Mat1f StartCheck::contrast(const cv::Mat& image, const Eigen::Matrix3d& g, i
   image_T_patch.leftCols<2>() *= step_;
   cv::Mat1f patch(size_.height + 2 * margin, size_.width + 2 * margin);
   cv::Mat1f valid(patch.size());
-  const double middle = 0.5 * (scale - 1.0);  // px, of the image, to the centre of the first pixel
+  const double middle = 0.5 * (scale - 1.0);  // px of the image: offset of the first pixel's centre
   if (lens_) {
-    // A whole origin: half a pixel is nothing here.
+    // The origin is rounded to whole pixels; half a pixel does not matter here.
     const cv::Point origin = box.tl() + cv::Point(cvFloor(middle), cvFloor(middle));
     image::warpBilinear(grey, image_T_patch, *lens_, {origin, static_cast<double>(scale)}, patch, valid);
   } else {

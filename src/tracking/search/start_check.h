@@ -1,6 +1,6 @@
-// Whether a place is worth an alignment: how well the region of interest (ROI), made coarse, correlates with the image
-// there or nearby. Costs a small part of an alignment that leads nowhere, and moves the start to where it fits best, so
-// that a place found in one image serves in the next ones.
+// Checks whether a place is worth an alignment: correlates the coarse region of interest (ROI) with the image there and
+// nearby. Costs a small part of an unsuccessful alignment. Moves the start to the best place, so that a place found in
+// one image can be used in the next ones.
 #pragma once
 
 #include <Eigen/Core>
@@ -25,10 +25,11 @@ class StartCheck {
 
   void setReference(const cv::Mat& image, const geometry::Rectangle& roi, const image::ChannelWeights& weights);
 
-  // The best place within kReach of where `g` shows the ROI; `g` itself, and 0, where that is not in the image.
+  // The place of highest correlation within kReach of `g`; `g` itself with correlation 0 if the ROI is not in the image
+  // there.
   CheckedStart look(const cv::Mat& image, const Eigen::Matrix3d& g) const;
 
-  static constexpr double kReach = 0.25;  // of the ROI's larger side
+  static constexpr double kReach = 0.25;  // share of the ROI's larger side
 
  private:
   cv::Mat1f contrast(const cv::Mat& image, const Eigen::Matrix3d& g, int margin) const;
@@ -36,8 +37,8 @@ class StartCheck {
   std::shared_ptr<const image::Lens> lens_;
   geometry::Rectangle roi_;
   image::ChannelWeights weights_ = image::kLuma;
-  double step_ = 1.0;  // px of the reference per pixel of what is compared
-  cv::Size size_;      // px of what is compared
+  double step_ = 1.0;  // px of the reference per px of the compared patch
+  cv::Size size_;      // px, of the compared patch
   cv::Mat1f reference_;
 };
 

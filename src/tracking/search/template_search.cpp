@@ -22,7 +22,7 @@ Eigen::Matrix3d translation(const Eigen::Vector2d& t) {
 std::vector<Candidate> templateSearch(const cv::Mat1f& reference, const Eigen::Matrix3d& reference_T_patch,
                                       const cv::Mat1f& image, double scale, const geometry::Rectangle& roi,
                                       const Eigen::Matrix3d& last, int count) {
-  // The ROI as the last image showed it, drawn into a box of its own: the part of its bounding box that it fills.
+  // The ROI as `last` shows it, drawn into its bounding box.
   const geometry::Quadrilateral corners = geometry::apply(last, roi.corners());
   Eigen::Vector2d low = corners[0];
   Eigen::Vector2d high = corners[0];

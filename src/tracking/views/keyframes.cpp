@@ -10,12 +10,12 @@ namespace laparoscope_servo::tracking {
 
 namespace {
 
-constexpr double kLengthStep = 1.3;  // a binary descriptor bears about this much between two views
+constexpr double kLengthStep = 1.3;  // factor of scale between two views that a binary descriptor tolerates, about
 constexpr double kTurnStep = 0.6;    // rad
-// Of the tissue around the ROI: detectors see nothing near the border of what they are given, and small or smooth
+// Margin of tissue kept around the ROI: detectors find no points near the border of an image, and small or smooth
 // regions are found by their surroundings.
 constexpr double kMargin = 0.08;      // of the image's diagonal
-constexpr double kMarginOfRoi = 0.5;  // of the ROI's, where that is more
+constexpr double kMarginOfRoi = 0.5;  // of the ROI's diagonal, if that is more
 
 }  // namespace
 
@@ -88,7 +88,7 @@ void Keyframes::addRecent(const cv::Mat& image, const Eigen::Matrix3d& g, const 
   recent_.features.descriptors.release();
 }
 
-// Of the image: the ROI with its margin.
+// The box of the image that holds the ROI and its margin.
 cv::Rect Keyframes::boxOf(const cv::Mat& image, const Eigen::Matrix3d& g) const {
   const geometry::Quadrilateral corners = geometry::apply(g, roi_.corners());
   const double diagonal = std::max((corners[2] - corners[0]).norm(), (corners[3] - corners[1]).norm());

@@ -1,6 +1,6 @@
-// Keyframes: pictures of the region of interest (ROI) that were tracked well, so that the search for a lost ROI knows
-// it at scales and tilts that the reference does not show. They give places to start from and nothing else: what is
-// aligned and believed is always the reference itself, which no keyframe replaces.
+// Keyframes: images in which the region of interest (ROI) was tracked well, so that the search for a lost ROI knows it
+// at scales and tilts that the reference does not show. They only suggest places to start from; the template that is
+// aligned is always the reference, which no keyframe replaces.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,23 +15,25 @@
 namespace laparoscope_servo::tracking {
 
 struct Keyframe {
-  cv::Mat crop;       // of the image as it came: the ROI with a margin
+  cv::Mat crop;       // part of the raw image: the ROI with a margin
   cv::Point first;    // px, of the crop's first pixel in that image
   Eigen::Matrix3d g;  // pixels of the reference to pixels of that image, determinant 1
   cv::Mat1b trusted;  // 255 for the ROI's pixels (of the reference) that were neither occluded nor saturated, else 0
 
-  bool described = false;  // features are drawn when a search first needs them: a tracked image only pays for the copy
+  // true: the features are computed. A search computes them when it first needs them, so that tracking only pays for
+  // the copy
+  bool described = false;
   DescribedPoints features;
 };
 
-// How differently two homographies show the ROI's centre: 1 for a factor of 1.3 in length in some direction, or a turn
-// of 0.6 rad in the image; the larger of both. Infinite where a homography shows it mirrored or not at all.
+// Difference of two homographies at the ROI's centre: 1 for a factor of 1.3 in length in some direction, or a turn of
+// 0.6 rad in the image; the larger of both. Infinite if a homography shows the ROI mirrored or not at all.
 double keyframeDistance(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b, const geometry::Rectangle& roi);
 
 class Keyframes {
  public:
-  // capacity: how many are kept beside the reference, 0 or more. With a lens the images are raw, homographies and
-  // the ROI rectified.
+  // capacity: number of keyframes kept beside the reference, 0 or more. With a lens the images are raw, homographies
+  // and the ROI rectified.
   explicit Keyframes(int capacity, std::shared_ptr<const image::Lens> lens = nullptr)
       : capacity_(capacity), lens_(std::move(lens)) {}
 
@@ -44,14 +46,16 @@ class Keyframes {
   // after some time none is replaced any more.
   bool wants(const Eigen::Matrix3d& g) const;
 
-  // Stores a keyframe that wants() said yes to.
+  // Stores a keyframe. Call only if wants() returned true.
   void add(const cv::Mat& image, const Eigen::Matrix3d& g, const cv::Mat1f& weights);
 
-  // Stores the picture, or one that replaces it soon, as the most recent keyframe, beside those: tissue that bleeds, or
-  // is cut, looks as it did last. Does not allocate once it has stored one. Nothing where capacity is 0.
+  // Stores the image as the most recent keyframe, which is kept apart from the others and replaced by the next call:
+  // tissue that bleeds or is cut looks as it did last. Does not allocate after the first call. Does nothing if capacity
+  // is 0.
   void addRecent(const cv::Mat& image, const Eigen::Matrix3d& g, const cv::Mat1f& weights);
 
-  // With the reference, which is at 0, and the most recent one, which is the last; 0 before the reference is set.
+  // Number of keyframes, including the reference (index 0) and the most recent one (the last); 0 before the reference
+  // is set.
   int count() const { return static_cast<int>(keyframes_.size()) + (hasRecent() ? 1 : 0); }
   bool hasRecent() const { return !recent_.crop.empty(); }
   Keyframe& at(int k) { return k < stored() ? keyframes_[k] : recent_; }
@@ -70,7 +74,7 @@ class Keyframes {
   geometry::Rectangle roi_;
   std::vector<Keyframe> keyframes_;
   Keyframe recent_;
-  cv::Mat recent_pixels_;  // its crop's memory, enough for any
+  cv::Mat recent_pixels_;  // memory of its crop, large enough for any crop
 };
 
 }  // namespace laparoscope_servo::tracking

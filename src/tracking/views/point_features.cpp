@@ -9,15 +9,15 @@ namespace laparoscope_servo::tracking {
 
 namespace {
 
-constexpr int kLeastSide = 16;  // px: in less there are no points to be found
-constexpr int kLayers = 3;      // of an octave
+constexpr int kLeastSide = 16;  // px: smaller images have no points
+constexpr int kLayers = 3;      // layers of an octave
 
 #if CV_VERSION_MAJOR * 10000 + CV_VERSION_MINOR * 100 >= 40400
 constexpr int kNorm = cv::NORM_L2;
-constexpr double kContrast = 0.005;  // an eighth of the usual: tissue has little
+constexpr double kContrast = 0.005;  // an eighth of OpenCV's default, since tissue has little contrast
 
-// To describe a point takes most of the time, so that the weaker ones are left away before. SIFT's own limit would come
-// before the mask, and leave highlights.
+// Computing descriptors takes most of the time, so weak points are dropped before it. SIFT's own limit applies before
+// the mask and would keep highlights.
 void detect(const cv::Mat1b& grey, const cv::Mat1b& mask, int count, std::vector<cv::KeyPoint>& points,
             cv::Mat& descriptors) {
   const auto sift = cv::SIFT::create(0, kLayers, kContrast);
@@ -27,7 +27,7 @@ void detect(const cv::Mat1b& grey, const cv::Mat1b& mask, int count, std::vector
 }
 #else
 constexpr int kNorm = cv::NORM_HAMMING;
-constexpr float kResponse = 1e-5f;  // a hundredth of the usual
+constexpr float kResponse = 1e-5f;  // a hundredth of OpenCV's default
 
 void detect(const cv::Mat1b& grey, const cv::Mat1b& mask, int count, std::vector<cv::KeyPoint>& points,
             cv::Mat& descriptors) {

@@ -1,8 +1,8 @@
-// Draws points with descriptors from a coarse image.
+// Detects points in a coarse image and computes their descriptors.
 //
-// Of what OpenCV has without further modules, SIFT finds the most regions of tissue again, for each image and for each
-// millisecond (see bench_search); OpenCV has it among its features since 4.4. Before, AKAZE is the next best. Both take
-// thresholds far below those made for photographs.
+// Among OpenCV's detectors without contrib modules, SIFT finds the most regions of tissue again, per image and per
+// millisecond (see bench_search). OpenCV has it in features2d since 4.4; with older versions AKAZE, the next best, is
+// used. Both get thresholds far below those for photographs.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -10,16 +10,16 @@
 
 namespace laparoscope_servo::tracking {
 
-// Points with a descriptor each, a row of `descriptors`.
+// Points; row k of `descriptors` belongs to point k.
 struct DescribedPoints {
-  std::vector<cv::Point2f> points;  // px, of the image that they were drawn from; with a lens rectified ones
+  std::vector<cv::Point2f> points;  // px of the image in which they were detected; with a lens rectified
   cv::Mat descriptors;
 };
 
-// About the `count` strongest of `grey`, where `mask` is not 0; in its pixels.
+// About the `count` strongest points of `grey` where `mask` is not 0, in pixels of `grey`.
 DescribedPoints drawPoints(const cv::Mat1b& grey, const cv::Mat1b& mask, int count);
 
-// How much the descriptors differ, those of `a` in rows, of `b` in columns. Neither may be empty.
+// Distances of the descriptors of `a` (rows) and `b` (columns). Neither may be empty.
 cv::Mat1f descriptorDistances(const DescribedPoints& a, const DescribedPoints& b);
 
 }  // namespace laparoscope_servo::tracking

@@ -5,13 +5,13 @@
 namespace laparoscope_servo::tracking {
 
 void describe(parameters::Table& table, ViewConfig& c) {
-  table.number("capacity", c.capacity, {1, 256}, "views", "as many can be stored");
+  table.number("capacity", c.capacity, {1, 256}, "views", "largest number of stored views");
   table.number("min_visible_fraction", c.min_visible_fraction, {0, 1}, "share",
-               "of the region that has to be visible while a view is stored");
+               "of the region that must be visible when a view is stored");
   table.number("arrival_centre", c.arrival_centre, {0.1, 10000}, "px",
-               "a recall goes on to the next view when the region's centre is as near to its place");
+               "distance of the region's centre from its place within which a recall goes on to the next view");
   table.number("arrival_scale", c.arrival_scale, {0.001, 1}, "ratio",
-               "a recall goes on to the next view when the region's scale differs by no more");
+               "difference of the region's scale within which a recall goes on to the next view");
 }
 
 std::vector<std::string> validate(const ViewConfig& config) {

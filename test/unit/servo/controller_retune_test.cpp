@@ -1,7 +1,12 @@
 // Gains and thresholds that change while the scope moves.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <string>
+#include <vector>
+
 #include "controller_input.h"
+#include "laparoscope_servo/parameters/table.h"
 
 namespace laparoscope_servo::servo {
 namespace {
@@ -96,6 +101,60 @@ TEST(ControllerRetune, LimitsAndSafetyStay) {
   stale.task_error.age = 0.3;
   EXPECT_EQ(running.step(stale).state, ControllerState::kHold);
   EXPECT_TRUE(isZero(running.last));
+}
+
+using Commands = std::vector<Eigen::Vector4d>;
+
+// Commands for errors that swing through the bands of rest, with an amplitude that grows. Once the scope moves, the
+// parameter `name` is set to `factor` times its value; empty: none. Empty if that value is refused.
+Commands commands(LawKind law, const std::string& name, double factor) {
+  ControllerConfig config = blind();
+  config.law = law;
+  Running running(config);
+  parameters::Table table;
+  describe(table, config);
+  if (!name.empty()) {
+    const parameters::Row* row = table.find(name);
+    if (!row->take(factor * *parameters::numberOf(row->get())).empty() || !validate(config).empty()) return {};
+  }
+  running.controller.retune(config);
+  Commands result;
+  for (int k = 0; k < 600; ++k) {
+    const double swing = k / 600.0 * std::sin(2.0 * M_PI * 0.02 * k / 1.4);
+    ControllerInput input = good(0.0);
+    TaskError& error = input.task_error.error;
+    error.x = error.y = 0.005 * swing;
+    error.log_depth = 0.015 * swing;
+    error.alpha = 0.015 * swing;
+    error.e_v = {error.x, error.y, error.log_depth};
+    error.e_w = {0.0, 0.0, 2.0 * error.alpha};
+    result.push_back(running.step(input).command.vector());
+  }
+  return result;
+}
+
+// A value that is accepted and logged, but not passed on to the part that uses it, would have no effect.
+TEST(ControllerRetune, EveryParameterThatMayChangeHasAnEffect) {
+  ControllerConfig config;
+  parameters::Table table;
+  describe(table, config);
+  const LawKind laws[] = {LawKind::kFeatures, LawKind::kPaper};
+  const Commands as_before[] = {commands(laws[0], "", 1.0), commands(laws[1], "", 1.0)};
+  int changeable = 0;
+  for (const parameters::Row& row : table.rows()) {
+    if (!row.while_running) continue;
+    ++changeable;
+    bool has_effect = false;
+    for (const double factor : {1.3, 0.7}) {
+      for (const int k : {0, 1}) {
+        if (has_effect) continue;
+        const Commands changed = commands(laws[k], row.name, factor);
+        has_effect = !changed.empty() && changed != as_before[k];
+      }
+    }
+    EXPECT_TRUE(has_effect) << row.name;
+  }
+  EXPECT_GT(changeable, 0);
 }
 
 TEST(ControllerRetune, NothingMovesWhileItStands) {

@@ -29,7 +29,7 @@ class StickTest : public testing::Test {
   }
   Stick::Words turn() {
     now_ += 0.05;
-    return stick_.turn(now_);
+    return stick_.cycle(now_);
   }
   // Released and pressed again, the button counts.
   void expectTakenAnew() {
