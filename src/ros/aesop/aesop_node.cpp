@@ -65,7 +65,8 @@ AesopNode::AesopNode(const ros::NodeHandle& node, const ros::NodeHandle& private
   diagnostics_.setHardwareID(parameters_.port);
   diagnostics_.add("AESOP", [this](diagnostic_updater::DiagnosticStatusWrapper& status) {
     const double now = steadyNow();
-    reported_.fill(now, driver_, {command_owner_, command_subscriber_.getNumPublishers(), reconnect_.remaining(now)}, status);
+    reported_.fill(now, driver_, {command_owner_, command_subscriber_.getNumPublishers(), reconnect_.remaining(now)},
+                   status);
     stops_.describe(now, status);
     calibration_.describe(status);
     if (recording_ && !recording_->problem().empty())
