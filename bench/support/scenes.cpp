@@ -14,12 +14,12 @@ namespace laparoscope_servo::bench {
 
 namespace {
 
-constexpr double kPeriod = 0.04;  // s, between images of a film
+constexpr double kPeriod = 0.04;     // s, between images of a film
 constexpr std::size_t kBefore = 25;  // images
-constexpr double kVisible = 0.6;  // of the region, in an image that is taken
-constexpr double kNoise = 2.0;    // grey levels
-constexpr double kVeil = 200.0;   // grey levels, of smoke
-constexpr double kMargin = 15.0;  // px, around half of the region, that is covered with it
+constexpr double kVisible = 0.6;     // of the region, in an image that is taken
+constexpr double kNoise = 2.0;       // grey levels
+constexpr double kVeil = 200.0;      // grey levels, of smoke
+constexpr double kMargin = 15.0;     // px, around half of the region, that is covered with it
 
 }  // namespace
 

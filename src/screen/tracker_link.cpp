@@ -20,7 +20,7 @@ namespace {
 using StoredView_ = laparoscope_servo::StoredView;
 using Views = std::shared_ptr<const std::vector<StoredView>>;
 
-// Of what anybody may have sent.
+// Bounds a side from a message, which may hold any value.
 int side(std::uint32_t pixels) {
   constexpr std::uint32_t kLargest = 1u << 20;
   return static_cast<int>(std::min(pixels, kLargest));

@@ -102,7 +102,7 @@ class RegionAligner {
   image::Channels channels_ = image::kLuma;
   image::ColourPatch patch_;
   Eigen::Matrix3d shown_ = Eigen::Matrix3d::Identity();  // the homography at which the colour gate was last evaluated
-  double noise_ = 0.0;     // grey levels, noise of the reference image
+  double noise_ = 0.0;                                   // grey levels, noise of the reference image
   double surprise_ = 0.0;  // px, distance of the worst corner from the prediction in the last image
 };
 

@@ -22,8 +22,8 @@ struct ShiftFit {
 // small unless the shifts determine them. `side`: of a block [px of the reference].
 std::optional<ShiftFit> fitShifts(const std::vector<BlockShift>& shifts, const geometry::Rectangle& roi, double side);
 
-// Covariance of x that comes of tissue which is not a plane, or deforms: from the confident shifts' `median` [px], as far
-// as it exceeds the accuracy of block matching. Zero if it does not, or if fewer than eight shifts are confident.
+// Covariance of x that comes of tissue which is not a plane, or deforms: from the confident shifts' `median` [px], as
+// far as it exceeds the accuracy of block matching. Zero if it does not, or if fewer than eight shifts are confident.
 Matrix8d deformationCovariance(const std::vector<BlockShift>& shifts, double median, const geometry::Rectangle& roi);
 
 // Median length of the confident shifts [px of the current image]; NaN if there is none.
