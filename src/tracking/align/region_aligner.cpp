@@ -11,8 +11,7 @@
 #include "tracking/align/detail.h"
 #include "tracking/align/shift_fit.h"
 #include "tracking/esm/covariance.h"
-#include "tracking/search/coarse_image.h"
-#include "tracking/selection/texture.h"
+#include "tracking/align/texture.h"
 
 namespace laparoscope_servo::tracking {
 
@@ -31,6 +30,15 @@ constexpr double kBlockVisible = 0.8;  // share of a visible block's pixels that
 constexpr double kGateShift =
     2.0;  // lengthUnit()s of the image: masks drawn further from the estimate than this are drawn again
 constexpr double kBorder = 4.0;  // px of the coarsest level, of what smoothing takes in from beyond the ROI
+
+// The channel that is tracked first, before any smoothing. `image`: CV_8UC1 or CV_8UC3.
+cv::Mat1f mixed(const cv::Mat& image, const image::ChannelWeights& weights) {
+  cv::Mat levels, plane;
+  image.convertTo(levels, CV_32F);
+  if (image.channels() == 1) return levels;
+  cv::transform(levels, plane, cv::Matx13f(weights[0], weights[1], weights[2]));
+  return plane;
+}
 
 bool usable(const EsmResult& estimate) {
   return estimate.status == EsmStatus::kConverged || estimate.status == EsmStatus::kMaxIterations;
@@ -57,7 +65,7 @@ void RegionAligner::setReference(const cv::Mat& image, const geometry::Rectangle
   const cv::Rect box = image::seenBox(lens_.get(), roi.corners(), 0.0) & cv::Rect(cv::Point(0, 0), image.size());
   channels_ = chosenChannels(config_.channels, image(box), config_.saturation);
   const cv::Rect with_border = image::seenBox(lens_.get(), roi.corners(), kBorder * (1 << config_.levels));
-  noise_ = noiseOf(cv::Mat1f(oneChannel(image(box), channels_.weights[0])));
+  noise_ = noiseOf(mixed(image(box), channels_.weights[0]));
   pyramid_.build(image, with_border, config_.levels, channels_);
   esm_.setReference(pyramid_, roi);
   blocks_.setReference(pyramid_, roi);

@@ -1,4 +1,4 @@
-#include "tracking/selection/texture.h"
+#include "tracking/align/texture.h"
 
 #include <algorithm>
 #include <cmath>
