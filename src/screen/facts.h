@@ -78,7 +78,7 @@ struct Verdict {
   std::int64_t stamp = 0;  // stamp of the frozen picture; 0: the live one
   bool taken = false;      // it would be accepted
   std::string why;         // why not
-  QRect proposal;          // px, a region that would be accepted; empty if none is known
+  QRect proposal = {};     // px, a region that would be accepted; empty if none is known
 };
 
 // A picture kept by the tracker, in which a region is drawn.

@@ -131,6 +131,7 @@ class TrackerSession {
   bool start_roi_pending_ = false;           // the parameters' ROI is not selected yet
   bool start_roi_refused_ = false;           // it was refused in an image before
   std::optional<double> trial_ends_;         // s, tracker time, end of a new region's trial
+  bool lost_covered_ = false;                // the last loss was one of visibility
   std::string trial_failed_;                 // added to the reason while a region that failed its trial is not TRACKING
   BitDepth depth_;
   ImageGate gate_;

@@ -93,10 +93,11 @@ void TrackerSession::judgeSelection(const tracking::TrackResult& found, tracking
   if (found.selected_now) trial_ends_ = time_ + kTrial;
   if (found.selected_now || found.state == tracking::State::kTracking) trial_failed_.clear();
   if (!tracker_.hasRoi()) trial_ends_.reset();
+  if (before_.state == tracking::State::kTracking && found.state != tracking::State::kTracking)
+    lost_covered_ = found.reason.rfind("visible fraction", 0) == 0;
   if (trial_ends_ && time_ >= *trial_ends_) {
     trial_ends_.reset();
-    const bool covered = !(found.visible_fraction >= parameters_.tracking.quality.min_visible_fraction);
-    if (found.state != tracking::State::kTracking && !covered && reference_)
+    if (found.state != tracking::State::kTracking && !lost_covered_ && reference_)
       trial_failed_ = "; it was not held in its first second" +
                       proposalText(regionThatWouldDo(tracker_, reference_->image, reference_->roi));
   }

@@ -250,6 +250,10 @@ TEST_F(ImageViewTest, AsksForARegionWhileItIsDrawnAndShowsTheAnswer) {
   EXPECT_NE(taken, refused);
   EXPECT_EQ(wordsOf(*facts.verdict).toStdString(),
             "The region is too smooth to be followed. Choose one with vessels or edges.");
+  facts.verdict->proposal = QRect(20, 20, 60, 60);
+  facts.picture.arrived_at += 0.01;
+  EXPECT_NE(drawn(facts), refused);
+  EXPECT_EQ(wordsOf(*facts.verdict).right(24).toStdString(), "The dotted one would do.");
   facts.verdict = Verdict{QRect(1, 2, 3, 4), 0, true, ""};
   facts.picture.arrived_at += 0.01;
   EXPECT_EQ(drawn(facts), unanswered) << "the answer is of another region";
