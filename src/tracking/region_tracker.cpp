@@ -114,7 +114,7 @@ std::optional<geometry::Rectangle> RegionTracker::Implementation::propose(const 
   checkImage(image);
   if (!(wanted.width >= 1.0 && wanted.height >= 1.0) ||
       !std::isfinite(wanted.x + wanted.y + wanted.width + wanted.height))
-    throw std::invalid_argument("the ROI has no size, or is not finite");
+    throw std::invalid_argument("the ROI is too small, expected at least 1 px in width and height, and finite numbers");
   geometry::Rectangle least = wanted;
   least.width = std::max<double>(wanted.width, config_.min_roi_side);
   least.height = std::max<double>(wanted.height, config_.min_roi_side);

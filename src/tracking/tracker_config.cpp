@@ -94,7 +94,7 @@ void describe(Table& table, SearchConfig& c) {
                "to start from");
   table
       .number("min_detail", c.min_detail, {0, 1}, "correlation",
-              "least correlation least correlation of the fine structure where a search found the region")
+              "least correlation of the fine structure where a search found the region")
       .whileRunning();
   table
       .number("budget", c.budget, {0.001, 10}, "s",

@@ -14,7 +14,7 @@ void describe(parameters::Table& table, SessionConfig& c) {
   table.number("status_timeout", c.status_timeout, {0.05, 5}, "s",
                "longest time without a status; then the link is lost");
   table.number("request_timeout", c.request_timeout, {0.1, 10}, "s",
-               "longest time longest time for the controller to confirm a request");
+               "longest time for the controller to confirm a request");
   describeCodec(table, c.codec);
 }
 
