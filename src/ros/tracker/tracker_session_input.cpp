@@ -94,7 +94,7 @@ void TrackerSession::judgeSelection(const tracking::TrackResult& found, tracking
   if (found.selected_now || found.state == tracking::State::kTracking) trial_failed_.clear();
   if (!tracker_.hasRoi()) trial_ends_.reset();
   if (before_.state == tracking::State::kTracking && found.state != tracking::State::kTracking)
-    lost_covered_ = found.reason.rfind("visible fraction", 0) == 0 || found.reason.rfind("the pixels kept", 0) == 0;
+    lost_covered_ = !(found.visible_fraction >= parameters_.tracking.quality.min_visible_fraction);
   if (trial_ends_ && time_ >= *trial_ends_) {
     trial_ends_.reset();
     if (found.state != tracking::State::kTracking && !lost_covered_ && reference_)
