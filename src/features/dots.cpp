@@ -67,9 +67,7 @@ void describe(parameters::Table& table, DotsConfig& c) {
   table.number("max_error", c.max_error, {0.01, 20}, "px", "standard deviation expected of the centre");
   table.number("velocity_damping", c.velocity_damping, {0, 1}, "",
                "share of the last motion that is expected to go on");
-  table.number("max_search_time", c.state.max_search_time, {0, 600}, "s", "SEARCHING for longer is LOST");
-  table.number("confirmations", c.state.confirmations, {1, 100}, "images",
-               "in a row that show the dot, before TRACKING is said again");
+  describe(table, c.state);
 }
 
 std::vector<std::string> validate(const DotsConfig& config) {

@@ -18,9 +18,7 @@ void describe(parameters::Table& table, EdgeConfig& c) {
   table.number("max_change", c.max_change, {0.01, 1}, "", "of size or shape, from one image to the next");
   table.number("velocity_damping", c.velocity_damping, {0, 1}, "",
                "share of the last motion that is expected to go on");
-  table.number("max_search_time", c.state.max_search_time, {0, 600}, "s", "SEARCHING for longer is LOST");
-  table.number("confirmations", c.state.confirmations, {1, 100}, "images",
-               "in a row that show the curve, before TRACKING is said again");
+  describe(table, c.state);
 }
 
 std::vector<std::string> validate(const EdgeConfig& config) {

@@ -1,5 +1,7 @@
 #include "laparoscope_servo/features/feature_state.h"
 
+#include "laparoscope_servo/parameters/table.h"
+
 namespace laparoscope_servo::features {
 
 const char* stateName(State state) {
@@ -50,6 +52,12 @@ const char* reasonText(Reason reason) {
       return "nothing near there looks like it: covered, gone, or merged with something";
   }
   return "";
+}
+
+void describe(parameters::Table& table, StateConfig& c) {
+  table.number("max_search_time", c.max_search_time, {0, 600}, "s", "SEARCHING for longer is LOST");
+  table.number("confirmations", c.confirmations, {1, 100}, "images",
+               "in a row that show the feature, before TRACKING is said again");
 }
 
 void StateKeeper::select(double stamp) {

@@ -15,10 +15,6 @@
 
 #include "laparoscope_servo/features/feature_state.h"
 
-namespace laparoscope_servo::parameters {
-class Table;
-}
-
 namespace laparoscope_servo::features {
 
 struct DotsConfig {

@@ -6,10 +6,6 @@
 
 #include "laparoscope_servo/features/feature_state.h"
 
-namespace laparoscope_servo::parameters {
-class Table;
-}
-
 namespace laparoscope_servo::features {
 
 struct EdgeConfig {

@@ -1,6 +1,10 @@
 // What may be believed of a tracked feature, and why not more. Shared by all trackers of features.
 #pragma once
 
+namespace laparoscope_servo::parameters {
+class Table;
+}
+
 namespace laparoscope_servo::features {
 
 // TRACKING: this image showed the feature where the result says. SEARCHING: it did not, the result is where the feature
@@ -33,6 +37,8 @@ struct StateConfig {
   double max_search_time = 2.0;  // s: SEARCHING for longer is LOST
   int confirmations = 3;         // images in a row that show the feature, before TRACKING is said again
 };
+// Its rows in the table of the tracker that has it.
+void describe(parameters::Table& table, StateConfig& config);
 
 // The states and what leads from one to the other. No clock: stamps are those of the images, s.
 class StateKeeper {
