@@ -70,7 +70,7 @@ class PapersTracker {
     result.visible_fraction = found.visible_fraction;
     result.zncc = found.zncc;
     const tracking::OcclusionGates& gates = aligner_.gates();
-    result.areas = {gates.grid().rows(), gates.grid().columns(), gates.distances(), {}};
+    result.areas = {gates.grid().rows(), gates.grid().columns(), gates.distances(), {}, {}};
     for (int k = 0; k < gates.grid().count(); ++k) result.areas.occluded.push_back(gates.occluded(k));
     return result;
   }

@@ -12,6 +12,7 @@
 #include <random>
 #include <string>
 
+#include "laparoscope_servo/aesop/command_guard.h"
 #include "laparoscope_servo/geometry/homography.h"
 #include "laparoscope_servo/scope/insertion_point.h"
 #include "laparoscope_servo/servo/controller.h"
@@ -36,9 +37,9 @@ struct Interference {
 class SimulatedCart {
  public:
   static constexpr double kTick = 0.005;      // s, of the integration
+  static constexpr double kFirstStamp = 1.0;  // s: a stamp of zero would be none
   static constexpr int kControlTicks = 4;     // 50 Hz
   static constexpr int kImageTicks = 8;       // 25 Hz
-  static constexpr double kTimeToLive = 0.2;  // s, of a command; then the robot stops by itself
   static constexpr double kDepth = 0.1;       // m, d2 at the reference
   static constexpr double kLength = 0.35;     // m, of the scope
   static constexpr double kDistance = 0.08;   // m, from the reference camera to the tissue
@@ -165,14 +166,9 @@ class SimulatedCart {
   void control() {
     if (controller_stalls == 0) {
       output = controller.update(input());
-      command(output.command.vector());
-      told_at_ = time();
-    } else if (time() - told_at_ > kTimeToLive) {
-      command(Eigen::Vector4d::Zero());
+      guard_.accept(output.command, kFirstStamp + time(), kFirstStamp + time(), time());
     }
-  }
-  void command(const Eigen::Vector4d& velocity) {
-    if (disabled == 0) actuator_.command(time(), velocity);
+    if (disabled == 0) actuator_.command(time(), guard_.velocity(time()).vector());
   }
 
   void execute() {
@@ -192,7 +188,7 @@ class SimulatedCart {
   Eigen::Vector4d executed_ = Eigen::Vector4d::Zero();
   servo::TaskErrorInput seen_;
   double seen_at_ = -1.0;
-  double told_at_ = 0.0;
+  aesop::CommandGuard guard_{aesop::CommandConfig()};
   long ticks_ = 0;
 };
 

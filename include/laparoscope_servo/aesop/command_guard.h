@@ -23,7 +23,7 @@ namespace laparoscope_servo::aesop {
 
 // Defaults are those of config/aesop.yaml, group `command`.
 struct CommandConfig {
-  double timeout = 0.2;         // s: without a new command the velocity is zero after this time
+  double timeout = 0.2;         // s: without a new command the velocity fades from half of it on, and is zero then
   double max_stamp_age = 0.5;   // s: largest age of a command by its stamp
   double max_stamp_lead = 0.1;  // s: by which a stamp may be ahead of now, since clocks of two machines differ
   double max_pan = 0.15;        // rad/s; beyond a limit all four are scaled, so that the direction is kept
@@ -53,7 +53,7 @@ class CommandGuard {
   void reset(double stamp_now);
   // Sets zero velocity until the next command.
   void forget() { last_ = scope::Velocity(); }
-  // The velocity to execute now.
+  // The velocity to execute now: the last command's, from half of the timeout on the less the older it is.
   scope::Velocity velocity(double now) const;
   // s since the last command that was accepted; infinite before the first.
   double age(double now) const { return now - accepted_at_; }

@@ -9,8 +9,16 @@
 
 namespace laparoscope_servo::aesop {
 
+namespace {
+
+// Share of the timeout after which the velocity fades to zero: at the controller's 50 Hz five commands may be late.
+constexpr double kFullFor = 0.5;
+
+}  // namespace
+
 void describe(parameters::Table& table, CommandConfig& c) {
-  table.number("timeout", c.timeout, {0.02, 2}, "s", "without a new command the velocity is zero after this time");
+  table.number("timeout", c.timeout, {0.02, 2}, "s",
+               "without a new command the velocity fades from half of it on, and is zero then");
   table.number("max_stamp_age", c.max_stamp_age, {0.02, 10}, "s", "a command whose stamp is older is refused");
   table.number("max_stamp_lead", c.max_stamp_lead, {0, 2}, "s",
                "a command whose stamp is further ahead is refused; allows for clocks that differ");
@@ -94,7 +102,9 @@ void CommandGuard::reset(double stamp_now) {
 }
 
 scope::Velocity CommandGuard::velocity(double now) const {
-  return age(now) <= config_.timeout ? last_ : scope::Velocity();
+  if (!(age(now) <= config_.timeout)) return {};
+  const double left = (config_.timeout - age(now)) / (config_.timeout * (1.0 - kFullFor));
+  return left >= 1.0 ? last_ : scope::Velocity::fromVector(left * last_.vector());
 }
 
 }  // namespace laparoscope_servo::aesop

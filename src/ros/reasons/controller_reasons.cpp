@@ -111,6 +111,9 @@ const std::vector<ReasonRow>& controllerReasons() {
       {{"slow: visible fraction below ", "not deeper: visible fraction below ", "not deeper: corner error above "},
        "Little of the region is seen, so the scope goes slower, or no deeper.",
        "Take away what covers it, or wait."},
+      {{"slow: image older than "},
+       "The pictures come late, so the scope goes slower.",
+       "Look at the delays in /diagnostics of the tracker: a slow camera, or a busy machine."},
       // Clocks, names, stops.
       {{"stamps of the task error jumped back", "ROS time jumped back",
         "the steady clock jumped: back, or by more than "},

@@ -14,6 +14,9 @@ namespace {
 // s without an image, after which nothing is compared: tissue may have gone by 12 px on its own by then (tissue_centre
 // of 0.06 a second, at a focal length of 400 px), more than the scope moves the picture while it is not confirmed.
 constexpr double kGap = 0.5;
+// s without an image, after which this may be another picture though the place fits: within a pause the tissue may have
+// gone as far as a mirrored picture puts it. Images that are lost in between are not meant.
+constexpr double kPause = 0.25;
 constexpr double kSpan = 3.0;  // s of reports that are kept: more than kGap, kPatience and the latest explanation
 constexpr double kReportLife = 0.25;  // s for which a report stands for the motion: one of a robot at 10 Hz may be lost
 constexpr double kReports = 0.3;  // s without a report after which the robot is one that says nothing: three at 10 Hz
@@ -186,6 +189,7 @@ void EffectGuard::judge(const EffectObservation& image, const CommandHistory& co
     start(image, true);
     return;
   }
+  if (dt > kPause) budget_.interrupt();
   // Those that come equally late stand beside each other.
   double late = std::numeric_limits<double>::quiet_NaN();
   Eigen::Vector4d displacement;

@@ -9,6 +9,8 @@ namespace {
 void describeAges(parameters::Table& table, SafetyConfig& c) {
   table.number("max_task_error_age", c.max_task_error_age, {0.01, 1}, "s",
                "an older task error, or an older image behind it, stops the arm");
+  table.number("slow_age", c.slow_age, {0, 1}, "share",
+               "of max_task_error_age: above it, the older the image, the slower the scope; 1: not before it stops");
   table.number("max_depth_age", c.max_depth_age, {0.01, 1}, "s",
                "an older tf between insertion point and camera stops the arm");
   table.number("resume_time", c.resume_time, {0, 10}, "s",

@@ -27,6 +27,11 @@ bool isFresh(double age, double limit) {
   return age >= 0.0 && age <= limit;
 }
 
+// 0 at and below `none`, 1 at and above `all`, in a straight line between them.
+double share(double value, double none, double all) {
+  return value >= all ? 1.0 : std::clamp((value - none) / (all - none), 0.0, 1.0);
+}
+
 template <typename... Parts>
 std::string text(const Parts&... parts) {
   std::ostringstream stream;
@@ -234,15 +239,17 @@ SafetyOutput SafetyMachine::output(const SafetyFacts& facts) const {
   output.reset_history = false;
   const SafetyConfig& c = config_;
   const double visible = facts.tracker.visible_fraction;
-  const double scale = visible >= c.slow_below ? 1.0 : (visible - c.hold_below) / (c.slow_below - c.hold_below);
-  output.speed_scale = std::clamp(scale, 0.0, 1.0);
+  const double seen = share(visible, c.hold_below, c.slow_below);
+  const double recent = share(-facts.tracker.image_age, -c.max_task_error_age, -c.slow_age * c.max_task_error_age);
+  output.speed_scale = std::min(seen, recent);
   const bool sees_enough = visible >= c.min_visible_for_insertion;
   const bool knows_where = facts.tracker.corner_error <= c.max_corner_error_for_insertion;
   output.insertion_allowed = sees_enough && knows_where;
   const auto add = [&output](const std::string& caution) {
     output.caution += (output.caution.empty() ? "" : "; ") + caution;
   };
-  if (output.speed_scale < 1.0) add(text("slow: visible fraction below ", c.slow_below));
+  if (seen < 1.0) add(text("slow: visible fraction below ", c.slow_below));
+  if (recent < 1.0) add(text("slow: image older than ", c.slow_age * c.max_task_error_age, " s"));
   if (!sees_enough) add(text("not deeper: visible fraction below ", c.min_visible_for_insertion));
   if (!knows_where) add(text("not deeper: corner error above ", c.max_corner_error_for_insertion, " px"));
   if (facts.residual == ResidualLevel::kWarning) add("the residual of the insertion point grows");

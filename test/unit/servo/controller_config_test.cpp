@@ -92,6 +92,7 @@ std::vector<Field> fields() {
       {"oscillation/step", [](ControllerConfig& c, double v) { c.oscillation.step = v; }},
       {"oscillation/least", [](ControllerConfig& c, double v) { c.oscillation.least = v; }},
       {"safety/max_task_error_age", [](ControllerConfig& c, double v) { c.safety.max_task_error_age = v; }},
+      {"safety/slow_age", [](ControllerConfig& c, double v) { c.safety.slow_age = v; }},
       {"safety/max_depth_age", [](ControllerConfig& c, double v) { c.safety.max_depth_age = v; }},
       {"safety/min_depth", [](ControllerConfig& c, double v) { c.safety.min_depth = v; }},
       {"safety/max_depth", [](ControllerConfig& c, double v) { c.safety.max_depth = v; }},

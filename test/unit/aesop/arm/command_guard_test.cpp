@@ -16,10 +16,21 @@ TEST(CommandGuard, nothingCommandedIsZero) {
   EXPECT_FALSE(guard.timedOut(100.0));
 }
 
-TEST(CommandGuard, commandCountsUntilItTimesOut) {
+TEST(CommandGuard, commandFadesBeforeItTimesOut) {
   CommandGuard guard{CommandConfig()};
-  EXPECT_EQ(guard.accept(kPan, 1000.0, 1000.02, 5.0), "");
-  EXPECT_EQ(guard.velocity(5.19).pan, 0.05);
+  EXPECT_EQ(guard.accept({0.05, -0.02, 0.01, 0.003}, 1000.0, 1000.02, 5.0), "");
+  const Eigen::Vector4d full = guard.velocity(5.0).vector();
+  EXPECT_EQ(guard.velocity(5.099).vector(), full);
+  double last = 1.0;
+  for (double now = 5.1; now < 5.2; now += 0.01) {
+    const Eigen::Vector4d velocity = guard.velocity(now).vector();
+    const double share = velocity[0] / full[0];
+    EXPECT_LE(share, last);
+    EXPECT_TRUE(velocity.isApprox(share * full, 1e-9)) << velocity.transpose();  // the direction is kept
+    last = share;
+  }
+  EXPECT_NEAR(guard.velocity(5.15).pan, 0.025, 1e-9);
+  EXPECT_FALSE(guard.timedOut(5.19));
   EXPECT_TRUE(guard.velocity(5.21).isZero());
   EXPECT_TRUE(guard.timedOut(5.21));
 }

@@ -171,6 +171,23 @@ TEST(SafetyMachine, OcclusionSlowsThenHoldsAndResumesLater) {
   EXPECT_EQ(step(0.201).state, State::kServo);
 }
 
+TEST(SafetyMachine, TheOlderTheImageTheSlowerUntilItHolds) {
+  const SafetyConfig config;
+  const double slow = config.slow_age * config.max_task_error_age;
+  double last = 1.0;
+  for (int k = 0; k <= 100; ++k) {
+    const double age = 0.01 * k * config.max_task_error_age;
+    Reached reached(State::kServo);
+    const SafetyOutput output = reached.step([age](SafetyFacts& f) { f.tracker.image_age = age; });
+    EXPECT_EQ(output.state, State::kServo) << age;
+    EXPECT_LE(output.speed_scale, last) << age;
+    EXPECT_EQ(output.speed_scale == 1.0, age <= slow) << age;
+    EXPECT_EQ(output.caution.empty(), age <= slow) << output.caution;
+    last = output.speed_scale;
+  }
+  EXPECT_NEAR(last, 0.0, 1e-12);
+}
+
 TEST(SafetyMachine, TheMoreIsVisibleTheFaster) {
   double last = 0.0;
   for (int k = 20; k <= 100; ++k) {
