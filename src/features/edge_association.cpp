@@ -94,7 +94,7 @@ double EdgeAssociation::settle(const std::vector<Site>& sites, const Eigen::Vect
   return largest;
 }
 
-void EdgeAssociation::dropLonely(const std::vector<Site>& sites, double stray, double range) {
+bool EdgeAssociation::dropLonely(const std::vector<Site>& sites, double stray, double range) {
   const double chance = std::clamp((stray - 1.0) * 2.0 * kAgreeDistance / range, 0.0, 1.0);
   const double least = std::clamp(kLeastNeighbours + chance, kLeastNeighbours, kMostNeighbours);
   const int count = static_cast<int>(findings_.size());
@@ -106,17 +106,21 @@ void EdgeAssociation::dropLonely(const std::vector<Site>& sites, double stray, d
         seen_[static_cast<std::size_t>(2 * i)] + (counts && finding.weight >= kAgreeWeight ? 1 : 0);
     seen_[static_cast<std::size_t>(2 * i + 3)] = seen_[static_cast<std::size_t>(2 * i + 1)] + (counts ? 1 : 0);
   }
+  bool changed = false;
   for (int i = 0; i < count; ++i) {
-    if (findings_[static_cast<std::size_t>(i)].probe) continue;
+    SiteFinding& finding = findings_[static_cast<std::size_t>(i)];
+    if (finding.probe) continue;
     const int from = std::max(0, std::min(i - kNeighbours, count - 1 - 2 * kNeighbours));
     const int to = std::min(count, std::max(i + kNeighbours, 2 * kNeighbours) + 1);
     const int agree = seen_[static_cast<std::size_t>(2 * to)] - seen_[static_cast<std::size_t>(2 * from)];
     const int inside = seen_[static_cast<std::size_t>(2 * to + 1)] - seen_[static_cast<std::size_t>(2 * from + 1)];
-    lonely_[static_cast<std::size_t>(sites[static_cast<std::size_t>(i)].slot)] = !(agree >= least * inside);
+    char& lonely = lonely_[static_cast<std::size_t>(sites[static_cast<std::size_t>(i)].slot)];
+    const bool is_lonely = !(agree >= least * inside);
+    changed = changed || (finding.weight > 0.0 && is_lonely != static_cast<bool>(lonely));
+    lonely = is_lonely;
+    if (is_lonely) finding.weight = 0.0;
   }
-  for (std::size_t i = 0; i < findings_.size(); ++i) {
-    if (!findings_[i].probe && lonely_[static_cast<std::size_t>(sites[i].slot)]) findings_[i].weight = 0.0;
-  }
+  return changed;
 }
 
 }  // namespace laparoscope_servo::features

@@ -32,8 +32,9 @@ class EdgeAssociation {
                 double sigma);
   // Where the curve is covered, edges of what covers it agree here and there, and would pull it: a site counts only if
   // more of its neighbours agree, itself included, than would by chance. `stray`: edges per site, over `range` px
-  // either side, that could be the curve's, its own included.
-  void dropLonely(const std::vector<Site>& sites, double stray, double range);
+  // either side, that could be the curve's, its own included. True when an edge near the curve lost or regained its
+  // say, which the next fit will show.
+  bool dropLonely(const std::vector<Site>& sites, double stray, double range);
 
   void clear() { findings_.clear(); }
   const std::vector<SiteFinding>& findings() const { return findings_; }

@@ -18,8 +18,8 @@ constexpr int kCoarseSites = 64;
 constexpr double kCoarseStep = 2.0;  // px between samples
 // The fine stage: how far it searches, px, round by round, until a round moves the curve by less than kSettled.
 constexpr double kFineRange[] = {6.0, 3.0, 2.0, 2.0};
-constexpr double kClose = 0.7;  // of the coarse stage's score: the first round is left out
-constexpr double kSettled = 0.05;
+constexpr double kClose = 0.7;        // of the coarse stage's score: the first round is left out
+constexpr double kSettled = 0.3;      // an edge is found as well from there
 constexpr double kMinSigma = 0.1;     // px: what sampling leaves of an edge without noise
 constexpr float kLearn = 0.2f;        // share of the looks that a new image adds to what is remembered
 constexpr double kLeastLearnt = 0.5;  // of the sites that have to show the edge that is selected
@@ -100,9 +100,12 @@ class EdgeFit::Implementation {
     return contrast / (contrast + 4.0f * static_cast<float>(config_.min_contrast));
   }
 
-  void look(const cv::Mat& image, const EdgeWindow& window) {
+  // `probes`: also beyond the curve's ends.
+  void look(const cv::Mat& image, const EdgeWindow& window, bool probes) {
     for (std::size_t i = 0; i < sites_.size(); ++i) {
       WeightedCandidates& candidates = candidates_[i];
+      candidates.found.count = 0;
+      if (sites_[i].probe && !probes) continue;
       search_.find(image, sites_[i], window, config_.min_contrast, candidates.found);
       const EdgeLooks* memory = candidates.found.count > 0 ? memory_.find(sites_[i].slot) : nullptr;
       for (int k = 0; k < candidates.found.count; ++k) {
@@ -114,7 +117,7 @@ class EdgeFit::Implementation {
 
   CoarseResult searched(const cv::Mat& image, const Curve& curve, double range) {
     curve.sites(config_.spacing, std::min(kCoarseSites, config_.max_sites), sites_);
-    look(image, {range, kCoarseStep});
+    look(image, {range, kCoarseStep, 2}, false);
     // How many edges a site has to choose from.
     int matching = 0, looking = 0;
     for (std::size_t i = 0; i < sites_.size(); ++i) {
@@ -142,26 +145,26 @@ class EdgeFit::Implementation {
     association_.forgetLonely();
     robust::IrlsConfig irls;
     irls.min_sigma = kMinSigma;
-    irls.min_step = 1e-3;
+    irls.min_step = 1e-2;
     irls.max_iterations = 10;
     // Where the whole curve moves alike the coarse stage has come close.
     for (std::size_t round = coarse.share > kClose ? 1 : 0; round < std::size(kFineRange); ++round) {
       const double fine = kFineRange[round];
       curve.sites(config_.spacing, config_.max_sites, sites_);
-      look(image, {fine, 1.0});
+      look(image, {fine, 1.0, 1}, true);
       association_.choose(sites_, candidates_, fine);
       curve.known(expected, fine, information_, mean_);
       const robust::IrlsResult solved = irls_.solve(curve.parameters(), association_.rows(), irls, information_, mean_);
       if (!solved.solved) return report;
       report.sigma = solved.sigma;
       const double moved = association_.settle(sites_, irls_.x(), irls_.weights(), report.sigma);
-      association_.dropLonely(sites_, matching_, range);
+      const bool changed = association_.dropLonely(sites_, matching_, range);
       curve.move(irls_.x());
       if (!curve.isSound()) {
         report.reason = Reason::kShape;
         return report;
       }
-      if (moved < kSettled && fine < kFineRange[0]) break;
+      if (moved < kSettled && !changed && fine < kFineRange[0]) break;
     }
     report.reason = Reason::kNone;
     return report;
