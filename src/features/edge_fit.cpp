@@ -146,7 +146,8 @@ class EdgeFit::Implementation {
     robust::IrlsConfig irls;
     irls.min_sigma = kMinSigma;
     irls.min_step = 1e-2;
-    irls.max_iterations = 10;
+    irls.start_sigma = curve.deformation();
+    irls.max_iterations = 12;
     // Where the whole curve moves alike the coarse stage has come close.
     for (std::size_t round = coarse.share > kClose ? 1 : 0; round < std::size(kFineRange); ++round) {
       const double fine = kFineRange[round];
@@ -172,7 +173,8 @@ class EdgeFit::Implementation {
 
   void believe(const Curve& curve, double range, double min_share, EdgeReport& report) {
     covariance_ = irls_.covariance() * correlation(config_.spacing);
-    judge({sites_, findings(), covariance_, curve.parameters(), range, matching_}, config_, min_share, report);
+    judge({sites_, findings(), covariance_, curve.parameters(), curve.deformation() > 0.0, range, matching_}, config_,
+          min_share, report);
   }
 
   bool looksAsItDid(int used) const {

@@ -42,10 +42,10 @@ void judge(const FitOutcome& fit, const EdgeConfig& config, double min_share, Ed
   double worst = 0.0;
   for (std::size_t i = 0; i < fit.sites.size(); ++i) {
     if (fit.sites[i].probe) continue;
-    worst = robust::largest(worst, variance(fit.sites[i], fit.covariance));
-    if (!fit.findings[i].inside) continue;
-    ++report.inside;
-    report.used += fit.findings[i].weight >= kAgreeWeight ? 1 : 0;
+    const bool agrees = fit.findings[i].inside && fit.findings[i].weight >= kAgreeWeight;
+    if (agrees || !fit.deforms) worst = robust::largest(worst, variance(fit.sites[i], fit.covariance));
+    report.inside += fit.findings[i].inside ? 1 : 0;
+    report.used += agrees ? 1 : 0;
   }
   report.share = report.inside > 0 ? static_cast<double>(report.used) / report.inside : 0.0;
   report.expected_error = std::sqrt(worst);

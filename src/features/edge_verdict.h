@@ -15,6 +15,7 @@ struct FitOutcome {
   const std::vector<SiteFinding>& findings;
   const Eigen::MatrixXd& covariance;  // of the curve's parameters
   int parameters;                     // of the curve
+  bool deforms;                       // what is not seen of the curve is not known from the rest of it
   double range;                       // px either side that was searched
   double matching;                    // edges per site, within the range, that could be the curve's
 };

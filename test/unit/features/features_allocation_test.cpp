@@ -1,12 +1,14 @@
 // Tracking features asks for no memory once it is under way.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <vector>
 
 #include "laparoscope_servo/features/curve_tracker.h"
 #include "laparoscope_servo/features/dots.h"
 #include "laparoscope_servo/features/ellipse.h"
 #include "laparoscope_servo/features/line.h"
+#include "laparoscope_servo/features/spline.h"
 #include "support/allocation_counter.h"
 #include "support/synthetic_edges.h"
 
@@ -57,6 +59,15 @@ TEST(FeaturesAllocation, thereIsNoneForALine) {
 TEST(FeaturesAllocation, thereIsNoneForAnEllipse) {
   CurveTracker<Ellipse> tracker;
   tracker.select(images()[0], 0.0, Ellipse({90.0, 120.0}, 25.0, 22.0, 0.3));
+  expectNoAllocations(tracker);
+}
+
+TEST(FeaturesAllocation, thereIsNoneForASpline) {
+  CurveTracker<Spline> tracker;
+  const Ellipse outline({90.0, 120.0}, 25.0, 22.0, 0.3);
+  std::vector<Eigen::Vector2d> points;
+  for (int k = 0; k < 8; ++k) points.push_back(outline.at(0.25 * M_PI * k));
+  tracker.select(images()[0], 0.0, Spline::throughPoints(points, true));
   expectNoAllocations(tracker);
 }
 
