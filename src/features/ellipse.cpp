@@ -158,7 +158,8 @@ Eigen::Matrix<double, 5, 5> Ellipse::covariance(const Eigen::MatrixXd& of_parame
     less.displace(-step);
     derivative.col(k) = (more.coefficients() - less.coefficients()) / (2.0 * kStep);
   }
-  return derivative * of_parameters * derivative.transpose();
+  const Eigen::Matrix<double, 5, 5> own = of_parameters;  // of fixed size: the product does not allocate
+  return derivative * own * derivative.transpose();
 }
 
 // The point c + S u moves by dc + dS u; its normal is along S^-1 u.

@@ -27,7 +27,7 @@ void setUnknown(Eigen::MatrixXd& covariance, Eigen::Index count) {
   covariance.diagonal().setConstant(std::numeric_limits<double>::infinity());
 }
 
-void summarise(TrackedFeatures& all, const std::string& why_none) {
+void summarise(TrackedFeatures& all, std::string_view why_none) {
   all.state = State::kIdle;
   all.reason = why_none;
   for (const TrackedFeature& feature : all.features) {

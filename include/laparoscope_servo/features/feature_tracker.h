@@ -2,7 +2,7 @@
 //
 // Images are 8 bit, grey (CV_8UC1) or blue-green-red (CV_8UC3); times are seconds, from the images' stamps. A tracker
 // keeps no clock and no global state: the same images give the same results. Not thread-safe. Does not allocate while
-// it tracks, but for a reason's text.
+// tracking.
 #pragma once
 
 #include <Eigen/Geometry>

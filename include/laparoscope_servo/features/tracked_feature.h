@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "laparoscope_servo/features/feature_state.h"
@@ -49,6 +50,6 @@ struct TrackedFeatures {
 void setUnknown(Eigen::MatrixXd& covariance, Eigen::Index count);
 
 // Sets state and reason of all by those of each, or `why_none` when there is no feature.
-void summarise(TrackedFeatures& features, const std::string& why_none);
+void summarise(TrackedFeatures& features, std::string_view why_none);
 
 }  // namespace laparoscope_servo::features
