@@ -55,8 +55,9 @@ const TrackedFeatures& EdgeFeatureTracker::track(const cv::Mat& image, double st
 }
 
 void EdgeFeatureTracker::reset() {
-  for (const std::unique_ptr<TrackedCurve>& curve : curves_) curve->reset();
-  tell();
+  curves_.clear();
+  told_.features.clear();
+  summarise(told_, reasonText(Reason::kReset));
 }
 
 // An image that is not of the sequence ends all of them, since all see the same ones.

@@ -60,8 +60,6 @@ class TrackedCurveOf : public TrackedCurve {
     tracker_.track(image, stamp, motion);
   }
 
-  void reset() override { tracker_.reset(); }
-
   void tell(TrackedFeature& told) const override {
     const CurveResult<C>& result = tracker_.result();
     told.state = result.state;

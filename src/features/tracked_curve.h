@@ -20,7 +20,6 @@ class TrackedCurve {
   // As CurveTracker has them.
   virtual void select(const cv::Mat& image, double stamp, const SelectedFeature& selected) = 0;
   virtual void track(const cv::Mat& image, double stamp, const std::optional<Eigen::Matrix3d>& motion) = 0;
-  virtual void reset() = 0;
   // All but id and desired values.
   virtual void tell(TrackedFeature& told) const = 0;
 };

@@ -161,6 +161,10 @@ TEST(FeatureTracker, endsWithTheReasonWhereTheImagesEnd) {
     tracker->reset();
     EXPECT_EQ(tracker->features().state, State::kIdle) << each.name;
     EXPECT_EQ(tracker->features().reason, "reset") << each.name;
+    EXPECT_TRUE(tracker->features().features.empty()) << each.name;
+    const auto fresh = each.make();
+    fresh->reset();
+    EXPECT_EQ(fresh->features().reason, "reset") << each.name;
   }
 }
 
