@@ -5,6 +5,7 @@
 #include <array>
 #include <opencv2/core.hpp>
 
+#include "features/edge_profile.h"
 #include "laparoscope_servo/features/curve.h"
 
 namespace laparoscope_servo::features {
@@ -28,11 +29,6 @@ struct EdgeCandidates {
   bool inside = false;  // the image has pixels at the site, as far as the mask reads
 };
 
-struct EdgeWindow {
-  double range = 20.0;  // px, either side of the site
-  double step = 1.0;    // px between samples of the profile; the mask grows with it
-};
-
 // How alike two edges are: 0 (not the same edge) to 1. The sign of the contrast is the same, the smaller contrast is at
 // least `least` of the larger one, and one side at least has the level that it had, within what light may change.
 float similarity(const EdgeLooks& a, const EdgeLooks& b, float least);
@@ -46,16 +42,9 @@ class EdgeSearch {
             EdgeCandidates& result);
 
  private:
-  static constexpr int kMostSamples = 256;
+  static void add(const EdgeCandidate& candidate, EdgeCandidates& result);
 
-  // Samples lie at site + k step normal, k from first_ to last_.
-  bool readProfile(const cv::Mat& image, const Site& site, const EdgeWindow& window);
-  void add(const EdgeCandidate& candidate, EdgeCandidates& result) const;
-
-  std::array<float, kMostSamples> profile_;
-  std::array<float, kMostSamples> answer_;
-  int first_ = 0;
-  int last_ = -1;
+  EdgeProfile profile_;
 };
 
 }  // namespace laparoscope_servo::features

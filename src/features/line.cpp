@@ -52,14 +52,15 @@ void Line::sites(double spacing, int most, std::vector<Site>& result) const {
   const int lowest = -(kSlots / 2 - 1), highest = kSlots / 2 - 1;
   int first = static_cast<int>(std::ceil(std::clamp(begin_ / spacing, -1e6, 1e6)));
   int last = static_cast<int>(std::floor(std::clamp(end_ / spacing, -1e6, 1e6)));
+  const Eigen::Vector2d along = direction(), across = normal();
   first = (first >= 0 ? (first + stride - 1) / stride : first / stride) * stride;
   for (int k = first - kProbes * stride; k <= last + kProbes * stride; k += stride) {
     if (k < lowest || k > highest) continue;
     Site site;
     site.probe = k < first || k > last;
     site.slot = k - lowest;
-    site.point = at(k * spacing);
-    site.normal = normal();
+    site.point = anchor_ + k * spacing * along;
+    site.normal = across;
     site.count = 2;
     site.jacobian = {1.0, -(k * spacing - middle) / half};
     result.push_back(site);
@@ -98,7 +99,8 @@ void Line::settle(const std::vector<SiteFinding>& findings, const Eigen::MatrixX
   while (first < count && !starts(first, 1)) ++first;
   while (last >= 0 && !starts(last, -1)) --last;
   if (first >= last) return;
-  const auto along = [&](int i) { return direction().dot(findings[static_cast<std::size_t>(i)].point - anchor_); };
+  const Eigen::Vector2d line = direction();
+  const auto along = [&](int i) { return line.dot(findings[static_cast<std::size_t>(i)].point - anchor_); };
   const double half_gap = 0.5 * (along(last) - along(first)) / (last - first);
   if (!(along(last) - along(first) + 2.0 * half_gap >= kMinLength)) return;
   seen_begin_ = along(first) - half_gap;
@@ -128,7 +130,8 @@ Eigen::Matrix2d Line::covariance(const Eigen::MatrixXd& of_parameters) const {
   const double half = 0.5 * (end_ - begin_), middle = 0.5 * (begin_ + end_);
   Eigen::Matrix2d derivative;
   derivative << 1.0, direction().dot(at(middle)) / half, 0.0, 1.0 / half;
-  return derivative * of_parameters * derivative.transpose();
+  const Eigen::Matrix2d own = of_parameters;  // of fixed size: the product does not allocate
+  return derivative * own * derivative.transpose();
 }
 
 }  // namespace laparoscope_servo::features

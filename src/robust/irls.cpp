@@ -84,6 +84,7 @@ IrlsResult Irls::solve(int unknowns, const std::vector<Row>& rows, const IrlsCon
   IrlsResult result;
   x_.setZero();
   weights_.assign(rows.size(), 1.0);
+  double least = std::max(config.min_sigma, config.start_sigma);
   for (; result.iterations < config.max_iterations; ++result.iterations) {
     residuals_.clear();
     scratch_.clear();
@@ -95,7 +96,9 @@ IrlsResult Irls::solve(int unknowns, const std::vector<Row>& rows, const IrlsCon
     }
     if (scratch_.empty()) return fail(result);
     const Spread spread = robust::spread(scratch_);
-    result.sigma = std::max(config.min_sigma, spread.sigma);
+    result.sigma = std::max(least, spread.sigma);
+    const bool is_final = !(least > config.min_sigma);
+    least = std::max(config.min_sigma, 0.5 * least);
     // Eq. (11): the residual about its median, in standard deviations. Where more than half of them agree exactly the
     // scale is 0, and those alone count.
     for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -107,7 +110,7 @@ IrlsResult Irls::solve(int unknowns, const std::vector<Row>& rows, const IrlsCon
     const double change = (next_ - x_).lpNorm<Eigen::Infinity>();
     x_.swap(next_);
     result.solved = true;
-    if (!(change > config.min_step)) {
+    if (is_final && !(change > config.min_step)) {
       ++result.iterations;
       break;
     }

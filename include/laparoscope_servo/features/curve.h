@@ -51,6 +51,9 @@ class Curve {
   // of the same kind: mean, and the inverse of its covariance. `range`, px, is how far a site may be from its edge.
   virtual void known(const Curve& expected, double range, Eigen::MatrixXd& information,
                      Eigen::VectorXd& mean) const = 0;
+  // px, standard deviation: how far a piece of it may come to lie off where the rest of it says, from image to image. 0
+  // where a few parameters move all of it.
+  virtual double deformation() const { return 0.0; }
   // After an image that showed it, `passed` seconds after the one before, with the covariance of its parameters: where
   // its ends are, how well its shape is known.
   virtual void settle(const std::vector<SiteFinding>& findings, const Eigen::MatrixXd& covariance, double passed) = 0;

@@ -24,7 +24,9 @@ struct CurveResult {
   C curve;                                   // TRACKING: as seen; SEARCHING and LOST: where it is expected
   double share = 0.0;                        // of its sites in the image, those that agree with it
   double sigma = 0.0;                        // px, robust standard deviation of the edges about it
-  double expected_error = 0.0;  // px along the normal, standard deviation at its worst site; infinite unless TRACKING
+  // px along the normal, standard deviation at its worst site, of a spline at the worst one that agrees; infinite
+  // unless TRACKING.
+  double expected_error = 0.0;
   bool selected_now = false;
 };
 

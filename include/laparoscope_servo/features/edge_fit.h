@@ -19,7 +19,8 @@ struct EdgeReport {
   int used = 0;                              // of them, that agree with the curve
   double share = 0.0;                        // used over inside
   double sigma = 0.0;                        // px, robust standard deviation of the edges about the curve
-  double expected_error = 0.0;               // px along the normal, standard deviation at the worst site
+  // px along the normal, standard deviation at the worst site; of a curve that deforms, at the worst one that agrees.
+  double expected_error = 0.0;
 };
 
 class EdgeFit {

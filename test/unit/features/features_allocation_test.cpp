@@ -1,12 +1,16 @@
 // Tracking features asks for no memory once it is under way.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <vector>
 
 #include "laparoscope_servo/features/curve_tracker.h"
+#include "laparoscope_servo/features/dot_feature_tracker.h"
 #include "laparoscope_servo/features/dots.h"
+#include "laparoscope_servo/features/edge_feature_tracker.h"
 #include "laparoscope_servo/features/ellipse.h"
 #include "laparoscope_servo/features/line.h"
+#include "laparoscope_servo/features/spline.h"
 #include "support/allocation_counter.h"
 #include "support/synthetic_edges.h"
 
@@ -31,6 +35,12 @@ std::vector<cv::Mat> images() {
   }
   return result;
 }
+
+struct ByTheInterface {
+  FeatureTracker& tracker;
+  const TrackedFeatures& track(const cv::Mat& image, double stamp) { return tracker.track(image, stamp, prior); }
+  FeaturePrior prior;
+};
 
 template <class Tracker>
 void expectNoAllocations(Tracker& tracker) {
@@ -60,10 +70,41 @@ TEST(FeaturesAllocation, thereIsNoneForAnEllipse) {
   expectNoAllocations(tracker);
 }
 
+TEST(FeaturesAllocation, thereIsNoneForASpline) {
+  CurveTracker<Spline> tracker;
+  const Ellipse outline({90.0, 120.0}, 25.0, 22.0, 0.3);
+  std::vector<Eigen::Vector2d> points;
+  for (int k = 0; k < 8; ++k) points.push_back(outline.at(0.25 * M_PI * k));
+  tracker.select(images()[0], 0.0, Spline::throughPoints(points, true));
+  expectNoAllocations(tracker);
+}
+
 TEST(FeaturesAllocation, thereIsNoneForDots) {
   DotTracker tracker;
   tracker.select(images()[0], 0.0, {{90.0, 120.0}});
   expectNoAllocations(tracker);
+}
+
+TEST(FeaturesAllocation, thereIsNoneBehindTheInterface) {
+  FeatureSelection selection(2);
+  selection[0].id = "border";
+  selection[0].kind = FeatureKind::kLine;
+  selection[0].points = {{220.0, 30.0}, {220.0, 200.0}};
+  selection[1].id = "rim";
+  selection[1].kind = FeatureKind::kEllipse;
+  selection[1].ellipse = EllipseSelection{{90.0, 120.0}, 25.0, 22.0, 0.3};
+  EdgeFeatureTracker edges;
+  edges.select(images()[0], 0.0, selection, {});
+  ByTheInterface behind{edges, {}};
+  expectNoAllocations(behind);
+
+  FeatureSelection dot(1);
+  dot[0].id = "dot";
+  dot[0].points = {{90.0, 120.0}};
+  DotFeatureTracker dots;
+  dots.select(images()[0], 0.0, dot, {});
+  ByTheInterface behind_dots{dots, {}};
+  expectNoAllocations(behind_dots);
 }
 
 }  // namespace

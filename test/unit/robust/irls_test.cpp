@@ -59,6 +59,30 @@ TEST(Irls, huberBearsFewerAstrayButNeverTurnsAway) {
   for (const double weight : irls.weights()) EXPECT_GT(weight, 0.0);
 }
 
+// Most rows tell of one unknown, and agree; few tell of the other one, whose rows look astray as long as it is 0.
+TEST(Irls, aWideStartLetsFewRowsSayWhatOnlyTheyTell) {
+  std::vector<Row> rows;
+  for (int i = 0; i < 60; ++i) {
+    Row row;
+    row.first = i < 50 ? 0 : 1;
+    row.count = 1;
+    row.a = {1.0};
+    row.b = i < 50 ? 0.0 : 2.0;
+    rows.push_back(row);
+  }
+  const Eigen::MatrixXd information = 0.1 * Eigen::MatrixXd::Identity(2, 2);
+  Irls irls;
+  IrlsConfig config;
+  config.min_sigma = 0.1;
+  ASSERT_TRUE(irls.solve(2, rows, config, information).solved);
+  EXPECT_NEAR(irls.x()[1], 0.0, 0.01);
+  config.start_sigma = 1.0;
+  const IrlsResult result = irls.solve(2, rows, config, information);
+  ASSERT_TRUE(result.solved);
+  EXPECT_NEAR(irls.x()[1], 2.0, 0.01);
+  EXPECT_EQ(result.sigma, config.min_sigma);
+}
+
 TEST(Irls, rowsWithoutWeightTakeNoPart) {
   std::vector<Row> rows = straightLine(50, 0.0, 0);
   for (std::size_t i = 0; i < rows.size(); i += 2) {

@@ -1,0 +1,71 @@
+#include "features/edge_verdict.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "features/chance.h"
+#include "features/edge_association.h"
+#include "laparoscope_servo/robust/largest.h"
+
+namespace laparoscope_servo::features {
+
+namespace {
+
+// px: edges of a straight thing spread less about its line. What is gathered from a texture spreads more: where less
+// than kMostlySeen of the sites agree, less is allowed.
+constexpr double kMaxSigma = 1.5;
+constexpr double kMaxSigmaOfFew = 0.7;
+constexpr double kMostlySeen = 0.6;
+constexpr int kLeastSites = 8;
+constexpr double kCorrelation = 8.0;  // px along the curve, over which edges err alike
+
+// px^2, of the curve's displacement along the site's normal.
+double variance(const Site& site, const Eigen::MatrixXd& covariance) {
+  const int unknowns = static_cast<int>(covariance.rows());
+  double sum = 0.0;
+  for (int k = 0; k < site.count; ++k) {
+    for (int l = 0; l < site.count; ++l) {
+      sum += site.jacobian[static_cast<std::size_t>(k)] * site.jacobian[static_cast<std::size_t>(l)] *
+             covariance((site.first + k) % unknowns, (site.first + l) % unknowns);
+    }
+  }
+  return sum;
+}
+
+}  // namespace
+
+double correlation(double spacing) {
+  return std::max(1.0, kCorrelation / spacing);
+}
+
+void judge(const FitOutcome& fit, const EdgeConfig& config, double min_share, EdgeReport& report) {
+  double worst = 0.0;
+  for (std::size_t i = 0; i < fit.sites.size(); ++i) {
+    if (fit.sites[i].probe) continue;
+    const bool agrees = fit.findings[i].inside && fit.findings[i].weight >= kAgreeWeight;
+    if (agrees || !fit.deforms) worst = robust::largest(worst, variance(fit.sites[i], fit.covariance));
+    report.inside += fit.findings[i].inside ? 1 : 0;
+    report.used += agrees ? 1 : 0;
+  }
+  report.share = report.inside > 0 ? static_cast<double>(report.used) / report.inside : 0.0;
+  report.expected_error = std::sqrt(worst);
+  Agreement agreement;
+  agreement.sites = report.inside;
+  agreement.agree = report.used;
+  agreement.tolerance = kAgreeDistance;
+  agreement.strays = std::max(0.0, fit.matching - report.share);
+  agreement.range = fit.range;
+  agreement.freedoms = fit.parameters;
+  agreement.independent = std::min(1.0, config.spacing / kCorrelation);
+  if (report.inside < kLeastSites) {
+    report.reason = Reason::kOutside;
+  } else if (!(report.share >= min_share) || report.used < kLeastSites) {
+    report.reason = Reason::kTooFewSites;
+  } else if (!(report.sigma <= (report.share < kMostlySeen ? kMaxSigmaOfFew : kMaxSigma)) || !isNoChance(agreement)) {
+    report.reason = Reason::kChance;
+  } else if (!(report.expected_error <= config.max_error)) {
+    report.reason = Reason::kUncertain;
+  }
+}
+
+}  // namespace laparoscope_servo::features
