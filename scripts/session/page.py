@@ -18,8 +18,8 @@ def seconds(value):
 
 
 class Page:
-    def __init__(self, session, title):
-        self.s, self.title = session, title
+    def __init__(self, session, title, comparison=None):
+        self.s, self.title, self.comparison = session, title, comparison
 
     def at(self, time):
         return f"{seconds(time - self.s.begin)}"
@@ -68,6 +68,10 @@ class Page:
             if len(values):
                 yield (label, *(f"{v:.1f} ms" for v in (*np.percentile(values, (50, 95, 99)), values.max())))
 
+    def distances(self):
+        values = self.comparison.percentiles() if self.comparison else None
+        return [f"{value:.2f} px" for value in values] if values else []
+
     def html(self):
         s = self.s
         svg = markupsafe.Markup  # drawn by matplotlib, of numbers and of names of states, which it escapes
@@ -84,5 +88,7 @@ class Page:
             inserting=svg(drawing.lines(s, s.commands, [(4, "insertion")], "m/s")),
             path=svg(drawing.lines(s, s.positions, [(1, "x"), (2, "y"), (3, "z")], "m")), latencies=list(self.latencies()),
             latency_histogram=svg(drawing.histogram(1e3 * np.array(s.tracking.columns[5]), "ms, image taken to result recorded")),
+            comparison=self.comparison, distances=self.distances(),
+            apart=svg(drawing.lines(s, self.comparison, [(1, "worst corner")], "px")) if self.comparison else "",
             safety=[(self.at(t), who, what, why) for t, who, what, why in s.safety[:MOST_EVENTS]], safety_count=len(s.safety),
             session_text=s.session_text)

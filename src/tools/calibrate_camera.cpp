@@ -1,4 +1,4 @@
-// Calibrates a camera by pictures of a printed chessboard, and writes that board: see --help.
+// Calibrates a camera by pictures of a printed board, and writes that board: see --help.
 #include <camera_calibration_parsers/parse.h>
 
 #include <boost/program_options.hpp>
@@ -27,7 +27,8 @@ struct Wanted {
   std::vector<std::string> inputs;
   SourceOptions source;
   std::string corners = "9x6";
-  double square = 0.004;   // m
+  double square = 0.004;  // m
+  bool markers = false;
   double interval = 0.25;  // s
   std::string model = "plumb_bob";
   std::string name = "laparoscope";
@@ -40,8 +41,10 @@ options::options_description describe(Wanted& wanted) {
   auto add = description.add_options();
   add("help", "print this and end");
   add("input", options::value(&wanted.inputs)->composing(), "bag, video, or folder of images");
-  add("board", options::value(&wanted.corners), "inner corners of the chessboard, COLUMNSxROWS (default 9x6)");
+  add("board", options::value(&wanted.corners), "inner corners of the board, COLUMNSxROWS (default 9x6)");
   add("square", options::value(&wanted.square), "m, side of a square (default 0.004)");
+  add("markers", options::bool_switch(&wanted.markers),
+      "the board has ArUco markers in its white squares (ChArUco): a part of it in the picture is enough");
   add("image-topic", options::value(&wanted.source.image_topic), "of a bag with several topics of images");
   add("interval", options::value(&wanted.interval), "s, between two images that are looked at (default 0.25)");
   add("model", options::value(&wanted.model), "plumb_bob (default) or rational_polynomial, for a lens that bends much");
@@ -58,6 +61,7 @@ Board boardOf(const Wanted& wanted) {
   if (std::sscanf(wanted.corners.c_str(), "%dx%d%c", &board.corners.width, &board.corners.height, &rest) != 2)
     throw std::invalid_argument("--board " + wanted.corners + ", expected e.g. 9x6");
   board.square = wanted.square;
+  board.markers = wanted.markers;
   checkBoard(board);
   return board;
 }
@@ -86,13 +90,13 @@ void look(const Wanted& wanted, BoardViews& views) {
     const BoardViews::Verdict verdict = views.add(picture);
     if (verdict == BoardViews::Verdict::kEnough) break;
     if (verdict == BoardViews::Verdict::kTaken) {
-      std::cout << "image " << image->frame << ": board " << views.corners().size() << ", "
+      std::cout << "image " << image->frame << ": board " << views.views().size() << ", "
                 << static_cast<int>(100.0 * views.coverage()) << " % of the picture covered" << std::endl;
     }
     if (verdict == BoardViews::Verdict::kOtherSize)
       std::cerr << "image " << image->frame << " is left out: its size is not that of the first one\n";
   }
-  std::cout << looked_at << " images looked at, " << views.corners().size() << " used\n";
+  std::cout << looked_at << " images looked at, " << views.views().size() << " used\n";
 }
 
 void write(const Wanted& wanted, const sensor_msgs::CameraInfo& info) {
@@ -133,8 +137,8 @@ int main(int argc, char** argv) {
   Wanted wanted;
   const options::options_description description = describe(wanted);
   const std::string usage =
-      "calibrate_camera INPUT... [options]: intrinsics and lens from pictures of a printed chessboard.\n"
-      "calibrate_camera --print board.svg [--board 9x6 --square 0.004]: writes the board.\n";
+      "calibrate_camera INPUT... [options]: intrinsics and lens from pictures of a printed board.\n"
+      "calibrate_camera --print board.svg [--board 9x6 --square 0.004 --markers]: writes the board.\n";
   return runTool(argc, argv, "calibrate_camera", usage, description, "input", [&] {
     run(wanted);
     return EXIT_SUCCESS;

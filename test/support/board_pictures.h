@@ -1,7 +1,8 @@
-// Pictures of a chessboard as a known camera would take them.
+// Pictures of a printed board as a known camera would take them.
 #pragma once
 
 #include <cmath>
+#include <functional>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
@@ -15,8 +16,16 @@ struct BoardCamera {
   cv::Mat d = (cv::Mat_<double>(1, 5) << -0.2, 0.05, 0.001, -0.0005, 0.0);
 };
 
+// Whether a place is black, in squares from the board's upper left edge.
+using BoardInk = std::function<bool(double, double)>;
+
+inline bool chessboard(double u, double v) {
+  return (static_cast<int>(std::floor(u)) + static_cast<int>(std::floor(v))) % 2 == 0;
+}
+
 // A board of 10 x 7 squares of 4 mm, white around it, at rotation `r` and translation `t` (m) of its first corner.
-inline cv::Mat boardPicture(const BoardCamera& camera, const cv::Vec3d& r, const cv::Vec3d& t) {
+inline cv::Mat boardPicture(const BoardCamera& camera, const cv::Vec3d& r, const cv::Vec3d& t,
+                            const BoardInk& ink = chessboard) {
   constexpr double kSquare = 0.004;
   cv::Matx33d rotation;
   cv::Rodrigues(r, rotation);
@@ -36,22 +45,24 @@ inline cv::Mat boardPicture(const BoardCamera& camera, const cv::Vec3d& r, const
     const double v = point[1] / kSquare + 1.0;
     if (u < -1.0 || v < -1.0 || u > 11.0 || v > 8.0) continue;
     const bool inside = u >= 0.0 && v >= 0.0 && u < 10.0 && v < 7.0;
-    const bool black = inside && (static_cast<int>(std::floor(u)) + static_cast<int>(std::floor(v))) % 2 == 0;
+    const bool black = inside && ink(u, v);
     picture.at<std::uint8_t>(static_cast<int>(pixels[k].y), static_cast<int>(pixels[k].x)) = black ? 30 : 220;
   }
   cv::GaussianBlur(picture, picture, {3, 3}, 0.8);
   return picture;
 }
 
-// Twelve, in different places and tilts.
-inline std::vector<cv::Mat> boardPictures(const BoardCamera& camera) {
+// Twelve, in different places and tilts; `beyond`, m: the circle of the places, whose larger ones show a part of the
+// board.
+inline std::vector<cv::Mat> boardPictures(const BoardCamera& camera, const BoardInk& ink = chessboard,
+                                          double beyond = 0.010) {
   std::vector<cv::Mat> pictures;
   for (int k = 0; k < 12; ++k) {
     const double angle = 2.0 * M_PI * k / 12.0;
     const cv::Vec3d r(0.5 * std::sin(angle), 0.5 * std::cos(angle), 0.1 * std::cos(3.0 * angle));
     const double far = 0.065 + 0.01 * (k % 3);
-    pictures.push_back(
-        boardPicture(camera, r, {-0.016 + 0.010 * std::cos(angle), -0.010 + 0.007 * std::sin(angle), far}));
+    pictures.push_back(boardPicture(
+        camera, r, {-0.016 + beyond * std::cos(angle), -0.010 + 0.7 * beyond * std::sin(angle), far}, ink));
   }
   return pictures;
 }

@@ -7,7 +7,6 @@
 #include <stdexcept>
 #include <thread>
 
-#include "laparoscope_servo/scope/geometry.h"
 #include "ros/aesop/aesop_conversions.h"
 #include "ros/common/clocks.h"
 #include "ros/common/realtime.h"
@@ -22,7 +21,6 @@ constexpr double kReportPause = 1.0;    // s, between two warnings of commands t
 // s, between two warnings about the same publisher that does not own the commands
 constexpr double kStrangerPause = 10.0;
 constexpr double kDiagnosticsPause = 1.0;  // s
-constexpr double kStatePeriod = 0.05;      // s, between two publications of an unchanged operating state
 constexpr double kLastWord = 0.5;          // s, for the controller to confirm the disable when the node ends
 
 std::vector<std::string> resolved(const ros::NodeHandle& node, const std::vector<std::string>& names) {
@@ -36,7 +34,6 @@ std::vector<std::string> resolved(const ros::NodeHandle& node, const std::vector
 AesopNode::AesopNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
                      const AesopParameters& parameters)
     : parameters_(parameters),
-      tip_R_optical_(scope::obliqueOptics(parameters.optics_angle, parameters.optics_roll).transpose()),
       driver_(parameters.driver),
       reconnect_(parameters.reconnect),
       command_owner_(node.resolveName(parameters.publisher, false), "commands", "command/publisher"),
@@ -47,11 +44,8 @@ AesopNode::AesopNode(const ros::NodeHandle& node, const ros::NodeHandle& private
       stranger_lines_(kStrangerPause),
       stops_(parameters.external_stops),
       node_(node),
-      private_node_(private_node) {
-  joint_publisher_ = private_node_.advertise<sensor_msgs::JointState>("measured_js", 10);
-  pose_publisher_ = private_node_.advertise<geometry_msgs::PoseStamped>("measured_cp", 10);
-  twist_publisher_ = private_node_.advertise<geometry_msgs::TwistStamped>("measured_cv", 10);
-  state_publisher_ = private_node_.advertise<OperatingState>("operating_state", 10, true);
+      private_node_(private_node),
+      publisher_(private_node_, parameters) {
   // Only the owner's newest command counts, but those of others must not push it out of the queue.
   command_subscriber_ =
       node_.subscribe("servo_command", kQueue, &AesopNode::onCommand, this, ros::TransportHints().tcpNoDelay());
@@ -76,7 +70,7 @@ AesopNode::AesopNode(const ros::NodeHandle& node, const ros::NodeHandle& private
     recording_ = std::make_unique<aesop::WireLogFile>(parameters.wire_log, parameters.driver.session.codec()->name());
     driver_.setTap(recording_.get());
   }
-  publishStaticFrames();
+  publisher_.publishStaticFrames(driver_);
   if (!reported_.lineWarning().empty()) ROS_WARN_STREAM(reported_.lineWarning());
 }
 
@@ -116,16 +110,15 @@ void AesopNode::exchange(double now) {
 
 void AesopNode::step() {
   const double now = steadyNow();
-  if (calibration_.step(stampNow(), now)) publishStaticFrames();
+  if (calibration_.step(stampNow(), now)) publisher_.publishStaticFrames(driver_);
   if (!transport_.isOpen()) connect(now);
   watchOutside(now);
   exchange(now);
   if (driver_.session().link().isUp()) reconnect_.up(now);
   if (!driver_.session().isEnabled()) command_owner_.release();
   watchRecording();
-  publishStatus();
-  countEnables();
-  publishState(now);
+  publisher_.publishStatus(driver_, steadyNow());
+  publisher_.publishState(state(now), driver_.session().state().mode, now);
   reportState(now);
   if (now >= next_diagnostics_) {
     next_diagnostics_ = now + kDiagnosticsPause;
@@ -232,22 +225,6 @@ void AesopNode::onCommand(const ros::MessageEvent<ScopeVelocity const>& event) {
   if (const auto line = refused_lines_.take("a command was refused: " + refusal, now)) ROS_WARN_STREAM(*line);
 }
 
-void AesopNode::publishStatus() {
-  const aesop::Link& link = driver_.session().link();
-  if (!link.status() || link.statistics().received == published_) return;
-  published_ = link.statistics().received;
-  const double now = steadyNow();
-  const std::optional<ros::Time> taken = status_stamp_.take(link.statusAge(now), now, ros::Time::now());
-  if (!taken) return;
-  const ros::Time& stamp = *taken;
-  const aesop::Status& status = *link.status();
-  const std::string& prefix = parameters_.frame_prefix;
-  joint_publisher_.publish(jointState(status, stamp));
-  pose_publisher_.publish(opticalPose(driver_.kinematics(), status, tip_R_optical_, prefix, stamp));
-  twist_publisher_.publish(opticalTwist(driver_.kinematics(), status, prefix, stamp));
-  broadcaster_.sendTransform(linkTransforms(driver_.kinematics(), status.position, prefix, stamp));
-}
-
 aesop::OperatingState AesopNode::state(double now) const {
   aesop::OperatingState state = driver_.state(now);
   const std::string complaint = command_owner_.complaint(now);
@@ -255,26 +232,6 @@ aesop::OperatingState AesopNode::state(double now) const {
     state.reason = "held until the ROS master answers";
   if (!complaint.empty()) state.reason += (state.reason.empty() ? "" : "; ") + complaint;
   return state;
-}
-
-// A pause does not increment the count, so that the controller can go on after it.
-void AesopNode::countEnables() {
-  const aesop::OperatingMode mode = driver_.session().state().mode;
-  const bool on = mode == aesop::OperatingMode::kEnabled || mode == aesop::OperatingMode::kPaused;
-  if (on && !was_on_) ++enables_;
-  was_on_ = on;
-}
-
-void AesopNode::publishState(double now) {
-  const aesop::OperatingState state = this->state(now);
-  // Published repeatedly, so that subscribers notice when it stops.
-  if (state_published_ && state == last_state_ && now - state_time_ < kStatePeriod) return;
-  state_time_ = now;
-  last_state_ = state;
-  state_published_ = true;
-  OperatingState message = toMessage(state, ros::Time::now());
-  message.enables = enables_;
-  state_publisher_.publish(message);
 }
 
 void AesopNode::reportState(double now) {
@@ -291,11 +248,6 @@ void AesopNode::reportState(double now) {
   } else {
     ROS_INFO_STREAM(line->text);
   }
-}
-
-void AesopNode::publishStaticFrames() {
-  static_broadcaster_.sendTransform(fixedTransforms(driver_.kinematics(), driver_.insertionPoint(), tip_R_optical_,
-                                                    parameters_.frame_prefix, ros::Time::now()));
 }
 
 }  // namespace laparoscope_servo

@@ -8,8 +8,6 @@
 #include <ros/node_handle.h>
 #include <std_msgs/Empty.h>
 #include <std_srvs/Trigger.h>
-#include <tf2_ros/static_transform_broadcaster.h>
-#include <tf2_ros/transform_broadcaster.h>
 
 #include <functional>
 #include <memory>
@@ -19,8 +17,8 @@
 #include "laparoscope_servo/aesop/transport.h"
 #include "ros/aesop/aesop_diagnostics.h"
 #include "ros/aesop/aesop_parameters.h"
+#include "ros/aesop/arm_publisher.h"
 #include "ros/aesop/calibration_services.h"
-#include "ros/aesop/status_stamp.h"
 #include "ros/common/external_stops.h"
 #include "ros/common/input_owner.h"
 #include "ros/common/said_lines.h"
@@ -71,16 +69,11 @@ class AesopNode {
   void advertise(const std::string& name, Action action, Callers callers);
 
   void watchRecording();
-  void publishStatus();
   // The driver's state, with the node whose commands were refused, which the driver does not know.
   aesop::OperatingState state(double now) const;
-  void publishState(double now);
-  void countEnables();
   void reportState(double now);
-  void publishStaticFrames();
 
   AesopParameters parameters_;
-  Eigen::Matrix3d tip_R_optical_;
   std::unique_ptr<aesop::WireLogFile> recording_;  // must outlive the driver; null: no recording
   bool recording_ended_ = false;                   // its end was reported
   aesop::Driver driver_;
@@ -96,25 +89,13 @@ class AesopNode {
   SaidLines stranger_lines_;
   StateReport state_report_;
   ExternalStops stops_;
-  StatusStamp status_stamp_;
-  std::uint64_t published_ = 0;  // number of statuses received at the last publication
-  aesop::OperatingState last_state_;
-  bool state_published_ = false;
-  std::uint32_t enables_ = 0;  // see OperatingState.msg
-  bool was_on_ = false;        // ENABLED or PAUSED in the last step
-  double state_time_ = 0.0;    // s, steady, of the last publication
 
   ros::NodeHandle node_;
   ros::NodeHandle private_node_;
-  ros::Publisher joint_publisher_;
-  ros::Publisher pose_publisher_;
-  ros::Publisher twist_publisher_;
-  ros::Publisher state_publisher_;
+  ArmPublisher publisher_;
   ros::Subscriber command_subscriber_;
   ros::Subscriber stop_subscriber_;
   std::vector<ros::ServiceServer> services_;
-  tf2_ros::TransformBroadcaster broadcaster_;
-  tf2_ros::StaticTransformBroadcaster static_broadcaster_;
   diagnostic_updater::Updater diagnostics_;
 };
 

@@ -1,25 +1,14 @@
-// The intrinsics of a camera from pictures of a printed chessboard.
+// The intrinsics of a camera from pictures of a printed board.
 #pragma once
 
 #include <sensor_msgs/CameraInfo.h>
 
 #include <opencv2/core.hpp>
-#include <ostream>
-#include <string>
 #include <vector>
 
+#include "ros/camera/board.h"
+
 namespace laparoscope_servo {
-
-struct Board {
-  cv::Size corners{9, 6};  // inner corners: one less than squares, each way
-  double square = 0.004;   // m, side of a square
-};
-
-// Throws std::invalid_argument for fewer than 3 or more than 100 corners each way, and for a side that is not positive.
-void checkBoard(const Board& board);
-
-// Writes an SVG in true size, to be printed without scaling; the white margin is part of the board.
-void writeBoard(const Board& board, std::ostream& stream);
 
 // Keeps the pictures that show the board at a new place or in a new pose.
 class BoardViews {
@@ -31,7 +20,7 @@ class BoardViews {
   Verdict add(const cv::Mat& picture);
 
   const Board& board() const { return board_; }
-  const std::vector<std::vector<cv::Point2f>>& corners() const { return corners_; }
+  const std::vector<SeenCorners>& views() const { return views_; }
   cv::Size size() const { return size_; }
   // Share of the picture's 6 x 6 cells in which a corner was seen.
   double coverage() const;
@@ -39,7 +28,7 @@ class BoardViews {
  private:
   Board board_;
   cv::Size size_;
-  std::vector<std::vector<cv::Point2f>> corners_;  // px, of each picture taken
+  std::vector<SeenCorners> views_;  // of each picture taken
 };
 
 struct BoardCalibration {

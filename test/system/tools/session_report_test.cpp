@@ -44,6 +44,20 @@ class SessionReport : public testing::Test {
     }
   }
   static ros::Time at(int k) { return ros::Time(1500000000.0 + 0.04 * k); }
+  // What was computed again from that case: the first 10 images are left out, the next 10 lost, the others `apart` px
+  // off at one corner.
+  std::string recomputed(double apart) {
+    const std::string file = folder_.file("again.bag");
+    rosbag::Bag bag(file, rosbag::bagmode::Write);
+    for (int k = 10; k < 200; ++k) {
+      Homography result;
+      result.header.stamp = at(k);
+      result.state = k < 20 ? Homography::LOST : Homography::TRACKING;
+      result.corners = {10, 10, 30, 10, 30 + 0.6 * apart, 30 - 0.8 * apart, 10, 30};
+      bag.write("/tracker/homography", at(k), result);
+    }
+    return file;
+  }
   // 200 results: covered from 50 to 74, lost from 100 to 124; the controller holds then, and somebody stops in the end.
   std::string bag(bool pictures, const std::string& reason = "the region is lost") {
     const std::string file = folder_.file("case.bag");
@@ -97,6 +111,19 @@ TEST_F(SessionReport, TellsWhatHappened) {
   EXPECT_TRUE(has("<td>20.0 ms</td>")) << "image to result";
   EXPECT_TRUE(has("<svg") && has("data:image/jpeg;base64,"));
   expectClosed();
+}
+
+TEST_F(SessionReport, TellsHowFarRecomputedResultsAreFromRecordedOnes) {
+  const std::string again = recomputed(0.5);
+  ASSERT_EQ(report("'" + bag(false) + "'", "--recomputed '" + again + "'"), 0) << contents("log");
+  EXPECT_TRUE(
+      has("Of 190 images there are results of both: 155 were tracked by both, 10 when it\nwas recorded only, 25 "
+          "when it was computed again only."));
+  EXPECT_TRUE(has("<td>0.50 px</td><td>0.50 px</td><td>0.50 px</td><td>0.50 px</td>"));
+  expectClosed();
+  ASSERT_EQ(report("'" + bag(false) + "'"), 0) << contents("log");
+  EXPECT_FALSE(has("recomputed"));
+  EXPECT_EQ(report("'" + bag(false) + "'", "--recomputed '" + folder_.file("nothing.bag") + "'"), 1);
 }
 
 TEST_F(SessionReport, WithoutPicturesItTellsTheRest) {
