@@ -9,7 +9,7 @@ namespace laparoscope_servo::servo {
 
 struct SafetyConfig {
   double max_task_error_age = 0.25;   // s, of the last task error and of its image; older ones stop the arm
-  double slow_age = 0.6;              // share of it from which on the scope is slower, the older the image
+  double slow_age = 0.4;              // share of it from which on the scope is slower, the older the image
   double max_depth_age = 0.25;        // s, an older d2 stops the arm
   double min_depth = 0.02;            // m, d2 below it stops the arm
   double max_depth = 0.25;            // m, d2 above it stops the arm
