@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kSmallest = 64;  // px, of an image's sides
 // Of a shaft that is believed at once, besides its contrast: share of its length that each edge is seen.
-constexpr double kClearCoverage = 0.6;
+constexpr double kClearCoverage = 0.5;
 
 void check(const cv::Mat& image, double stamp) {
   if (image.type() != CV_8UC3) {
