@@ -187,11 +187,11 @@ const std::vector<Shaft>& ShaftFinder::find(const GreyMap& map, const FieldOfVie
   const double threshold = levels.threshold;
   const Scene scene{map, view, threshold, std::max(kLeastContrast, kContrast * levels.usual),
                     std::max(kLeastContrast, levels.usual)};
-  lines_ = &finder_.find(map, view, threshold);
+  const std::vector<GreyLine>& lines = finder_.find(map, view, threshold);
   candidates_.clear();
   shafts_.clear();
-  for (const GreyLine& a : *lines_) {
-    for (const GreyLine& b : *lines_) {
+  for (const GreyLine& a : lines) {
+    for (const GreyLine& b : lines) {
       Shaft shaft;
       if (&a < &b && pair(scene, a, b, shaft)) candidates_.push_back(shaft);
     }
