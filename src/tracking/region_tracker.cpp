@@ -29,6 +29,14 @@ constexpr double kSearchReach = 0.25;  // of the ROI's larger side, when it has 
 // less than this were held for a second in 42 cases, the others in 15 of 32.
 constexpr double kClearly = 0.3;
 
+void checkMask(const cv::Mat& mask, const cv::Mat& image) {
+  if (mask.empty() || (mask.type() == CV_8UC1 && mask.size() == image.size())) return;
+  std::ostringstream text;
+  text << "external mask of " << mask.cols << " x " << mask.rows << " px and OpenCV type " << mask.type()
+       << ", expected the image's size, " << image.cols << " x " << image.rows << " px, and type " << CV_8UC1;
+  throw std::invalid_argument(text.str());
+}
+
 }  // namespace
 
 const char* stateName(State state) {
@@ -51,11 +59,13 @@ class RegionTracker::Implementation {
       : config_(config), lens_(lens), aligner_(config, lens), filter_(config.velocity_damping), search_(config, lens) {}
 
   void setLens(const std::optional<image::Lens>& lens);
-  TrackResult select(const cv::Mat& image, double stamp, const geometry::Rectangle& roi);
-  double check(const cv::Mat& image, const geometry::Rectangle& wanted, RegionAligner& aligner) const;
+  TrackResult select(const cv::Mat& image, double stamp, const geometry::Rectangle& roi, const cv::Mat& mask);
+  double check(const cv::Mat& image, const geometry::Rectangle& wanted, RegionAligner& aligner,
+               const cv::Mat& mask = cv::Mat()) const;
   std::optional<geometry::Rectangle> propose(const cv::Mat& image, const geometry::Rectangle& wanted) const;
   void recall(const cv::Mat& reference, double reference_stamp, const geometry::Rectangle& roi, double now);
-  const TrackResult& track(const cv::Mat& image, double stamp, const std::optional<Eigen::Matrix3d>& motion);
+  const TrackResult& track(const cv::Mat& image, double stamp, const std::optional<Eigen::Matrix3d>& motion,
+                           const cv::Mat& mask);
   void reset();
   cv::Mat occlusionMask() const;
   bool hasRoi() const { return state_ != State::kIdle; }
@@ -64,7 +74,8 @@ class RegionTracker::Implementation {
   void retune(const TrackerConfig& config);
 
  private:
-  double setReference(const cv::Mat& image, double stamp, const geometry::Rectangle& wanted);
+  double setReference(const cv::Mat& image, double stamp, const geometry::Rectangle& wanted,
+                      const cv::Mat& mask = cv::Mat());
   std::optional<Eigen::Matrix3d> carriedBy(const std::optional<Eigen::Matrix3d>& motion) const;
   Attempt attempt(const cv::Mat& image, double stamp, const EsmState& start, const MotionPrior* prior,
                   bool confirming = false);
@@ -103,8 +114,10 @@ void RegionTracker::Implementation::setLens(const std::optional<image::Lens>& le
 
 // Makes it the reference of an aligner. Returns the expected corner error [px] of the reference with itself.
 double RegionTracker::Implementation::check(const cv::Mat& image, const geometry::Rectangle& wanted,
-                                            RegionAligner& aligner) const {
+                                            RegionAligner& aligner, const cv::Mat& mask) const {
   checkImage(image);
+  checkMask(mask, image);
+  aligner.setMask(mask);
   aligner.setReference(image, checkedRoi(image, wanted, config_.min_roi_side, lens_.get()));
   return checkedCornerError(aligner, config_.min_texture);
 }
@@ -130,10 +143,10 @@ std::optional<geometry::Rectangle> RegionTracker::Implementation::propose(const 
 }
 
 double RegionTracker::Implementation::setReference(const cv::Mat& image, double stamp,
-                                                   const geometry::Rectangle& wanted) {
+                                                   const geometry::Rectangle& wanted, const cv::Mat& mask) {
   // Everything is built aside, so that a ROI that is refused leaves the tracker as it was.
   Implementation fresh(config_, lens_);
-  const double error = check(image, wanted, fresh.aligner_);
+  const double error = check(image, wanted, fresh.aligner_, mask);
   fresh.search_.setReference(image, fresh.aligner_);
   fresh.image_size_ = image.size();
   fresh.reference_stamp_ = stamp;
@@ -141,9 +154,9 @@ double RegionTracker::Implementation::setReference(const cv::Mat& image, double 
   return error;
 }
 
-TrackResult RegionTracker::Implementation::select(const cv::Mat& image, double stamp,
-                                                  const geometry::Rectangle& wanted) {
-  const double error = setReference(image, stamp, wanted);
+TrackResult RegionTracker::Implementation::select(const cv::Mat& image, double stamp, const geometry::Rectangle& wanted,
+                                                  const cv::Mat& mask) {
+  const double error = setReference(image, stamp, wanted, mask);
   const geometry::Rectangle& roi = aligner_.roi();
   filter_.start(roi, aligner_.esm().normalisation(), stamp);
   state_ = State::kTracking;
@@ -173,8 +186,10 @@ void RegionTracker::Implementation::recall(const cv::Mat& reference, double refe
 }
 
 const TrackResult& RegionTracker::Implementation::track(const cv::Mat& image, double stamp,
-                                                        const std::optional<Eigen::Matrix3d>& motion) {
+                                                        const std::optional<Eigen::Matrix3d>& motion,
+                                                        const cv::Mat& mask) {
   checkImage(image);
+  checkMask(mask, image);
   if (state_ == State::kIdle) {
     const TrackResult& result = idle(stamp, reset_reason_.empty() ? "no region of interest selected" : reset_reason_);
     reset_reason_.clear();
@@ -192,6 +207,7 @@ const TrackResult& RegionTracker::Implementation::track(const cv::Mat& image, do
     reset();
     return idle(stamp, why.str());
   }
+  aligner_.setMask(mask);
   carried_ = carriedBy(motion);
   MotionPrior prior = filter_.predict(stamp, carried_);
   Attempt best;
@@ -372,8 +388,9 @@ void RegionTracker::setLens(const std::optional<image::Lens>& lens) {
   implementation_->setLens(lens);
 }
 
-TrackResult RegionTracker::select(const cv::Mat& image, double stamp, const geometry::Rectangle& roi) {
-  return implementation_->select(image, stamp, roi);
+TrackResult RegionTracker::select(const cv::Mat& image, double stamp, const geometry::Rectangle& roi,
+                                  const cv::Mat& external_mask) {
+  return implementation_->select(image, stamp, roi, external_mask);
 }
 void RegionTracker::check(const cv::Mat& image, const geometry::Rectangle& roi) const {
   RegionAligner aligner(config(), implementation_->lens());
@@ -387,8 +404,8 @@ void RegionTracker::recall(const cv::Mat& reference, double reference_stamp, con
   implementation_->recall(reference, reference_stamp, roi, now);
 }
 const TrackResult& RegionTracker::track(const cv::Mat& image, double stamp,
-                                        const std::optional<Eigen::Matrix3d>& motion) {
-  return implementation_->track(image, stamp, motion);
+                                        const std::optional<Eigen::Matrix3d>& motion, const cv::Mat& external_mask) {
+  return implementation_->track(image, stamp, motion, external_mask);
 }
 void RegionTracker::reset() {
   implementation_->reset();

@@ -76,8 +76,10 @@ class RegionTracker {
   void retune(const TrackerConfig& config);
 
   // Takes `image` for the reference. Throws std::invalid_argument, with the ROI and what was expected, when the ROI is
-  // empty, too small, mostly outside the image or without texture; the tracker then goes on as before.
-  TrackResult select(const cv::Mat& image, double stamp, const geometry::Rectangle& roi);
+  // empty, too small, mostly outside the image or without texture; the tracker then goes on as before. `external_mask`:
+  // see track(); what it covers in the reference is never used.
+  TrackResult select(const cv::Mat& image, double stamp, const geometry::Rectangle& roi,
+                     const cv::Mat& external_mask = cv::Mat());
 
   // Whether select() would take the ROI: throws as that would, and selects nothing.
   void check(const cv::Mat& image, const geometry::Rectangle& roi) const;
@@ -97,11 +99,15 @@ class RegionTracker {
   // the tracker then goes on as if the image had not come. `motion`: the ego-motion of the scope from another source
   // than the images (the robot), as a homography of any scale from pixels of the last image in state TRACKING to pixels
   // of this one. The search starts where it puts the ROI; only the motion that remains beside it is predicted to go on.
-  // A motion that is no homography, or that leads to no accepted estimate, is ignored. Does not allocate while
+  // A motion that is no homography, or that leads to no accepted estimate, is ignored. `external_mask`: of this image, in
+  // its own pixels (CV_8UC1, its size): what is not 0 is known to be covered, by an instrument, and is left out before the
+  // gates decide; empty: nothing is known. Another size or type throws std::invalid_argument, as an image of another type
+  // does. Does not allocate while
   // tracking, but for a view that it stores now and then. The result belongs to the tracker and is valid until the next
   // call of select(), track() or reset(), or until the tracker is moved from.
   const TrackResult& track(const cv::Mat& image, double stamp,
-                           const std::optional<Eigen::Matrix3d>& motion = std::nullopt);
+                           const std::optional<Eigen::Matrix3d>& motion = std::nullopt,
+                           const cv::Mat& external_mask = cv::Mat());
 
   // Forgets the ROI.
   void reset();

@@ -45,7 +45,9 @@ void FieldOfView::compute(const cv::Mat1b& level) {
       cv::Range& r = rows[static_cast<std::size_t>(y)];
       r.start = std::min(r.start, static_cast<int>(std::floor(x)));
       r.end = std::max(r.end, static_cast<int>(std::ceil(x)) + 1);
-      if (a.y == b.y) r.end = std::max(r.end, b.x + 1), r.start = std::min(r.start, b.x);
+      if (a.y != b.y) continue;
+      r.start = std::min(r.start, b.x);
+      r.end = std::max(r.end, b.x + 1);
     }
   }
   for (auto& r : rows) {

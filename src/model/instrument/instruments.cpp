@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kSmallest = 64;  // px, of an image's sides
 // Of a shaft that is believed at once, besides its contrast: share of its length that each edge is seen.
-constexpr double kClearCoverage = 0.6;
+constexpr double kClearCoverage = 0.5;
 
 void check(const cv::Mat& image, double stamp) {
   if (image.type() != CV_8UC3) {
@@ -128,21 +128,23 @@ class InstrumentTracker::Implementation {
         return t.state() == features::State::kTracking && overlaps(t.shaft(), shaft);
       });
       if (covered) continue;
-      const bool both = shaft.seen[0] && shaft.seen[1];
       const bool contrasts = shaft.clarity >= config_.clear_contrast && shaft.coverage >= kClearCoverage;
-      const bool clear = contrasts && both;
       auto p = std::find_if(pending_.begin(), pending_.end(),
                             [&](const Pending& q) { return !q.seen && isSame(q.shaft, shaft); });
       if (p == pending_.end()) p = pending_.insert(p, Pending());
       p->shaft = shaft;
       p->seen = true;
       ++p->images;
-      if (!clear && (p->images < config_.confirmations || !(both || contrasts))) continue;
+      const bool confirmed = p->images >= config_.confirmations;
+      if (!confirmed && !(contrasts && shaft.seen[0] && shaft.seen[1])) continue;
+      // Light has to agree with colour: the border between pale tissue and red tissue is no step of brightness. A clear
+      // one that has lasted needs no step, which a dark shaft on dark tissue does not have.
+      const int bright = contrasts && confirmed ? 0 : brightEdges(config_, scene, shaft);
+      if (!contrasts && bright < 2) continue;
+      if (contrasts && !confirmed && bright < 1) continue;
       if (static_cast<int>(tracks_.size()) >= config_.most && !makeRoom()) continue;
-      // Light has to agree with colour: the border between pale tissue and red tissue is no step of brightness.
-      if (brightEdges(config_, scene, shaft) < (contrasts ? 1 : 2)) continue;
       InstrumentTrack track(config_, next_id_, scene, shaft);
-      if (track.fineEdges() == 0) continue;
+      if (track.fineEdges() == 0 && !(contrasts && confirmed)) continue;
       tracks_.push_back(std::move(track));
       ++next_id_;
       p->seen = false;

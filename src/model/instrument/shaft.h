@@ -9,8 +9,9 @@
 
 namespace laparoscope_servo::model {
 
-// Cells. Edge 0 is on the right of who looks from the entry to the tip, y being downwards: its normal, which points away
-// from the shaft, is nearly the axis (x, y) turned to (-y, x). Edge 1 is on the left; its direction is nearly the axis.
+// Cells. Edge 0 is on the right of who looks from the entry to the tip, y being downwards: its normal, which points
+// away from the shaft, is nearly the axis (x, y) turned to (-y, x). Edge 1 is on the left; its direction is nearly the
+// axis.
 struct Shaft {
   std::array<GreyLine, 2> edges;
   // False: that side of the shaft lies beyond the picture; the edge is the picture's border.

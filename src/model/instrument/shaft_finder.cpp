@@ -20,7 +20,7 @@ constexpr double kLeastContrast = 0.25;  // units of S0 cos H / mean
 constexpr double kFill = 0.75;           // of grey between the edges
 constexpr double kEntryFill = 0.6;       // the same between their ends and the border
 constexpr double kEntersAt = 0.26;       // sine of the least angle between axis and border: 15 degrees
-constexpr double kSingleLength = 0.18;   // of the picture's diagonal: an edge whose partner is out of the picture
+constexpr double kSingleLength = 0.25;   // of the picture's diagonal: an edge whose partner is out of the picture
 constexpr double kSingleDepth = 0.35;    // of the picture's rows: how far away the border may be then
 
 }  // namespace
@@ -187,11 +187,11 @@ const std::vector<Shaft>& ShaftFinder::find(const GreyMap& map, const FieldOfVie
   const double threshold = levels.threshold;
   const Scene scene{map, view, threshold, std::max(kLeastContrast, kContrast * levels.usual),
                     std::max(kLeastContrast, levels.usual)};
-  lines_ = &finder_.find(map, view, threshold);
+  const std::vector<GreyLine>& lines = finder_.find(map, view, threshold);
   candidates_.clear();
   shafts_.clear();
-  for (const GreyLine& a : *lines_) {
-    for (const GreyLine& b : *lines_) {
+  for (const GreyLine& a : lines) {
+    for (const GreyLine& b : lines) {
       Shaft shaft;
       if (&a < &b && pair(scene, a, b, shaft)) candidates_.push_back(shaft);
     }

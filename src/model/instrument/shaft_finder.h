@@ -19,7 +19,6 @@ class ShaftFinder {
 
   // Best first; no two share an edge or most of their place.
   const std::vector<Shaft>& find(const GreyMap& map, const FieldOfView& view, const GreyLevels& levels);
-  const std::vector<GreyLine>& lines() const { return *lines_; }
 
  private:
   struct Scene {
@@ -37,7 +36,6 @@ class ShaftFinder {
   bool enter(const Scene& scene, Shaft& shaft, double from, double& length) const;
 
   GreyLines finder_;
-  const std::vector<GreyLine>* lines_ = nullptr;
   std::vector<Shaft> candidates_, shafts_;
 };
 

@@ -10,8 +10,8 @@
 #include "tracking/align/channel_choice.h"
 #include "tracking/align/detail.h"
 #include "tracking/align/shift_fit.h"
-#include "tracking/esm/covariance.h"
 #include "tracking/align/texture.h"
+#include "tracking/esm/covariance.h"
 
 namespace laparoscope_servo::tracking {
 
@@ -73,6 +73,7 @@ void RegionAligner::setReference(const cv::Mat& image, const geometry::Rectangle
   sample(image, Eigen::Matrix3d::Identity());
   gates_.setReference(patch_, cv::Size(static_cast<int>(roi.width), static_cast<int>(roi.height)),
                       coloursIn(channels_));
+  if (!mask_.empty()) gates_.hideInReference(covered_.blue);
   esm_.setWeights(weights());
 }
 
@@ -87,16 +88,24 @@ ReferenceTexture RegionAligner::referenceTexture() {
 }
 
 // Samples the image for the gates where `g` puts the ROI.
+// What the mask covers is not valid, as if it lay outside of the image.
 void RegionAligner::sample(const cv::Mat& image, const Eigen::Matrix3d& g) {
+  sample(image, g, patch_);
+  if (mask_.empty()) return;
+  sample(mask_, g, covered_);
+  patch_.valid.setTo(0, covered_.blue);
+}
+
+void RegionAligner::sample(const cv::Mat& image, const Eigen::Matrix3d& g, image::ColourPatch& patch) const {
   const cv::Size size(static_cast<int>(roi().width), static_cast<int>(roi().height));
   const int step = samplingStep(size, occlusion_);
   Eigen::Matrix3d image_T_sample = g * imageFromPatch(roi());
   image_T_sample.leftCols<2>() *= step;
   const cv::Size samples((size.width + step - 1) / step, (size.height + step - 1) / step);
   if (lens_) {
-    image::warpNearest(image, image_T_sample, *lens_, samples, patch_);
+    image::warpNearest(image, image_T_sample, *lens_, samples, patch);
   } else {
-    image::warpNearest(image, image_T_sample, samples, patch_);
+    image::warpNearest(image, image_T_sample, samples, patch);
   }
 }
 

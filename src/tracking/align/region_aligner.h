@@ -60,6 +60,10 @@ class RegionAligner {
   // See RegionTracker::retune.
   void retune(const TrackerConfig& config) { gates_.setThreshold(config.occlusion.threshold); }
 
+  // Of the image that setReference() or align() gets next, and its size: what is not 0 is covered. Empty: nothing is
+  // known. Stays until it is set again.
+  void setMask(const cv::Mat& mask) { mask_ = mask; }
+
   // Forgets occlusions and light of the last alignment, before one that starts elsewhere.
   void startAfresh();
   // Call at the end of an image, see OcclusionGates::advance.
@@ -83,6 +87,7 @@ class RegionAligner {
 
  private:
   void sample(const cv::Mat& image, const Eigen::Matrix3d& g);
+  void sample(const cv::Mat& image, const Eigen::Matrix3d& g, image::ColourPatch& patch) const;
   void look(const cv::Mat& image, const Eigen::Matrix3d& g);
   void follow(const ShiftFit& fit, EsmResult& estimate) const;
   const std::vector<BlockShift>& measure(const EsmResult& estimate, BlockEvidence& evidence);
@@ -101,6 +106,8 @@ class RegionAligner {
   image::RegionPyramid pyramid_;
   image::Channels channels_ = image::kLuma;
   image::ColourPatch patch_;
+  cv::Mat mask_;
+  image::ColourPatch covered_;                           // the mask, as the patch is sampled
   Eigen::Matrix3d shown_ = Eigen::Matrix3d::Identity();  // the homography at which the colour gate was last evaluated
   double noise_ = 0.0;                                   // grey levels, noise of the reference image
   double surprise_ = 0.0;  // px, distance of the worst corner from the prediction in the last image

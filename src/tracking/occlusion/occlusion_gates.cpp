@@ -100,6 +100,11 @@ void OcclusionGates::setReference(const image::ColourPatch& patch, const cv::Siz
   held_.assign(grid_.count(), 0);
 }
 
+void OcclusionGates::hideInReference(const cv::Mat1b& covered) {
+  reference_saturated_.setTo(255, covered);
+  spread(saturated_, valid_);
+}
+
 void OcclusionGates::markSaturated(const image::ColourPatch& patch, cv::Mat1b& mask) const {
   image::saturatedPixels(patch, limits_, (kGrowSaturated + step_ - 1) / step_, mask);
   if (step_ > 1 || cv::countNonZero(mask) <= kMuch * static_cast<double>(mask.total())) return;

@@ -31,6 +31,9 @@ class OcclusionGates {
   void setReference(const image::ColourPatch& patch, const cv::Size& size,
                     const std::array<bool, 3>& tracked = {true, true, true});
 
+  // After setReference(): what is not 0 in `covered`, which has the size of that patch, is never used.
+  void hideInReference(const cv::Mat1b& covered);
+
   // Call before ESM. `patch`: the current image at the expected place of the ROI, sampled with the same step, see
   // image::warpNearest. If areas differ in colour, the current illumination is estimated and the colours are compared
   // as they would look under that of the reference (see LightChange); otherwise the last known illumination is used.
