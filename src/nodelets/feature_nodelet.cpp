@@ -1,10 +1,7 @@
 #include "nodelets/feature_nodelet.h"
 
-#include <diagnostic_msgs/DiagnosticStatus.h>
-
 #include <boost/make_shared.hpp>
 #include <exception>
-#include <optional>
 #include <sstream>
 #include <utility>
 
