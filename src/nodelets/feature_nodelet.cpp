@@ -1,10 +1,7 @@
 #include "nodelets/feature_nodelet.h"
 
-#include <diagnostic_msgs/DiagnosticStatus.h>
-
 #include <boost/make_shared.hpp>
 #include <exception>
-#include <optional>
 #include <sstream>
 #include <utility>
 
@@ -37,6 +34,7 @@ void FeatureNodelet::start() {
   ros::NodeHandle& private_node = getPrivateNodeHandle();
   features_publisher_ = private_node.advertise<TrackedFeatures>("features", 10);
   overlay_publisher_ = private_node.advertise<sensor_msgs::Image>("overlay", 2);
+  if (session_->givesMask()) mask_publisher_ = private_node.advertise<sensor_msgs::Image>("mask", 2);
   reset_server_ = private_node.advertiseService("reset", &FeatureNodelet::reset, this);
   request_thread_ = std::make_unique<ServiceThread>(private_node);
   request_thread_->advertiseService("select_features", &FeatureNodelet::select, this);
@@ -73,6 +71,8 @@ void FeatureNodelet::publish(const ProcessedFeatures& processed) {
     features_publisher_.publish(
         boost::make_shared<TrackedFeatures>(featuresMessage(processed.header, processed.result)));
   }
+  if (mask_publisher_ && mask_publisher_.getNumSubscribers() > 0)
+    mask_publisher_.publish(imageMessage(processed.header, session_->mask()));
   if (overlay_publisher_.getNumSubscribers() > 0) {
     overlay_publisher_.publish(imageMessage(processed.header, drawFeatures(processed.image, processed.result)));
   }

@@ -57,6 +57,7 @@ class FeatureNodelet : public ImageNodelet {
   std::unique_ptr<ServiceThread> request_thread_;
   ros::Publisher features_publisher_;
   ros::Publisher overlay_publisher_;
+  ros::Publisher mask_publisher_;  // where the tracker has one
   ros::ServiceServer reset_server_;
 };
 

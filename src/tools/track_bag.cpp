@@ -211,10 +211,8 @@ int runRegion(Command& command) {
 }
 
 int runFeatures(const Command& command) {
-  if (command.selection.empty())
-    throw std::invalid_argument("no selection is given, expected --select FILE.yaml with the features");
-  const FeatureOfflineOptions features{command.offline, command.tracker, command.parameters,
-                                       readSelection(command.selection)};
+  FeatureOfflineOptions features{command.offline, command.tracker, command.parameters, {}};
+  if (!command.selection.empty()) features.selection = readSelection(command.selection);
   return run([&](const OfflineProgress& progress, const OfflineReport& report) {
     return trackFeaturesOffline(features, progress, report);
   });

@@ -28,13 +28,13 @@ class FeatureTracker {
   virtual ~FeatureTracker() = default;
 
   // Takes `selection` in place of what was tracked. Throws std::invalid_argument, with the feature's id, what was found
-  // and what was expected; the tracker then goes on as before. A tracker that finds its features by itself takes an
-  // empty selection, and needs none.
+  // and what was expected; the tracker then goes on as before.
   virtual const TrackedFeatures& select(const cv::Mat& image, double stamp, const FeatureSelection& selection,
                                         const FeaturePrior& prior) = 0;
 
   // Processes the next image. A stamp before the last one, or an image of another size or type than that of the
-  // selection, resets to IDLE, with the reason. The result lasts until the next call.
+  // selection, resets to IDLE, with the reason. Throws std::invalid_argument for an image of a type that it cannot use,
+  // and goes on as if that had not come. The result lasts until the next call.
   virtual const TrackedFeatures& track(const cv::Mat& image, double stamp, const FeaturePrior& prior) = 0;
 
   // Forgets the features.
@@ -43,8 +43,12 @@ class FeatureTracker {
   // Of the last call.
   virtual const TrackedFeatures& features() const = 0;
 
-  // CV_8UC1 of the last image's size: 255 where the tracker knows that something lies in front of the tissue, else 0.
-  // Empty: it does not say.
+  // Nothing is selected: it looks for its features itself.
+  virtual bool findsByItself() const { return false; }
+
+  // Whether mask() tells something. CV_8UC1 of the last image's size: 255 where something lies in front of the tissue,
+  // else 0; empty before the first image.
+  virtual bool givesMask() const { return false; }
   virtual cv::Mat mask() const { return {}; }
 };
 

@@ -53,6 +53,8 @@ FeatureSession::FeatureSession(const FeatureInput& input, std::unique_ptr<featur
       feed_(input.input) {
   validation::throwErrors("input", validate(input));
   if (input.selection.empty()) return;
+  if (tracker_->findsByItself())
+    throw std::invalid_argument("selection = " + input.selection + ", expected none: nothing is to be selected");
   from_file_ = readSelection(input.selection);
   file_pending_ = true;
 }
@@ -112,7 +114,8 @@ void FeatureSession::track(ProcessedFeatures& processed, const std::optional<fea
     }
   }
   processed.result = tracker_->track(processed.image, time, prior);
-  if (processed.result.state == State::kIdle && time_began_again_) processed.result.reason = "time jumped back";
+  if (processed.result.state != State::kIdle) time_began_again_ = false;
+  if (time_began_again_) processed.result.reason = "time jumped back";
 }
 
 // A result in a frozen feed is not reported as TRACKING, but the tracker does not lose its features for it.

@@ -52,6 +52,11 @@ class FeatureSession {
   ProcessedFeatures process(const cv::Mat& decoded, const std_msgs::Header& header,
                             const std::optional<features::FeatureSelection>& request = std::nullopt);
 
+  // See features::FeatureTracker.
+  bool findsByItself() const { return tracker_->findsByItself(); }
+  bool givesMask() const { return tracker_->givesMask(); }
+  cv::Mat mask() const { return tracker_->mask(); }
+
   // Call if ROS time has jumped back: a loop is then accepted with its first image.
   void clockJumpedBack() { intake_.clockJumpedBack(); }
   // Forgets the features, also those of the file.

@@ -4,6 +4,7 @@
 
 #include "laparoscope_servo/features/dot_feature_tracker.h"
 #include "laparoscope_servo/features/edge_feature_tracker.h"
+#include "laparoscope_servo/model/instrument_feature_tracker.h"
 
 namespace laparoscope_servo {
 
@@ -26,7 +27,8 @@ const struct {
   const char* name;
   Maker maker;
 } kTrackers[] = {{"dots", make<features::DotFeatureTracker, features::DotsConfig>},
-                 {"edges", make<features::EdgeFeatureTracker, features::EdgeConfig>}};
+                 {"edges", make<features::EdgeFeatureTracker, features::EdgeConfig>},
+                 {"instrument", make<model::InstrumentFeatureTracker, model::InstrumentConfig>}};
 
 }  // namespace
 

@@ -32,7 +32,12 @@ FeatureSession sessionOf(const FeatureOfflineOptions& options) {
 
 class FeatureOffline : public OfflineTracker {
  public:
-  explicit FeatureOffline(const FeatureOfflineOptions& options) : options_(options), session_(sessionOf(options)) {}
+  explicit FeatureOffline(const FeatureOfflineOptions& options) : options_(options), session_(sessionOf(options)) {
+    if (session_.findsByItself() == options.selection.empty()) return;
+    throw std::invalid_argument(session_.findsByItself()
+                                    ? "a selection is given, expected none: " + options.tracker + " finds it by itself"
+                                    : "no selection is given, expected --select FILE.yaml with the features");
+  }
 
   void setCameraInfo(const sensor_msgs::CameraInfo& info) override { session_.setCameraInfo(info); }
 
@@ -46,9 +51,10 @@ class FeatureOffline : public OfflineTracker {
   }
 
   void take(const SourceImage& image, bool first, OfflineSummary& summary) override {
+    const bool selects = first && !session_.findsByItself();
     const ProcessedFeatures processed =
-        processImage(session_, image, first ? std::make_optional(options_.selection) : std::nullopt);
-    if (first && !processed.selected_now) throw std::invalid_argument(processed.selection_error);
+        processImage(session_, image, selects ? std::make_optional(options_.selection) : std::nullopt);
+    if (selects && !processed.selected_now) throw std::invalid_argument(processed.selection_error);
     ++summary.by_state[static_cast<std::size_t>(processed.result.state)];
     summary.times.push_back(processed.processing_time);
     if (csv_) csv_->write([&](std::ostream& stream) { writeFeatureCsvRows(stream, image.frame, processed); });

@@ -12,7 +12,7 @@ struct FeatureOfflineOptions {
   OfflineOptions common;                 // without the region tracker's parameters; see feature_csv.h for the table
   std::string tracker;                   // one of featureTrackers()
   std::string params;                    // YAML file laid over config/TRACKER.yaml; empty: none
-  features::FeatureSelection selection;  // in the first image
+  features::FeatureSelection selection;  // in the first image; empty for trackers that find by themselves
 };
 
 // As trackOffline; the bag has TrackedFeatures on /TRACKER/features.

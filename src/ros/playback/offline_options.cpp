@@ -24,7 +24,8 @@ void describeInput(options::options_description& description, OfflineOptions& of
   add("rate", options::value(&offline.source.folder_rate), "images per second of a folder (default 25)");
   add("camera-info", options::value(&offline.camera_info),
       "calibration file (YAML, INI), instead of the bag's camera_info; needed for rectify: true where there is none");
-  add("params", options::value(&parameters), "YAML file laid over the package's config/tracker.yaml, or config/dots.yaml, ..., as the tracker is");
+  add("params", options::value(&parameters),
+      "YAML file laid over the package's config/tracker.yaml, or config/dots.yaml, ..., as the tracker is");
 }
 
 std::vector<std::string> inputArguments(const OfflineOptions& offline, const std::string& parameters) {

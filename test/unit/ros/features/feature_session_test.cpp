@@ -171,6 +171,19 @@ TEST_P(FeatureSessionTest, TellsWhyThereAreNoIntrinsics) {
   EXPECT_EQ(next(session).camera_error, "");
 }
 
+TEST(FeatureSession, TakesNoFileForATrackerThatFindsByItself) {
+  FeatureInput input;
+  std::vector<std::string> errors;
+  auto tracker = makeFeatureTracker("instrument", {}, "", input, errors);
+  input.selection = "/tmp/features.yaml";
+  try {
+    const FeatureSession session(input, std::move(tracker));
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_STREQ(error.what(), "selection = /tmp/features.yaml, expected none: nothing is to be selected");
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(All, FeatureSessionTest, testing::Values("dots", "edges"));
 
 }  // namespace
