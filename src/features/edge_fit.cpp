@@ -57,6 +57,7 @@ class EdgeFit::Implementation {
 
   void reserve(const Curve& curve) {
     const int slots = curve.slots(), rows = config_.max_sites + 16;
+    like_slots_ = curve.likeSlots();
     memory_.assign(static_cast<std::size_t>(slots), Memory());
     lonely_.assign(static_cast<std::size_t>(slots), false);
     const std::size_t size = static_cast<std::size_t>(rows);
@@ -76,10 +77,13 @@ class EdgeFit::Implementation {
 
   EdgeReport learn(const cv::Mat& image, Curve& curve, double range) {
     reserve(curve);
-    // Which side is the brighter one; a curve over a background of both kinds comes last.
+    // Which side is the brighter one; a curve over a background of both kinds comes last. Where pieces do not look
+    // alike, each has a side of its own.
     double best = 0.0;
     Sign sign = Sign::kAny;
+    const bool alike = like_slots_ >= curve.slots();
     for (const Sign tried : {Sign::kPositive, Sign::kNegative, Sign::kAny}) {
+      if (!alike && tried != Sign::kAny) continue;
       sign_ = tried;
       const double score = searched(image, curve, range).score * (tried == Sign::kAny ? 0.7 : 1.0);
       if (score > best) {
@@ -125,10 +129,10 @@ class EdgeFit::Implementation {
   double jump() const { return jump_; }
 
  private:
-  // Of the slot itself, else of the nearest one that is known.
+  // Of the slot itself, else of the nearest one that is known and looks alike.
   const EdgeLooks* remembered(int slot) const {
     const int slots = static_cast<int>(memory_.size());
-    for (int d = 0; d < slots; ++d) {
+    for (int d = 0; d < std::min(slots, like_slots_ + 1); ++d) {
       for (const int s : {slot - d, slot + d}) {
         if (s >= 0 && s < slots && memory_[static_cast<std::size_t>(s)].known) {
           return &memory_[static_cast<std::size_t>(s)].looks;
@@ -139,8 +143,8 @@ class EdgeFit::Implementation {
   }
 
   float weight(const EdgeLooks* memory, const EdgeLooks& looks) const {
-    if (sign_ == Sign::kRemembered) {
-      return memory != nullptr ? similarity(looks, *memory, static_cast<float>(config_.min_similarity)) : 0.0f;
+    if (sign_ == Sign::kRemembered && memory != nullptr) {
+      return similarity(looks, *memory, static_cast<float>(config_.min_similarity));
     }
     if (sign_ == Sign::kPositive && looks.contrast < 0.0f) return 0.0f;
     if (sign_ == Sign::kNegative && looks.contrast > 0.0f) return 0.0f;
@@ -337,6 +341,7 @@ class EdgeFit::Implementation {
     agreement.range = range;
     agreement.freedoms = curve.parameters();
     agreement.independent = std::min(1.0, config_.spacing / kCorrelation);
+    report.evidence = evidence(agreement);
     if (report.inside < kLeastSites) {
       report.reason = Reason::kOutside;
     } else if (!(report.share >= min_share) || report.used < kLeastSites) {
@@ -383,6 +388,7 @@ class EdgeFit::Implementation {
   robust::Irls irls_;
   std::vector<Memory> memory_;
   std::vector<char> lonely_;  // of each slot
+  int like_slots_ = 0;
   Sign sign_ = Sign::kRemembered;
   std::vector<Site> sites_;
   std::vector<WeightedCandidates> candidates_;

@@ -20,6 +20,8 @@ struct EdgeReport {
   double share = 0.0;                        // used over inside
   double sigma = 0.0;                        // px, robust standard deviation of the edges about the curve
   double expected_error = 0.0;               // px along the normal, standard deviation at the worst site
+  // Minus the logarithm of how probable it is at most that, by chance, as many agree: to compare curves of one image.
+  double evidence = 0.0;
 };
 
 class EdgeFit {
