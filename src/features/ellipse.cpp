@@ -151,16 +151,15 @@ EllipseCoefficients Ellipse::coefficients() const {
 Eigen::Matrix<double, 5, 5> Ellipse::covariance(const Eigen::MatrixXd& of_parameters) const {
   constexpr double kStep = 1e-4;  // px
   Eigen::Matrix<double, 5, 5> derivative;
-  Eigen::VectorXd step = Eigen::VectorXd::Zero(5);
   for (int k = 0; k < 5; ++k) {
     Ellipse more = *this, less = *this;
-    step[k] = kStep;
-    more.move(step);
-    less.move(-step);
-    step[k] = 0.0;
+    const Eigen::Matrix<double, 5, 1> step = kStep * Eigen::Matrix<double, 5, 1>::Unit(k);
+    more.displace(step);
+    less.displace(-step);
     derivative.col(k) = (more.coefficients() - less.coefficients()) / (2.0 * kStep);
   }
-  return derivative * of_parameters * derivative.transpose();
+  const Eigen::Matrix<double, 5, 5> own = of_parameters;  // of fixed size: the product does not allocate
+  return derivative * own * derivative.transpose();
 }
 
 // The point c + S u moves by dc + dS u; its normal is along S^-1 u.
@@ -203,6 +202,10 @@ void Ellipse::sites(double spacing, int most, std::vector<Site>& result) const {
 }
 
 void Ellipse::move(const Eigen::VectorXd& step) {
+  displace(step);
+}
+
+void Ellipse::displace(const Eigen::Matrix<double, 5, 1>& step) {
   centre_ += step.head<2>();
   shape_(0, 0) += step[2];
   shape_(1, 1) += step[3];

@@ -128,7 +128,8 @@ Eigen::Matrix2d Line::covariance(const Eigen::MatrixXd& of_parameters) const {
   const double half = 0.5 * (end_ - begin_), middle = 0.5 * (begin_ + end_);
   Eigen::Matrix2d derivative;
   derivative << 1.0, direction().dot(at(middle)) / half, 0.0, 1.0 / half;
-  return derivative * of_parameters * derivative.transpose();
+  const Eigen::Matrix2d own = of_parameters;  // of fixed size: the product does not allocate
+  return derivative * own * derivative.transpose();
 }
 
 }  // namespace laparoscope_servo::features

@@ -1,15 +1,11 @@
 // The nodelet laparoscope_servo/Tracker: wires topics, services and parameters to TrackerSession.
 #pragma once
 
-#include <diagnostic_updater/diagnostic_updater.h>
-#include <image_transport/image_transport.h>
 #include <laparoscope_servo/CheckRoi.h>
 #include <laparoscope_servo/FreezeImage.h>
 #include <laparoscope_servo/ListViews.h>
 #include <laparoscope_servo/SelectRoi.h>
 #include <laparoscope_servo/StoredView.h>
-#include <nodelet/nodelet.h>
-#include <ros/callback_queue.h>
 #include <ros/ros.h>
 #include <sensor_msgs/CameraInfo.h>
 #include <sensor_msgs/Image.h>
@@ -18,10 +14,12 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "nodelets/image_nodelet.h"
+#include "nodelets/service_thread.h"
 #include "ros/common/owned_transforms.h"
 #include "ros/common/reconfigure_server.h"
-#include "ros/tracker/feed_owner.h"
 #include "ros/tracker/preview.h"
 #include "ros/tracker/region_desk.h"
 #include "ros/tracker/tracker_diagnostics.h"
@@ -32,25 +30,26 @@
 
 namespace laparoscope_servo::nodelets {
 
-class Tracker : public nodelet::Nodelet {
+class Tracker : public ImageNodelet {
  public:
   ~Tracker() override;
 
  private:
-  void onInit() override;
-  void start(const TrackerParameters& parameters);
-  void standAside(const std::string& why);
+  std::vector<std::string> configure() override;
+  void start() override;
+  void notStarted(const std::string& why) override;
   void followRobot(const RobotMotionConfig& config);
 
   // The functions below run in the nodelet's own single-threaded queue.
-  void subscribeImages();
-  void imageCallback(const sensor_msgs::ImageConstPtr& message);
-  // For the raw transport, with which the sender of an image is known.
-  void rawImageCallback(const ros::MessageEvent<const sensor_msgs::Image>& event);
-  void cameraInfoCallback(const ros::MessageEvent<const sensor_msgs::CameraInfo>& event);
-  void watchClock();
+  void process(const sensor_msgs::ImageConstPtr& message) override;
+  void takeCameraInfo(const sensor_msgs::CameraInfo& info) override { session_->setCameraInfo(info); }
+  void clockJumpedBack() override { session_->clockJumpedBack(); }
+  void refused(const std::string& error, Refusal cause) override;
+  void diagnose(double now, const FeedPublishers& publishers,
+                diagnostic_updater::DiagnosticStatusWrapper& status) override;
+  void publish(const Processed& processed);
+  void publishState(const std::optional<TrackerState>& state);
   bool reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
-  void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
   // In a separate queue and thread, because it waits for an image.
   bool selectRoi(SelectRoi::Request& request, SelectRoi::Response& response);
   bool checkRoi(CheckRoi::Request& request, CheckRoi::Response& response);
@@ -62,35 +61,19 @@ class Tracker : public nodelet::Nodelet {
   bool listViews(ListViews::Request& request, ListViews::Response& response);
   TrackerRequest::Answer ask(const TrackerRequest::Question& question);
 
-  void process(const sensor_msgs::ImageConstPtr& message);
-  void publish(const Processed& processed);
-  void publishState(const std::optional<TrackerState>& state);
-  void refuse(const std::string& error, Refusal cause = Refusal::kData);
-
   std::unique_ptr<OwnedTransforms> transforms_;  // only with robot_motion
   std::unique_ptr<TrackerSession> session_;
-  TrackerParameters changed_;  // buffer for live_.take()
+  TrackerParameters parameters_;  // as read, then buffer for live_.take()
   std::unique_ptr<TrackerDiagnostics> statistics_;
-  std::unique_ptr<diagnostic_updater::Updater> diagnostics_;
-  std::string why_aside_;
   TrackerStateReport state_report_;
   Preview preview_;
 
   TrackerRequest request_;
   std::unique_ptr<RegionDesk> desk_;  // used by the thread of the requests
-  ros::CallbackQueue request_queue_;
-  std::unique_ptr<ros::AsyncSpinner> request_spinner_;
+  std::unique_ptr<ServiceThread> request_thread_;
   std::unique_ptr<ViewLibrary> views_;  // used by the thread of the views
-  ros::CallbackQueue view_queue_;
-  std::unique_ptr<ros::AsyncSpinner> view_spinner_;
+  std::unique_ptr<ServiceThread> view_thread_;
 
-  FeedOwner image_owner_;
-  FeedOwner camera_info_owner_;
-  ros::Time last_now_;
-  std::unique_ptr<image_transport::ImageTransport> transport_;  // for other transports than raw
-  image_transport::Subscriber transport_subscriber_;
-  ros::Subscriber image_subscriber_;  // for the raw transport
-  ros::Subscriber camera_info_subscriber_;
   ros::Publisher homography_publisher_;
   ros::Publisher task_error_publisher_;
   ros::Publisher areas_publisher_;
@@ -99,15 +82,7 @@ class Tracker : public nodelet::Nodelet {
   ros::Publisher overlay_publisher_;
   ros::Publisher preview_publisher_;
   ros::Publisher state_publisher_;
-  ros::ServiceServer select_server_;
-  ros::ServiceServer check_server_;
-  ros::ServiceServer freeze_server_;
-  ros::ServiceServer select_frozen_server_;
-  ros::ServiceServer list_server_;
-  ros::ServiceServer store_server_;
-  ros::ServiceServer recall_server_;
   ros::ServiceServer reset_server_;
-  ros::WallTimer diagnostics_timer_;
   ros::WallTimer state_timer_;
   std::unique_ptr<LiveParameters<TrackerParameters>> live_;
 };

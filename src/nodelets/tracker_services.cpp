@@ -48,7 +48,7 @@ bool Tracker::checkRoi(CheckRoi::Request& request, CheckRoi::Response& response)
   const Snapshot* snapshot = nullptr;
   try {
     if (request.stamp.isZero()) {
-      const TrackerRequest::Answer answer = ask(TrackerRequest::WantSnapshot());
+      const TrackerRequest::Answer answer = ask(WantSnapshot());
       live = answer.snapshot;
       if (!live) throw std::runtime_error(answer.message);
     }
@@ -66,7 +66,7 @@ bool Tracker::checkRoi(CheckRoi::Request& request, CheckRoi::Response& response)
 }
 
 bool Tracker::freezeImage(FreezeImage::Request&, FreezeImage::Response& response) {
-  const TrackerRequest::Answer answer = ask(TrackerRequest::WantSnapshot());
+  const TrackerRequest::Answer answer = ask(WantSnapshot());
   response.success = static_cast<std::uint8_t>(answer.snapshot != nullptr);
   response.message = answer.message;
   if (!answer.snapshot) return true;
@@ -82,7 +82,7 @@ bool Tracker::freezeImage(FreezeImage::Request&, FreezeImage::Response& response
 bool Tracker::selectFrozenRoi(CheckRoi::Request& request, CheckRoi::Response& response) {
   response.success = static_cast<std::uint8_t>(false);
   try {
-    TrackerRequest::Answer answer = ask(TrackerRequest::WantSnapshot());
+    TrackerRequest::Answer answer = ask(WantSnapshot());
     if (!answer.snapshot) throw std::runtime_error(answer.message);
     answer = ask(desk_->route(request.stamp, rectangleOf(request.roi), *answer.snapshot));
     response.success = static_cast<std::uint8_t>(answer.success);
@@ -100,7 +100,7 @@ bool Tracker::listViews(ListViews::Request& request, ListViews::Response& respon
 }
 
 bool Tracker::storeView(StoredView::Request& request, StoredView::Response& response) {
-  const TrackerRequest::Answer answer = ask(TrackerRequest::WantSnapshot());
+  const TrackerRequest::Answer answer = ask(WantSnapshot());
   response.success = static_cast<std::uint8_t>(answer.success);
   response.message = answer.message;
   if (!answer.snapshot) return true;
@@ -116,7 +116,7 @@ bool Tracker::storeView(StoredView::Request& request, StoredView::Response& resp
 // Tracking goes on meanwhile: searching the image for all views takes longer than the period of the images.
 bool Tracker::recallView(StoredView::Request& request, StoredView::Response& response) {
   response.success = static_cast<std::uint8_t>(false);
-  TrackerRequest::Answer answer = ask(TrackerRequest::WantSnapshot());
+  TrackerRequest::Answer answer = ask(WantSnapshot());
   if (answer.snapshot) {
     try {
       const RecallRoute route = views_->route(request.name, *answer.snapshot);

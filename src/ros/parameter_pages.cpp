@@ -7,6 +7,7 @@
 #include "ros/aesop/aesop_parameters.h"
 #include "ros/camera/camera_config.h"
 #include "ros/controller/controller_parameters.h"
+#include "ros/features/feature_parameters.h"
 #include "ros/joystick/joystick_node.h"
 #include "ros/playback/video_player.h"
 #include "ros/recording/recorder_config.h"
@@ -80,6 +81,11 @@ std::vector<ParameterPage> parameterPages() {
           "tracker.yaml",
           "Parameters of the tracker: of the nodelet (private), and of track_bag (--params lays a file over this one).",
           rowsOf<TrackerParameters>()),
+      file("dots.yaml", "Parameters of the nodelet `dots`, and of track_bag --tracker dots.", rowsOf<DotsParameters>()),
+      file("edges.yaml", "Parameters of the nodelet `edges`, and of track_bag --tracker edges.",
+           rowsOf<EdgesParameters>()),
+      file("instrument.yaml", "Parameters of the nodelet `instrument`, and of track_bag --tracker instrument.",
+           rowsOf<InstrumentParameters>()),
       file("controller.yaml", "Parameters of the node `controller`, and of the tool simulate_servo.",
            rowsOf<ControllerNodeConfig>()),
       file("aesop.yaml", "Parameters of the node `aesop`.", rowsOf<AesopParameters>()),
@@ -95,6 +101,9 @@ std::vector<ParameterPage> parameterPages() {
            "What the tool simulate_servo simulates. The controller's parameters are those of controller.yaml.",
            rowsOfSimulation()),
       page("tracker.md", "~", rowsOf<TrackerParameters>()),
+      page("dots.md", "~", rowsOf<DotsParameters>()),
+      page("edges.md", "~", rowsOf<EdgesParameters>()),
+      page("instrument.md", "~", rowsOf<InstrumentParameters>()),
       page("controller.md", "~", rowsOf<ControllerNodeConfig>()),
       page("aesop.md", "~", rowsOf<AesopParameters>()),
       page("camera.md", "~", rowsOf<CameraConfig>()),

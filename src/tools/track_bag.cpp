@@ -11,6 +11,7 @@
 #include <cstring>
 #include <exception>
 #include <filesystem>
+#include <functional>
 #include <iostream>
 #include <string>
 #include <vector>
@@ -18,6 +19,9 @@
 #include "laparoscope_servo/robust/median.h"
 #include "laparoscope_servo/tracking/region_tracker.h"
 #include "ros/common/run_tool.h"
+#include "ros/features/feature_trackers.h"
+#include "ros/features/selection_text.h"
+#include "ros/playback/feature_offline.h"
 #include "ros/playback/offline_options.h"
 #include "ros/playback/tracker_offline.h"
 
@@ -28,18 +32,47 @@ using namespace laparoscope_servo;
 
 constexpr int kSignalled = 128;  // plus the signal's number, as in shells
 
-options::options_description describeOptions(OfflineOptions& offline, std::string& roi, bool& select,
-                                             std::string& parameters) {
+struct Command {
+  OfflineOptions offline;
+  std::string tracker = "region";
+  std::string roi;
+  bool draw = false;      // --select of the region tracker
+  std::string selection;  // --select FILE of the others
+  std::string parameters;
+};
+
+// What --select means depends on the tracker: a region is drawn, features stand in a file.
+bool namesFeatures(int argc, char** argv) {
+  for (int k = 1; k < argc; ++k) {
+    const std::string argument = argv[k];
+    if (argument == "--tracker") return k + 1 < argc && argv[k + 1] != std::string("region");
+    if (argument.rfind("--tracker=", 0) == 0) return argument != "--tracker=region";
+  }
+  return false;
+}
+
+options::options_description describeOptions(Command& command, bool features) {
+  std::string names = "region";
+  for (const std::string& name : featureTrackers()) names += ", " + name;
   options::options_description description("Options");
   auto add = description.add_options();
   add("help", "print this and end");
-  add("roi", options::value(&roi), "x,y,width,height: region in the first image, px");
-  add("select", options::bool_switch(&select), "the region is drawn in a window that shows the first image");
-  describeInput(description, offline, parameters);
-  add("csv", options::value(&offline.csv), "table to write, a line per image");
-  add("output", options::value(&offline.bag), "bag to write: homography, task_error, areas, roi under /tracker");
-  add("overlay", options::value(&offline.overlay),
-      "video to write (.mp4, .avi): the images with ROI and occluded areas");
+  add("tracker", options::value(&command.tracker),
+      (names + ": what is tracked, a region unless said otherwise").c_str());
+  if (features) {
+    add("select", options::value(&command.selection), "file with the features in the first image, see doc/features.md");
+  } else {
+    add("roi", options::value(&command.roi), "x,y,width,height: region in the first image, px");
+    add("select", options::bool_switch(&command.draw),
+        "the region is drawn in a window that shows the first image; with another tracker --select FILE.yaml: the file "
+        "with the features");
+  }
+  describeInput(description, command.offline, command.parameters);
+  add("csv", options::value(&command.offline.csv), "table to write, a line per image, or per image and feature");
+  add("output", options::value(&command.offline.bag),
+      "bag to write: homography, task_error, areas, roi under /tracker, or features under the tracker's name");
+  add("overlay", options::value(&command.offline.overlay),
+      "video to write (.mp4, .avi): the images with ROI and occluded areas, or with the features");
   return description;
 }
 
@@ -146,16 +179,16 @@ int exitStatus(const OfflineSummary& summary) {
   return summary.refused == 0 && summary.source_error.empty() ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
-int run(OfflineOptions& offline) {
+// `track`: trackOffline or trackFeaturesOffline, with its options.
+int run(const std::function<OfflineSummary(const OfflineProgress&, const OfflineReport&)>& track) {
   ProgressLine line;
   catchSignals();
-  offline.stopped = [] { return stop_signal != 0; };
-  const OfflineSummary summary = trackOffline(
-      offline, [&line](const OfflineSummary& so_far, std::size_t expected) { line(so_far, expected); },
-      [&line](std::size_t frame, const std::string& error) {
-        line.end();
-        std::cerr << "image " << frame << " is left out: " << error << '\n';
-      });
+  const OfflineSummary summary =
+      track([&line](const OfflineSummary& so_far, std::size_t expected) { line(so_far, expected); },
+            [&line](std::size_t frame, const std::string& error) {
+              line.end();
+              std::cerr << "image " << frame << " is left out: " << error << '\n';
+            });
   line.end();
   for (const std::string& note : summary.notes) std::cerr << "note: " << note << '\n';
   if (summary.images > 0) printSummary(summary);
@@ -163,29 +196,45 @@ int run(OfflineOptions& offline) {
   return exitStatus(summary);
 }
 
+int runRegion(Command& command) {
+  OfflineOptions& offline = command.offline;
+  offline.parameters = readOfflineParameters(command.parameters);
+  if (command.draw && !command.roi.empty())
+    throw std::invalid_argument("both --select and --roi are given, expected one of them");
+  if (command.draw) command.roi = drawnRegion(offline, command.parameters);
+  if (!command.roi.empty()) offline.parameters.roi = parseRoi(command.roi);
+  if (!offline.parameters.roi)
+    throw std::invalid_argument("no ROI is given, expected --roi x,y,width,height in px, or --select");
+  return run([&](const OfflineProgress& progress, const OfflineReport& report) {
+    return trackOffline(offline, progress, report);
+  });
+}
+
+int runFeatures(const Command& command) {
+  FeatureOfflineOptions features{command.offline, command.tracker, command.parameters, {}};
+  if (!command.selection.empty()) features.selection = readSelection(command.selection);
+  return run([&](const OfflineProgress& progress, const OfflineReport& report) {
+    return trackFeaturesOffline(features, progress, report);
+  });
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  OfflineOptions offline;
-  std::string roi;
-  bool select = false;
-  std::string parameters;
-  const options::options_description description = describeOptions(offline, roi, select, parameters);
+  Command command;
+  const bool features = namesFeatures(argc, argv);
+  const options::options_description description = describeOptions(command, features);
   const std::string usage =
       "track_bag INPUT... --roi x,y,w,h|--select [options]: tracks a region through recorded images.\n"
+      "track_bag INPUT... --tracker NAME --select FILE.yaml [options]: tracks features.\n"
       "Ends with status 0 when every image was processed, whatever the tracker found; with 1 when images\n"
       "are lost or damaged (each is named) or an output cannot be written. Outputs appear under their\n"
       "names when they are whole. A signal ends the work as the input's end would, with status 128 and its\n"
       "number.\n";
   return runTool(argc, argv, "track_bag", usage, description, "input", [&] {
-    if (offline.inputs.empty())
+    if (command.offline.inputs.empty())
       throw std::invalid_argument("no input is given, expected a bag, a video or a folder of images");
-    offline.parameters = readOfflineParameters(parameters);
-    if (select && !roi.empty()) throw std::invalid_argument("both --select and --roi are given, expected one of them");
-    if (select) roi = drawnRegion(offline, parameters);
-    if (!roi.empty()) offline.parameters.roi = parseRoi(roi);
-    if (!offline.parameters.roi)
-      throw std::invalid_argument("no ROI is given, expected --roi x,y,width,height in px, or --select");
-    return run(offline);
+    command.offline.stopped = [] { return stop_signal != 0; };
+    return features ? runFeatures(command) : runRegion(command);
   });
 }

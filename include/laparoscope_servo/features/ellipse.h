@@ -39,6 +39,8 @@ class Ellipse : public Curve {
   EllipseCoefficients coefficients() const;
   // Of K1 to K5, from that of the curve's parameters.
   Eigen::Matrix<double, 5, 5> covariance(const Eigen::MatrixXd& of_parameters) const;
+  double arcBegin() const { return arc_begin_; }    // rad, see setArc
+  double arcExtent() const { return arc_extent_; }  // rad
   Eigen::Vector2d at(double phi) const { return centre_ + shape_ * Eigen::Vector2d(std::cos(phi), std::sin(phi)); }
 
   // Parameters: of the centre x, y; of the symmetric matrix that takes the unit circle to the ellipse xx, yy, xy. px.
@@ -56,6 +58,7 @@ class Ellipse : public Curve {
   static constexpr int kSlots = 256;
 
   Site site(double phi) const;
+  void displace(const Eigen::Matrix<double, 5, 1>& step);
 
   Eigen::Vector2d centre_ = Eigen::Vector2d::Zero();
   Eigen::Matrix2d shape_ = Eigen::Matrix2d::Identity();  // symmetric, positive

@@ -24,7 +24,7 @@ void describeInput(options::options_description& description, OfflineOptions& of
   add("rate", options::value(&offline.source.folder_rate), "images per second of a folder (default 25)");
   add("camera-info", options::value(&offline.camera_info),
       "calibration file (YAML, INI), instead of the bag's camera_info; needed for rectify: true where there is none");
-  add("params", options::value(&parameters), "YAML file laid over the package's config/tracker.yaml");
+  add("params", options::value(&parameters), "YAML file laid over the package's config/tracker.yaml, or config/dots.yaml, ..., as the tracker is");
 }
 
 std::vector<std::string> inputArguments(const OfflineOptions& offline, const std::string& parameters) {
@@ -48,14 +48,19 @@ std::vector<std::string> inputArguments(const OfflineOptions& offline, const std
   return arguments;
 }
 
-TrackerParameters readOfflineParameters(const std::string& file) {
+XmlRpc::XmlRpcValue readOfflineTree(const std::string& name, const std::string& file) {
   const std::string share = ros::package::getPath("laparoscope_servo");
   XmlRpc::XmlRpcValue tree;
-  const std::string defaults = share + "/config/tracker.yaml";
+  const std::string defaults = share + "/config/" + name;
   if (!share.empty() && std::filesystem::exists(defaults)) tree = parametersFromYaml(defaults);
   if (!file.empty()) tree = mergeParameters(tree, parametersFromYaml(file));
+  return tree;
+}
+
+TrackerParameters readOfflineParameters(const std::string& file) {
   std::vector<std::string> errors;
-  const auto parameters = readTrackerParameters(tree, file.empty() ? defaults : file, errors);
+  const auto parameters =
+      readTrackerParameters(readOfflineTree("tracker.yaml", file), file.empty() ? "config/tracker.yaml" : file, errors);
   if (!errors.empty()) throw std::runtime_error(errorReport(errors));
   return parameters;
 }

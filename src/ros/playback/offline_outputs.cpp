@@ -9,7 +9,6 @@
 
 #include "ros/playback/tracker_csv.h"
 #include "ros/playback/video_writer.h"
-#include "ros/tracker/overlay.h"
 #include "ros/tracker/result_messages.h"
 
 namespace laparoscope_servo {
@@ -72,6 +71,15 @@ void BagOutput::write(const ros::Time& record_time, const Processed& processed) 
   }
 }
 
+void BagOutput::write(const ros::Time& record_time, const std::string& topic, const TrackedFeatures& features) {
+  if (!bag_) return;
+  try {
+    bag_->write(topic, std::max(record_time, ros::TIME_MIN), features);
+  } catch (const rosbag::BagException& error) {
+    failBag(*file_, error);
+  }
+}
+
 void BagOutput::keep() {
   if (!bag_) return;
   try {
@@ -92,9 +100,8 @@ OverlayOutput::OverlayOutput(const std::string& name, double rate) : rate_(rate)
 
 OverlayOutput::~OverlayOutput() = default;
 
-void OverlayOutput::write(const Processed& processed) {
+void OverlayOutput::write(cv::Mat picture) {
   if (!file_) return;
-  cv::Mat picture = drawOverlay(processed.image, processed.result, processed.lens.get());
   if (!writer_) {
     size_ = picture.size();
     writer_ = std::make_unique<VideoWriter>(file_->name(), file_->path(), size_, rate_);

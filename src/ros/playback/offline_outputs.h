@@ -3,10 +3,12 @@
 // the file's name.
 #pragma once
 
+#include <laparoscope_servo/TrackedFeatures.h>
 #include <ros/time.h>
 
 #include <cstddef>
 #include <memory>
+#include <opencv2/core.hpp>
 #include <optional>
 #include <string>
 
@@ -36,6 +38,7 @@ class BagOutput {
   explicit BagOutput(const std::string& name);
   ~BagOutput();
   void write(const ros::Time& record_time, const Processed& processed);
+  void write(const ros::Time& record_time, const std::string& topic, const TrackedFeatures& features);
   void keep();
 
  private:
@@ -47,7 +50,9 @@ class OverlayOutput {
  public:
   OverlayOutput(const std::string& name, double rate);
   ~OverlayOutput();
-  void write(const Processed& processed);
+  bool isWanted() const { return file_.has_value(); }
+  // 8UC3.
+  void write(cv::Mat picture);
   void keep();
 
  private:

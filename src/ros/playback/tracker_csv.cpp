@@ -1,26 +1,10 @@
 #include "ros/playback/tracker_csv.h"
 
-#include <cstdio>
 #include <string>
 
+#include "ros/playback/csv_text.h"
+
 namespace laparoscope_servo {
-
-namespace {
-
-std::string exact(double value) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.17g", value);
-  return text;
-}
-
-// Quoted by RFC 4180, so that a comma or a quote in the text does not end the field.
-std::string quoted(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return result + '"';
-}
-
-}  // namespace
 
 void writeCsvHeader(std::ostream& stream) {
   stream << "frame,stamp,state,g00,g01,g02,g10,g11,g12,g20,g21,g22,visible_fraction,zncc,iterations,processing_time"

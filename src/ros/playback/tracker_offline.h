@@ -1,4 +1,4 @@
-// Tracks through a file of images as fast as possible, and writes the results.
+// Tracks a region through a file of images as fast as possible, and writes the results.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@ namespace laparoscope_servo {
 struct OfflineOptions {
   std::vector<std::string> inputs;  // see image_source.h
   SourceOptions source;
-  TrackerParameters parameters;  // must have a ROI
+  TrackerParameters parameters;  // of the region tracker; must have a ROI
   std::string camera_info;       // file, see readCameraInfo; empty: camera_info of the bag
   // Called before each image; true ends the run as at the end of the input; empty: never.
   std::function<bool()> stopped;

@@ -76,28 +76,40 @@ void drawOccludedAreas(cv::Mat& canvas, const tracking::TrackResult& result, con
   blended.copyTo(canvas, mask);
 }
 
-void drawText(cv::Mat& canvas, const tracking::TrackResult& result) {
+void drawState(cv::Mat& canvas, const tracking::TrackResult& result) {
   std::string text = tracking::stateName(result.state);
   if (result.state != State::kIdle) {
     text += "  visible " + std::to_string(std::lround(100.0 * result.visible_fraction)) + " %";
   }
   if (!result.reason.empty()) text += "  " + result.reason;
-  const double scale = std::max(0.35, canvas.rows / 900.0);
-  const int thickness = std::max(1, static_cast<int>(std::lround(scale * 1.5)));
-  const cv::Point origin(static_cast<int>(12 * scale), static_cast<int>(32 * scale));
-  cv::putText(canvas, text, origin, cv::FONT_HERSHEY_SIMPLEX, scale, kBlack, 3 * thickness, cv::LINE_AA);
-  cv::putText(canvas, text, origin, cv::FONT_HERSHEY_SIMPLEX, scale, kWhite, thickness, cv::LINE_AA);
+  drawCaption(canvas, text);
 }
 
 }  // namespace
 
-cv::Mat drawOverlay(const cv::Mat& image, const tracking::TrackResult& result, const image::Lens* lens) {
+cv::Mat canvasOf(const cv::Mat& image) {
   cv::Mat canvas;
   if (image.channels() == 1) {
     cv::cvtColor(image, canvas, cv::COLOR_GRAY2BGR);
   } else {
     canvas = image.clone();
   }
+  return canvas;
+}
+
+void drawText(cv::Mat& canvas, const std::string& text, const cv::Point& left_bottom, double size) {
+  const int thickness = std::max(1, static_cast<int>(std::lround(size * 1.5)));
+  cv::putText(canvas, text, left_bottom, cv::FONT_HERSHEY_SIMPLEX, size, kBlack, 3 * thickness, cv::LINE_AA);
+  cv::putText(canvas, text, left_bottom, cv::FONT_HERSHEY_SIMPLEX, size, kWhite, thickness, cv::LINE_AA);
+}
+
+void drawCaption(cv::Mat& canvas, const std::string& text) {
+  const double size = std::max(0.35, canvas.rows / 900.0);
+  drawText(canvas, text, cv::Point(static_cast<int>(12 * size), static_cast<int>(32 * size)), size);
+}
+
+cv::Mat drawOverlay(const cv::Mat& image, const tracking::TrackResult& result, const image::Lens* lens) {
+  cv::Mat canvas = canvasOf(image);
   if (result.state != State::kIdle) {
     const int thickness = std::max(2, canvas.cols / 640);
     const bool shown = result.state != State::kLost;
@@ -108,7 +120,7 @@ cv::Mat drawOverlay(const cv::Mat& image, const tracking::TrackResult& result, c
       drawQuadrilateral(canvas, geometry::apply(result.g, result.roi.corners()), lens, kRed, line);
     }
   }
-  drawText(canvas, result);
+  drawState(canvas, result);
   return canvas;
 }
 

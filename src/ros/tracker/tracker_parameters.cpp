@@ -27,13 +27,6 @@ bool isNodeOrNothing(const std::string& name) {
   return name.empty() || (name[0] != '~' && ros::names::validate(name, why));
 }
 
-void describe(Table& table, ImageFormat& format) {
-  table.number("bit_depth", format.bit_depth, {0, 16}, "bits",
-               "8 to 16, the lowest ones, that images of 16 bit use; 0: found out from the largest value seen");
-  table.choice("yuv_range", format.yuv_range, {"limited", "full"},
-               "of YUV images: Y from 16 to 235, as of video, or from 0 to 255, as of many webcams");
-}
-
 void describe(Table& table, RobotMotionConfig& config) {
   table.flag("enabled", config.enabled, "the motion of the robot is used; not in track_bag");
   table.text("fixed_frame", config.fixed_frame, "frame in which the tissue is at rest")
@@ -72,6 +65,18 @@ void groupToText(XmlRpc::XmlRpcValue& roi, const std::string& name, std::vector<
 
 }  // namespace
 
+void describe(Table& table, ImageFormat& format) {
+  table.number("bit_depth", format.bit_depth, {0, 16}, "bits",
+               "8 to 16, the lowest ones, that images of 16 bit use; 0: found out from the largest value seen");
+  table.choice("yuv_range", format.yuv_range, {"limited", "full"},
+               "of YUV images: Y from 16 to 235, as of video, or from 0 to 255, as of many webcams");
+}
+
+std::vector<std::string> validate(const ImageFormat& format) {
+  if (format.bit_depth <= 0 || format.bit_depth >= 8) return {};
+  return {"bit_depth = " + std::to_string(format.bit_depth) + ", expected 0, or 8 to 16"};
+}
+
 void describe(Table& table, TrackerParameters& parameters) {
   table
       .other(
@@ -104,9 +109,7 @@ std::vector<std::string> validate(const TrackerParameters& parameters) {
   std::vector<std::string> errors = parameters::errorsOf(parameters);
   if (parameters.rectify && parameters.rectified_images)
     errors.emplace_back("rectify = true beside rectified_images = true, expected one of them at most");
-  const int bit_depth = parameters.image.bit_depth;
-  if (bit_depth > 0 && bit_depth < 8)
-    errors.push_back("image/bit_depth = " + std::to_string(bit_depth) + ", expected 0, or 8 to 16");
+  for (const std::string& error : validate(parameters.image)) errors.push_back("image/" + error);
   return errors;
 }
 

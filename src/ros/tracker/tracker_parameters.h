@@ -34,6 +34,10 @@ struct TrackerParameters {
   }
 };
 
+// Of how pixels are stored: the rows, and every error beyond their ranges.
+void describe(parameters::Table& table, ImageFormat& format);
+std::vector<std::string> validate(const ImageFormat& format);
+
 // Adds the rows of all parameters of the tracker.
 void describe(parameters::Table& table, TrackerParameters& parameters);
 

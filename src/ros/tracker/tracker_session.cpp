@@ -6,7 +6,6 @@
 #include <stdexcept>
 
 #include "laparoscope_servo/validation/error_report.h"
-#include "ros/tracker/image_conversion.h"
 #include "ros/tracker/region_proposal.h"
 
 namespace laparoscope_servo {
@@ -28,7 +27,7 @@ TrackerSession::TrackerSession(const TrackerParameters& parameters)
       tracker_(parameters.tracking),
       recall_(parameters.views),
       intrinsics_(parameters.imageKind()),
-      gate_(parameters.input),
+      intake_(parameters.image, parameters.input),
       feed_(parameters.input) {
   validation::throwErrors("input", tracking::validate(parameters.input));
   start_roi_pending_ = parameters.roi.has_value();
@@ -39,7 +38,7 @@ Processed TrackerSession::process(const sensor_msgs::Image& message,
   const Stopwatch watch;
   Processed processed;
   processed.header = message.header;
-  processed.image = trackerImage(message, parameters_.image, parameters_.image.bit_depth == 0 ? &depth_ : nullptr);
+  processed.image = intake_.decode(message);
   complete(processed, request);
   processed.processing_time = watch.seconds();
   return processed;
@@ -50,7 +49,7 @@ Processed TrackerSession::process(const cv::Mat& decoded, const std_msgs::Header
   const Stopwatch watch;
   Processed processed;
   processed.header = header;
-  processed.image = trackerImage(decoded, parameters_.image, parameters_.image.bit_depth == 0 ? &depth_ : nullptr);
+  processed.image = intake_.decode(decoded);
   complete(processed, request);
   processed.processing_time = watch.seconds();
   return processed;
@@ -159,7 +158,7 @@ tracking::TrackResult TrackerSession::track(Processed& processed, const std::opt
     if (request || from_parameters) processed.selection_error = lens_error_;
   } else if (request || from_parameters) {
     try {
-      const auto result = tracker_.select(processed.image, time_, request ? *request : *parameters_.roi);
+      const auto result = tracker_.select(processed.image, intake_.time(), request ? *request : *parameters_.roi);
       start_roi_pending_ = start_roi_refused_ = false;
       recall_.end("a region was selected");
       ++epoch_;
@@ -175,8 +174,8 @@ tracking::TrackResult TrackerSession::track(Processed& processed, const std::opt
     }
   }
   const bool had_roi = tracker_.hasRoi();
-  if (takeDueView(time_)) new_reference = true;
-  tracking::TrackResult result = tracker_.track(processed.image, time_, motionBefore(processed));
+  if (takeDueView(intake_.time())) new_reference = true;
+  tracking::TrackResult result = tracker_.track(processed.image, intake_.time(), motionBefore(processed));
   if (!lens_error_.empty() && !had_roi) result.reason = lens_error_;
   if (!processed.selection_error.empty() && result.state == tracking::State::kIdle) {
     result.reason = "the ROI could not be selected: " + processed.selection_error;

@@ -21,7 +21,7 @@
 #include "laparoscope_servo/tracking/frozen_feed.h"
 #include "laparoscope_servo/tracking/region_tracker.h"
 #include "ros/tracker/camera_info.h"
-#include "ros/tracker/image_gate.h"
+#include "ros/tracker/image_intake.h"
 #include "ros/tracker/tracker_parameters.h"
 #include "ros/tracker/view_recall.h"
 
@@ -88,7 +88,7 @@ class TrackerSession {
   void retune(const TrackerParameters& parameters);
 
   // Call if ROS time has jumped back: a loop is then accepted with its first image.
-  void clockJumpedBack() { gate_.clockJumpedBack(); }
+  void clockJumpedBack() { intake_.clockJumpedBack(); }
 
   // Forgets the ROI, also that of the parameters, and ends a recall.
   void reset();
@@ -133,14 +133,11 @@ class TrackerSession {
   std::optional<double> trial_ends_;         // s, tracker time, end of a new region's trial
   bool lost_covered_ = false;                // the last loss was one of visibility
   std::string trial_failed_;                 // added to the reason while a region that failed its trial is not TRACKING
-  BitDepth depth_;
-  ImageGate gate_;
+  ImageIntake intake_;
   cv::Rect box_;  // px, in the raw image: box around the region where it was last tracked
   tracking::CornerPath path_;
   image::RepeatWatch repeats_;
   tracking::FrozenFeed feed_;
-  double time_offset_ = 0.0;  // s, offset from stamps to the tracker's time, which never goes back
-  double time_ = 0.0;         // s, the tracker's
   std::optional<Reference> reference_;
   tracking::TrackResult before_;  // the tracker's result for the last image
   double robot_step_ = 0.0;       // px, see FrozenFeed

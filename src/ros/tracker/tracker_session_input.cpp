@@ -35,16 +35,13 @@ double angleOf(const tracking::TrackResult& result) {
 
 // The tracker's time always goes on; after a jump of the stamps, this function starts a new search for the region.
 void TrackerSession::passGate(Processed& processed) {
-  const ros::Time& stamp = processed.header.stamp;
   const cv::Size size = processed.image.size();
-  const ImageGate::Passed passed = gate_.judge(stamp, size, processed.image.channels());
+  const ImageGate::Passed passed = intake_.pass(processed.header.stamp, processed.image);
   processed.period = passed.period;
   if (passed.step_back > 0.0) {
-    time_offset_ = time_ + passed.period - stamp.toSec();
     believed_stamp_.reset();
     repeats_.clear();  // a film that begins anew shows the same pictures
   }
-  time_ = stamp.toSec() + time_offset_;
   if (passed.loop) recall_.end("time jumped back");
   if (passed.loop && tracker_.hasRoi()) lookForReference("time jumped back");
   const bool size_returned = passed.other_size && !tracker_.hasRoi() && reference_ && reference_->image.size() == size;
@@ -55,7 +52,7 @@ void TrackerSession::passGate(Processed& processed) {
 void TrackerSession::lookForReference(const std::string& why) {
   if (!reference_ || reference_->stamp != reference_stamp_) return;
   try {
-    tracker_.recall(reference_->image, reference_->stamp.toSec(), reference_->roi, time_);
+    tracker_.recall(reference_->image, reference_->stamp.toSec(), reference_->roi, intake_.time());
     believed_stamp_.reset();
   } catch (const std::invalid_argument& error) {
     tracker_.reset();
@@ -69,13 +66,13 @@ void TrackerSession::lookForReference(const std::string& why) {
 std::string TrackerSession::turnedTooFast(const tracking::TrackResult& result) const {
   constexpr double kMostTurn = M_PI / 4.0;  // rad
   constexpr double kHeldBack = 3.0;         // s
-  if (!believed_stamp_ || result.selected_now || time_ - believed_time_ > kHeldBack) return "";
+  if (!believed_stamp_ || result.selected_now || intake_.time() - believed_time_ > kHeldBack) return "";
   const double turn = std::remainder(angleOf(result) - believed_angle_, 2.0 * M_PI);
   if (std::abs(turn) <= kMostTurn) return "";
   std::ostringstream text;
   text.precision(2);
-  text << "the picture turned by " << std::lround(turn * 180.0 / M_PI) << " degrees within " << time_ - believed_time_
-       << " s";
+  text << "the picture turned by " << std::lround(turn * 180.0 / M_PI) << " degrees within "
+       << intake_.time() - believed_time_ << " s";
   return text.str();
 }
 
@@ -90,12 +87,12 @@ geometry::Quadrilateral TrackerSession::onSensor(geometry::Quadrilateral corners
 // reason proposes another one. The search goes on all the same: of 40 such regions on eight films 7 came back.
 void TrackerSession::judgeSelection(const tracking::TrackResult& found, tracking::TrackResult& result) {
   constexpr double kTrial = 1.0;  // s
-  if (found.selected_now) trial_ends_ = time_ + kTrial;
+  if (found.selected_now) trial_ends_ = intake_.time() + kTrial;
   if (found.selected_now || found.state == tracking::State::kTracking) trial_failed_.clear();
   if (!tracker_.hasRoi()) trial_ends_.reset();
   if (before_.state == tracking::State::kTracking && found.state != tracking::State::kTracking)
     lost_covered_ = !(found.visible_fraction >= parameters_.tracking.quality.min_visible_fraction);
-  if (trial_ends_ && time_ >= *trial_ends_) {
+  if (trial_ends_ && intake_.time() >= *trial_ends_) {
     trial_ends_.reset();
     if (found.state != tracking::State::kTracking && !lost_covered_ && reference_)
       trial_failed_ = "; it was not held in its first second" +
@@ -122,13 +119,13 @@ void TrackerSession::watchPicture(Processed& processed) {
   processed.repeats = repeats_.see(processed.image, box_);
   if (corners) motion.of_part = path_.farthest(*corners, processed.repeats.part);
   path_.add(corners);
-  feed_.see(processed.repeats, time_, motion);
+  feed_.see(processed.repeats, intake_.time(), motion);
   if (result.state == State::kTracking) {
     result.reason = turnedTooFast(result);
     if (!result.reason.empty()) result.state = State::kSearching;
   }
   if (feed_.reason().empty() && result.state == State::kTracking) {
-    believed_time_ = time_;
+    believed_time_ = intake_.time();
     believed_angle_ = angleOf(result);
   }
   if (feed_.reason().empty() || result.state == State::kIdle) return;

@@ -12,6 +12,7 @@
 #include <sstream>
 #include <string>
 
+#include "support/feature_scene.h"
 #include "support/synthetic_sequence.h"
 #include "support/temporary_folder.h"
 
@@ -139,6 +140,32 @@ TEST_F(TrackBag, EndsWithOneWhenAnImageCouldNotBeProcessed) {
   EXPECT_TRUE(says("1 of 4 images")) << stderr_;
   const std::string table = content(out_.file("out.csv"));
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 4) << "the others are in the table";
+}
+
+TEST_F(TrackBag, TracksFeaturesOfAFile) {
+  const test_support::TemporaryFolder scene;
+  for (unsigned k = 0; k < 3; ++k)
+    cv::imwrite(scene.file(std::to_string(k) + ".png"), test_support::featureScene(0.5 * k, k + 1));
+  const std::string file = out_.file("features.yaml"), table = out_.file("out.csv");
+  for (const std::string tracker : {"dots", "edges"}) {
+    std::ofstream(file) << (tracker == "dots" ? test_support::kDotsSelection : test_support::kEdgesSelection);
+    const std::string command = scene.path() + " --tracker " + tracker + " --select " + file;
+    EXPECT_EQ(run(command + " --csv " + table), kSuccess) << stderr_;
+    EXPECT_TRUE(says("3 images: TRACKING 3")) << stderr_;
+    const std::string rows = content(table);
+    EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), 1 + 3 * 2);
+    EXPECT_EQ(rows.substr(0, rows.find('\n')),
+              "frame,stamp,state,processing_time,id,kind,feature_state,share,expected_error,parameters,deviations"
+              ",outline,reason");
+  }
+  std::ofstream(file) << "- {id: short, line: [[50, 50], [52, 50]]}\n";
+  EXPECT_EQ(run(scene.path() + " --tracker=edges --select " + file), kFailure);
+  EXPECT_TRUE(says("short: line from (50, 50) to (52, 50), expected finite ends at least 30 px apart")) << stderr_;
+  EXPECT_EQ(run(scene.path() + " --tracker edges"), kFailure);
+  EXPECT_TRUE(says("no selection is given, expected --select FILE.yaml")) << stderr_;
+  EXPECT_EQ(run(scene.path() + " --tracker circles --select " + file), kFailure);
+  EXPECT_TRUE(says("tracker 'circles', expected one of")) << stderr_;
+  EXPECT_EQ(run(images_.path() + " --tracker region --roi 50,40,50,40"), kSuccess) << stderr_;
 }
 
 }  // namespace

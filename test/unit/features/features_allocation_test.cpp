@@ -4,7 +4,9 @@
 #include <vector>
 
 #include "laparoscope_servo/features/curve_tracker.h"
+#include "laparoscope_servo/features/dot_feature_tracker.h"
 #include "laparoscope_servo/features/dots.h"
+#include "laparoscope_servo/features/edge_feature_tracker.h"
 #include "laparoscope_servo/features/ellipse.h"
 #include "laparoscope_servo/features/line.h"
 #include "support/allocation_counter.h"
@@ -31,6 +33,12 @@ std::vector<cv::Mat> images() {
   }
   return result;
 }
+
+struct ByTheInterface {
+  FeatureTracker& tracker;
+  const TrackedFeatures& track(const cv::Mat& image, double stamp) { return tracker.track(image, stamp, prior); }
+  FeaturePrior prior;
+};
 
 template <class Tracker>
 void expectNoAllocations(Tracker& tracker) {
@@ -64,6 +72,28 @@ TEST(FeaturesAllocation, thereIsNoneForDots) {
   DotTracker tracker;
   tracker.select(images()[0], 0.0, {{90.0, 120.0}});
   expectNoAllocations(tracker);
+}
+
+TEST(FeaturesAllocation, thereIsNoneBehindTheInterface) {
+  FeatureSelection selection(2);
+  selection[0].id = "border";
+  selection[0].kind = FeatureKind::kLine;
+  selection[0].points = {{220.0, 30.0}, {220.0, 200.0}};
+  selection[1].id = "rim";
+  selection[1].kind = FeatureKind::kEllipse;
+  selection[1].ellipse = EllipseSelection{{90.0, 120.0}, 25.0, 22.0, 0.3};
+  EdgeFeatureTracker edges;
+  edges.select(images()[0], 0.0, selection, {});
+  ByTheInterface behind{edges, {}};
+  expectNoAllocations(behind);
+
+  FeatureSelection dot(1);
+  dot[0].id = "dot";
+  dot[0].points = {{90.0, 120.0}};
+  DotFeatureTracker dots;
+  dots.select(images()[0], 0.0, dot, {});
+  ByTheInterface behind_dots{dots, {}};
+  expectNoAllocations(behind_dots);
 }
 
 }  // namespace

@@ -1,0 +1,45 @@
+// What a person or a program selects for a tracker of features.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "laparoscope_servo/features/tracked_feature.h"
+
+namespace laparoscope_servo::features {
+
+struct EllipseSelection {
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();  // px
+  double a = 0.0;                                    // px, radii
+  double b = 0.0;
+  double angle = 0.0;  // rad, from the image's x axis to the axis of radius a, towards y
+};
+
+// Part of an ellipse: see Ellipse::setArc.
+struct ArcSelection {
+  double begin = 0.0;   // rad
+  double extent = 0.0;  // rad
+};
+
+struct SelectedFeature {
+  std::string id;  // not empty, and no other's
+  FeatureKind kind = FeatureKind::kPoint;
+  // px. A point: the point. A line: its two ends. An ellipse: five or more points on it, or none and `ellipse`. A
+  // spline: points on it, in order.
+  std::vector<Eigen::Vector2d> points;
+  std::optional<EllipseSelection> ellipse;
+  std::optional<ArcSelection> arc;
+  double range = 6.0;       // px, by which the edge may be off
+  Eigen::VectorXd desired;  // see TrackedFeature; empty: none
+};
+
+using FeatureSelection = std::vector<SelectedFeature>;
+
+// Every error that no image is needed for, each with the feature's id, the value, and what was expected: an id that is
+// empty or twice there, a number that is not finite, a range outside [1, 100] px, a kind that is not among `kinds`, a
+// number of points, or of desired values, that the kind does not have. Empty: none.
+std::vector<std::string> validate(const FeatureSelection& selection, const std::vector<FeatureKind>& kinds);
+
+}  // namespace laparoscope_servo::features

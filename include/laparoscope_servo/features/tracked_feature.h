@@ -1,0 +1,55 @@
+// What every tracker of features says of each of them: one form for messages, tables and overlays.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "laparoscope_servo/features/feature_state.h"
+
+namespace laparoscope_servo::features {
+
+// What the parameters of a feature are. Pixels: the centre of the first one is (0, 0), x to the right, y down.
+enum class FeatureKind {
+  kPoint = 0,    // x, y: px
+  kLine = 1,     // rho px, theta rad: x cos(theta) + y sin(theta) = rho
+  kEllipse = 2,  // K1 to K5: x^2 + K1 y^2 + 2 K2 x y + 2 K3 x + 2 K4 y + K5 = 0, x and y in px
+  kSpline = 3,   // x, y of each control point: px
+  kPose = 4,     // x, y, z m, rotation vector rad: takes the object's coordinates to the camera's
+  kMotion = 5,   // of a model of motion between two images, as its tracker says
+};
+
+// "point", "line", ..., as people write it.
+const char* kindName(FeatureKind kind);
+
+struct TrackedFeature {
+  std::string id;  // within its tracker, as it was selected
+  FeatureKind kind = FeatureKind::kPoint;
+  State state = State::kIdle;
+  std::string reason;  // a sentence without a full stop: why the state is not TRACKING; empty: it is
+  // By kind. TRACKING: as seen; SEARCHING, LOST: where it is expected; IDLE: empty.
+  Eigen::VectorXd parameters;
+  Eigen::MatrixXd covariance;            // of the parameters; unless TRACKING the variances are infinite
+  Eigen::VectorXd desired;               // the parameters' values that were wanted with the selection; empty: none
+  double share = 0.0;                    // of its sites, or pixels, in the image that agree with it: 0 to 1
+  double expected_error = 0.0;           // px, standard deviation at its worst place; infinite unless TRACKING
+  std::vector<Eigen::Vector2d> outline;  // px, to be drawn point by point; one point: a centre. Empty: nothing to draw
+};
+
+// All features of a tracker, in the order of their selection.
+struct TrackedFeatures {
+  // TRACKING: all are; else the worst of theirs: LOST before SEARCHING, IDLE where nothing is selected. The reason is
+  // that of the first feature in that state, with its id.
+  State state = State::kIdle;
+  std::string reason;
+  std::vector<TrackedFeature> features;
+};
+
+// The covariance of `count` parameters of which nothing is known.
+void setUnknown(Eigen::MatrixXd& covariance, Eigen::Index count);
+
+// Sets state and reason of all by those of each, or `why_none` when there is no feature.
+void summarise(TrackedFeatures& features, std::string_view why_none);
+
+}  // namespace laparoscope_servo::features

@@ -1,0 +1,73 @@
+#include "laparoscope_servo/features/dot_feature_tracker.h"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "laparoscope_servo/validation/error_report.h"
+
+namespace laparoscope_servo::features {
+
+namespace {
+
+constexpr std::size_t kOutlinePoints = 24;
+constexpr std::size_t kReasonLength = 160;  // more than any text has, so that none allocates
+
+}  // namespace
+
+const TrackedFeatures& DotFeatureTracker::select(const cv::Mat& image, double stamp, const FeatureSelection& selection,
+                                                 const FeaturePrior&) {
+  validation::throwErrors("selection", validate(selection, {FeatureKind::kPoint}));
+  std::vector<Eigen::Vector2d> points;
+  for (const SelectedFeature& feature : selection) points.push_back(feature.points.front());
+  tracker_.select(image, stamp, points);
+  told_.features.assign(selection.size(), {});
+  for (std::size_t k = 0; k < selection.size(); ++k) {
+    TrackedFeature& told = told_.features[k];
+    told.id = selection[k].id;
+    told.desired = selection[k].desired;
+    told.reason.reserve(kReasonLength);
+    told.outline.resize(kOutlinePoints + 1);
+  }
+  told_.reason.reserve(2 * kReasonLength);
+  tell();
+  return told_;
+}
+
+const TrackedFeatures& DotFeatureTracker::track(const cv::Mat& image, double stamp, const FeaturePrior& prior) {
+  tracker_.track(image, stamp, prior.motion);
+  tell();
+  return told_;
+}
+
+void DotFeatureTracker::reset() {
+  tracker_.reset();
+  tell();
+}
+
+void DotFeatureTracker::tell() {
+  const DotsResult& result = tracker_.result();
+  if (result.state == State::kIdle) told_.features.clear();
+  for (std::size_t k = 0; k < told_.features.size(); ++k) {
+    const DotResult& dot = result.dots[k];
+    TrackedFeature& told = told_.features[k];
+    told.state = dot.state;
+    told.reason = reasonText(dot.reason);
+    told.parameters = dot.centre;
+    const bool tracks = dot.state == State::kTracking;
+    if (tracks) {
+      told.covariance = dot.covariance;
+    } else {
+      setUnknown(told.covariance, 2);
+    }
+    told.share = tracks ? 1.0 : 0.0;
+    told.expected_error = dot.expected_error;
+    const double radius = std::sqrt(dot.area / M_PI);
+    for (std::size_t i = 0; i <= kOutlinePoints; ++i) {
+      const double phi = 2.0 * M_PI * static_cast<double>(i) / kOutlinePoints;
+      told.outline[i] = dot.centre + radius * Eigen::Vector2d(std::cos(phi), std::sin(phi));
+    }
+  }
+  summarise(told_, reasonText(result.reason));
+}
+
+}  // namespace laparoscope_servo::features

@@ -1,0 +1,85 @@
+#include "features/tracked_curve.h"
+
+#include <stdexcept>
+#include <string>
+
+#include "laparoscope_servo/features/curve_tracker.h"
+#include "laparoscope_servo/features/ellipse.h"
+#include "laparoscope_servo/features/line.h"
+
+namespace laparoscope_servo::features {
+
+namespace {
+
+constexpr int kOutlinePieces = 48;
+
+void curveOf(const SelectedFeature& selected, Line& line) {
+  line = Line(selected.points[0], selected.points[1]);
+}
+
+void curveOf(const SelectedFeature& selected, Ellipse& ellipse) {
+  if (selected.ellipse) {
+    const EllipseSelection& e = *selected.ellipse;
+    ellipse = Ellipse(e.centre, e.a, e.b, e.angle);
+  } else {
+    ellipse = Ellipse::throughPoints(selected.points);
+  }
+  if (selected.arc) ellipse.setArc(selected.arc->begin, selected.arc->extent);
+}
+
+// `covariance`: of the curve's own parameters.
+void tellCurve(const Line& line, const Eigen::MatrixXd& covariance, TrackedFeature& told) {
+  told.parameters = Eigen::Vector2d(line.rho(), line.theta());
+  if (told.state == State::kTracking) told.covariance = line.covariance(covariance);
+  told.outline.resize(2);
+  told.outline[0] = line.begin();
+  told.outline[1] = line.end();
+}
+
+void tellCurve(const Ellipse& ellipse, const Eigen::MatrixXd& covariance, TrackedFeature& told) {
+  told.parameters = ellipse.coefficients();
+  if (told.state == State::kTracking) told.covariance = ellipse.covariance(covariance);
+  told.outline.resize(kOutlinePieces + 1);
+  for (int k = 0; k <= kOutlinePieces; ++k)
+    told.outline[static_cast<std::size_t>(k)] =
+        ellipse.at(ellipse.arcBegin() + k * ellipse.arcExtent() / kOutlinePieces);
+}
+
+template <class C>
+class TrackedCurveOf : public TrackedCurve {
+ public:
+  explicit TrackedCurveOf(const EdgeConfig& config) : tracker_(config) {}
+
+  void select(const cv::Mat& image, double stamp, const SelectedFeature& selected) override {
+    C curve;
+    curveOf(selected, curve);
+    tracker_.select(image, stamp, curve, selected.range);
+  }
+
+  void track(const cv::Mat& image, double stamp, const std::optional<Eigen::Matrix3d>& motion) override {
+    tracker_.track(image, stamp, motion);
+  }
+
+  void tell(TrackedFeature& told) const override {
+    const CurveResult<C>& result = tracker_.result();
+    told.state = result.state;
+    told.reason = reasonText(result.reason);
+    told.share = result.share;
+    told.expected_error = result.expected_error;
+    tellCurve(result.curve, tracker_.covariance(), told);
+    if (told.state != State::kTracking) setUnknown(told.covariance, told.parameters.size());
+  }
+
+ private:
+  CurveTracker<C> tracker_;
+};
+
+}  // namespace
+
+std::unique_ptr<TrackedCurve> makeTrackedCurve(FeatureKind kind, const EdgeConfig& config) {
+  if (kind == FeatureKind::kLine) return std::make_unique<TrackedCurveOf<Line>>(config);
+  if (kind == FeatureKind::kEllipse) return std::make_unique<TrackedCurveOf<Ellipse>>(config);
+  throw std::invalid_argument(std::string("a ") + kindName(kind) + " is no curve, expected line or ellipse");
+}
+
+}  // namespace laparoscope_servo::features

@@ -1,0 +1,16 @@
+// What counts as grey in a picture: lamp, white balance and tissue differ, so each picture tells.
+#pragma once
+
+#include "model/instrument/field_of_view.h"
+#include "model/instrument/grey_map.h"
+
+namespace laparoscope_servo::model {
+
+struct GreyLevels {
+  double threshold = 0.0;  // as GreyMap::colour: below it is grey
+  double usual = 0.0;      // units of S0 cos H / mean: the colour of most of the picture, the tissue's
+};
+
+GreyLevels greyLevels(const GreyMap& map, const FieldOfView& view);
+
+}  // namespace laparoscope_servo::model

@@ -1,0 +1,44 @@
+// Shafts in a single image: pairs of straight edges with grey between them, which enter through the border of the
+// picture.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "model/instrument/field_of_view.h"
+#include "model/instrument/grey_levels.h"
+#include "model/instrument/grey_lines.h"
+#include "model/instrument/grey_map.h"
+#include "model/instrument/shaft.h"
+
+namespace laparoscope_servo::model {
+
+class ShaftFinder {
+ public:
+  static constexpr int kMost = 3;
+
+  // Best first; no two share an edge or most of their place.
+  const std::vector<Shaft>& find(const GreyMap& map, const FieldOfView& view, const GreyLevels& levels);
+  const std::vector<GreyLine>& lines() const { return *lines_; }
+
+ private:
+  struct Scene {
+    const GreyMap& map;
+    const FieldOfView& view;
+    double threshold;
+    double contrast;
+    double usual;
+    bool isGrey(const Eigen::Vector2d& p) const;
+    bool isInside(const Eigen::Vector2d& p) const;
+  };
+
+  bool pair(const Scene& scene, const GreyLine& a, const GreyLine& b, Shaft& shaft) const;
+  bool single(const Scene& scene, const GreyLine& line, Shaft& shaft) const;
+  bool enter(const Scene& scene, Shaft& shaft, double from, double& length) const;
+
+  GreyLines finder_;
+  const std::vector<GreyLine>* lines_ = nullptr;
+  std::vector<Shaft> candidates_, shafts_;
+};
+
+}  // namespace laparoscope_servo::model

@@ -1,0 +1,183 @@
+#include "model/instrument/silhouette.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+namespace laparoscope_servo::model {
+
+namespace {
+
+// Wrist and jaws, in widths of the shaft: how far they reach beyond it, and to the side. They open and bend by 45
+// degrees.
+constexpr double kReach = 3.0;
+constexpr double kSpread = 1.0;
+constexpr double kAside = 1.5;
+constexpr double kTolerance = 1.5;  // cells, of the edges
+// Beyond the edges' end nothing but colour holds it together, and tissue that is pale or shines lies next to the jaws:
+// what is taken for them has to be greyer, by this share of the threshold.
+constexpr double kStrict = 0.6;
+constexpr uchar kHole = 254;  // in cells_: surrounded by it
+
+double halfWidth(const Shaft& shaft, const Eigen::Vector2d& p) {
+  return 0.5 * (-shaft.edges[0].distance(p) - shaft.edges[1].distance(p));
+}
+
+}  // namespace
+
+bool Silhouette::mayBe(const Shaft& shaft, const Eigen::Vector2d& p) const {
+  const double along = shaft.axis.dot(p - shaft.entry);
+  const double outside = std::max(shaft.edges[0].distance(p), shaft.edges[1].distance(p));
+  if (along <= shaft.length) return outside <= kTolerance;
+  const double width = std::max(2.0 * halfWidth(shaft, shaft.entry + shaft.length * shaft.axis), 3.0);
+  const double beyond = along - shaft.length;
+  const double aside = std::abs(-shaft.axis.y() * (p - shaft.entry).x() + shaft.axis.x() * (p - shaft.entry).y());
+  return beyond <= kReach * width && aside <= std::min(0.5 * width + kTolerance + kSpread * beyond, kAside * width);
+}
+
+void Silhouette::grow(const GreyMap& map, const FieldOfView& view, double threshold, const Shaft& shaft) {
+  cells_.create(map.size());
+  cells_.setTo(0);
+  stack_.clear();
+  count_ = 0;
+  const double strict = GreyMap::kZero + kStrict * (threshold - GreyMap::kZero);
+  const auto isGrey = [&](int x, int y) {
+    if (!map.contains(x, y) || !view.contains(x, y)) return false;
+    const double along = shaft.axis.dot(Eigen::Vector2d(x, y) - shaft.entry);
+    return map.colour()(y, x) < (along > shaft.length ? strict : threshold);
+  };
+  const auto add = [&](int x, int y) {
+    if (!isGrey(x, y) || cells_(y, x) || !mayBe(shaft, {static_cast<double>(x), static_cast<double>(y)})) return;
+    cells_(y, x) = 255;
+    stack_.emplace_back(x, y);
+    ++count_;
+  };
+  int inside = 0, grey = 0;
+  for (double along = 0.0; along <= shaft.length; along += 1.0) {
+    const Eigen::Vector2d p = shaft.entry + along * shaft.axis, side(-shaft.axis.y(), shaft.axis.x());
+    const double half = halfWidth(shaft, p);
+    for (double across = -half; across <= half; across += 1.0) {
+      const Eigen::Vector2d q = p + across * side;
+      const int x = static_cast<int>(std::lround(q.x())), y = static_cast<int>(std::lround(q.y()));
+      if (!map.contains(x, y) || !view.contains(x, y)) continue;
+      ++inside;
+      grey += isGrey(x, y) ? 1 : 0;
+      add(x, y);
+    }
+  }
+  fill_ = inside > 0 ? static_cast<double>(grey) / inside : 0.0;
+  while (!stack_.empty()) {
+    const cv::Point p = stack_.back();
+    stack_.pop_back();
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) add(p.x + dx, p.y + dy);
+    }
+  }
+  measure(map, threshold, shaft);
+  fillHoles();
+}
+
+void Silhouette::measure(const GreyMap& map, double threshold, const Shaft& shaft) {
+  double furthest = -1e9;
+  box_ = {};
+  cv::Point low(map.columns(), map.rows()), high(-1, -1);
+  for (int y = 0; y < map.rows(); ++y) {
+    for (int x = 0; x < map.columns(); ++x) {
+      if (!cells_(y, x)) continue;
+      low = {std::min(low.x, x), std::min(low.y, y)};
+      high = {std::max(high.x, x), std::max(high.y, y)};
+      const Eigen::Vector2d p(x, y);
+      const double along = shaft.axis.dot(p - shaft.entry);
+      if (along <= furthest) continue;
+      furthest = along;
+      tip_ = p;
+    }
+  }
+  if (count_ == 0) return;
+  box_ = cv::Rect(low, high + cv::Point(1, 1));
+  // Half a cell of it lies beyond the last centre; where colour crosses the threshold.
+  const Eigen::Vector2d next = tip_ + shaft.axis;
+  const int x = static_cast<int>(std::lround(next.x())), y = static_cast<int>(std::lround(next.y()));
+  double share = 0.5;
+  if (map.contains(x, y)) {
+    const double here = map.colour()(static_cast<int>(tip_.y()), static_cast<int>(tip_.x())),
+                 there = map.colour()(y, x);
+    if (there > here) share = std::clamp((threshold - here) / (there - here), 0.0, 1.0);
+  }
+  tip_ += share * shaft.axis;
+}
+
+// Jaws have windows, which show what lies behind them, and dark or red parts.
+void Silhouette::fillHoles() {
+  if (count_ == 0) return;
+  cv::Mat1b cells = cells_(box_);
+  const auto open = [&](int x, int y) {
+    if (x < 0 || y < 0 || x >= cells.cols || y >= cells.rows || cells(y, x) != 0) return;
+    cells(y, x) = 1;
+    stack_.emplace_back(x, y);
+  };
+  for (int x = 0; x < cells.cols; ++x) open(x, 0), open(x, cells.rows - 1);
+  for (int y = 0; y < cells.rows; ++y) open(0, y), open(cells.cols - 1, y);
+  while (!stack_.empty()) {
+    const cv::Point p = stack_.back();
+    stack_.pop_back();
+    open(p.x + 1, p.y), open(p.x - 1, p.y), open(p.x, p.y + 1), open(p.x, p.y - 1);
+  }
+  for (int y = 0; y < cells.rows; ++y) {
+    for (int x = 0; x < cells.cols; ++x) {
+      uchar& c = cells(y, x);
+      c = c == 1 ? 0 : c == 0 ? kHole : c;
+    }
+  }
+}
+
+void Silhouette::draw(const GreyMap& map, double threshold, const Shaft& shaft, double margin, cv::Mat1b& mask) {
+  const auto pixel = [&](const Eigen::Vector2d& p) {
+    return cv::Point(static_cast<int>(std::lround(map.toPixel(p.x()))),
+                     static_cast<int>(std::lround(map.toPixel(p.y()))));
+  };
+  drawn_.create(mask.size());
+  drawn_.setTo(0);
+  // The shaft, from beyond the border to where its edges end.
+  std::array<cv::Point, 4> corners;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const GreyLine& e = shaft.edges[k];
+    const Eigen::Vector2d along = e.direction() * (e.direction().dot(shaft.axis) < 0.0 ? -1.0 : 1.0);
+    const auto at = [&](double s) {
+      const double t = (s - shaft.axis.dot(e.point - shaft.entry)) / shaft.axis.dot(along);
+      return pixel(e.point + t * along);
+    };
+    corners[k == 0 ? 0 : 3] = at(-shaft.width - 10.0);
+    corners[k == 0 ? 1 : 2] = at(shaft.length);
+  }
+  cv::fillConvexPoly(drawn_, corners.data(), 4, 255);
+  if (count_ > 0) {
+    // What else is grey, at the image's resolution: colour between cells, where a cell of it is near.
+    const cv::Rect box =
+        cv::Rect(box_.tl() - cv::Point(2, 2), box_.br() + cv::Point(2, 2)) & cv::Rect(cv::Point(0, 0), map.size());
+    cv::dilate(cells_(box), near_, cv::Mat());
+    part_.create(box.size());
+    for (int y = 0; y < box.height; ++y) {
+      for (int x = 0; x < box.width; ++x) {
+        const bool hole = cells_(box.y + y, box.x + x) == kHole;
+        part_(y, x) = hole ? 0 : near_(y, x) ? map.colour()(box.y + y, box.x + x) : 255;
+      }
+    }
+    const int step = map.step();
+    const cv::Rect pixels(box.tl() * step, box.size() * step);
+    cv::resize(part_, large_, pixels.size(), 0, 0, cv::INTER_LINEAR);
+    cv::Mat1b target = drawn_(pixels);
+    for (int y = 0; y < large_.rows; ++y) {
+      const uchar* from = large_[y];
+      uchar* to = target[y];
+      for (int x = 0; x < large_.cols; ++x) to[x] = from[x] < threshold ? 255 : to[x];
+    }
+  }
+  const int grown = static_cast<int>(std::ceil(margin));
+  if (grown > 0) {
+    cv::dilate(drawn_, drawn_, cv::getStructuringElement(cv::MORPH_ELLIPSE, {2 * grown + 1, 2 * grown + 1}));
+  }
+  cv::bitwise_or(mask, drawn_, mask);
+}
+
+}  // namespace laparoscope_servo::model

@@ -1,0 +1,44 @@
+// The part of an image that an instrument covers: its shaft, by the edges, and what hangs on to it and is grey: wrist
+// and jaws.
+#pragma once
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "model/instrument/field_of_view.h"
+#include "model/instrument/grey_map.h"
+#include "model/instrument/shaft_finder.h"
+
+namespace laparoscope_servo::model {
+
+class Silhouette {
+ public:
+  // Cells that are grey, hang on to the shaft, and lie where wrist and jaws may be.
+  void grow(const GreyMap& map, const FieldOfView& view, double threshold, const Shaft& shaft);
+
+  bool found() const { return count_ > 0; }
+  // Cells: the cell furthest along the axis, to a fraction of a cell along it.
+  const Eigen::Vector2d& tip() const { return tip_; }
+  int count() const { return count_; }  // cells
+  // Share of the cells between the shaft's edges that belong to it.
+  double fill() const { return fill_; }
+
+  // Adds it to `mask` (CV_8UC1, size of the image), 255 for its pixels, grown by `margin` px.
+  void draw(const GreyMap& map, double threshold, const Shaft& shaft, double margin, cv::Mat1b& mask);
+
+ private:
+  void measure(const GreyMap& map, double threshold, const Shaft& shaft);
+  void fillHoles();
+  bool mayBe(const Shaft& shaft, const Eigen::Vector2d& p) const;
+
+  cv::Mat1b cells_;  // 255 for its cells, less for holes in it
+  std::vector<cv::Point> stack_;
+  cv::Rect box_;
+  int count_ = 0;
+  double fill_ = 0.0;
+  Eigen::Vector2d tip_ = Eigen::Vector2d::Zero();
+  cv::Mat1b near_, part_, large_, drawn_;
+};
+
+}  // namespace laparoscope_servo::model

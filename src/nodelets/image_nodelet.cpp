@@ -1,0 +1,109 @@
+#include "nodelets/image_nodelet.h"
+
+#include <diagnostic_msgs/DiagnosticStatus.h>
+
+#include <cstdint>
+#include <exception>
+
+#include "ros/common/clocks.h"
+#include "ros/common/network_exposure.h"
+#include "ros/common/parameters.h"
+#include "ros/tracker/image_gate.h"
+#include "ros/tracker/tracker_parameters.h"
+
+namespace laparoscope_servo::nodelets {
+
+void ImageNodelet::onInit() {
+  // Exceptions must not leave onInit(); they would end the nodelet manager, with the camera driver in it.
+  try {
+    diagnostics_ = std::make_unique<diagnostic_updater::Updater>(getNodeHandle(), getPrivateNodeHandle(), getName());
+    diagnostics_->setHardwareID("none");
+    diagnostics_->add("tracking", this, &ImageNodelet::fillDiagnostics);
+    // Uses force_update() and the wall clock: Updater::update() stops publishing when the time of a looped bag jumps
+    // back.
+    diagnostics_timer_ = getNodeHandle().createWallTimer(
+        ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) { diagnostics_->force_update(); });
+    const std::vector<std::string> errors = configure();
+    if (!errors.empty()) return standAside(errorReport(errors));
+    warnOfExposure();
+    start();
+    started_ = true;
+  } catch (const std::exception& error) {
+    standAside(error.what());
+  }
+}
+
+void ImageNodelet::standAside(const std::string& why) {
+  why_aside_ = why;
+  notStarted(why);
+  NODELET_ERROR("the tracker does not start: %s", why.c_str());
+}
+
+void ImageNodelet::subscribe() {
+  camera_info_subscriber_ = getNodeHandle().subscribe("camera_info", 2, &ImageNodelet::cameraInfoCallback, this);
+  // A queue of one: the control loop needs the newest image only.
+  constexpr std::uint32_t kQueue = 1;
+  const ros::TransportHints no_delay = ros::TransportHints().tcpNoDelay();
+  const image_transport::TransportHints hints("raw", no_delay, getPrivateNodeHandle());
+  // subscribes to the topic itself, since only then the sender of an image is known
+  if (hints.getTransport() == "raw") {
+    image_subscriber_ = getNodeHandle().subscribe("image", kQueue, &ImageNodelet::rawImageCallback, this, no_delay);
+    return;
+  }
+  transport_ = std::make_unique<image_transport::ImageTransport>(getNodeHandle());
+  transport_subscriber_ = transport_->subscribe("image", kQueue, &ImageNodelet::imageCallback, this, hints);
+}
+
+void ImageNodelet::cameraInfoCallback(const ros::MessageEvent<const sensor_msgs::CameraInfo>& event) {
+  if (!camera_info_owner_.counts(event.getPublisherName(), steadyNow())) return;
+  takeCameraInfo(*event.getConstMessage());
+}
+
+void ImageNodelet::rawImageCallback(const ros::MessageEvent<const sensor_msgs::Image>& event) {
+  const double now = steadyNow();
+  if (image_owner_.counts(event.getPublisherName(), now)) return imageCallback(event.getConstMessage());
+  refuse("several nodes publish " + image_subscriber_.getTopic() + ": " + image_owner_.complaint(now),
+         Refusal::kSender);
+}
+
+void ImageNodelet::imageCallback(const sensor_msgs::ImageConstPtr& message) {
+  // A bad image must not end the process, which the camera driver may share. (cv::Exception is a std::exception.)
+  try {
+    process(message);
+  } catch (const ImageError& error) {
+    refuse(error.what(), error.cause());
+  } catch (const std::exception& error) {
+    refuse(error.what());
+  }
+}
+
+void ImageNodelet::checkTime(const ros::Time& stamp, double max_ahead) {
+  // A bag that begins again also sets the clock back.
+  constexpr double kJump = 0.05;  // s: larger than corrections of the machine's clock
+  const ros::Time now = ros::Time::now();
+  if ((last_now_ - now).toSec() > kJump) clockJumpedBack();
+  last_now_ = now;
+  // Simulated time comes on its own topic, before or after the image, so stamps are then not compared with it.
+  checkStamp(stamp, ros::Time::isSimTime() ? ros::Time() : now, max_ahead);
+}
+
+void ImageNodelet::refuse(const std::string& error, Refusal cause) {
+  refused(error, cause);
+  NODELET_ERROR_THROTTLE(kThrottle, "image refused: %s", error.c_str());
+}
+
+void ImageNodelet::fillDiagnostics(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  if (!why_aside_.empty()) {
+    status.summary(diagnostic_msgs::DiagnosticStatus::ERROR, "not started: " + why_aside_);
+  } else if (started_) {
+    const double now = steadyNow();
+    const bool raw = static_cast<bool>(image_subscriber_);
+    diagnose(
+        now,
+        {raw ? image_subscriber_.getNumPublishers() : transport_subscriber_.getNumPublishers(),
+         camera_info_subscriber_.getNumPublishers(), image_owner_.complaint(now), camera_info_owner_.complaint(now)},
+        status);
+  }
+}
+
+}  // namespace laparoscope_servo::nodelets

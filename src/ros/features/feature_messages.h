@@ -1,0 +1,13 @@
+// The message with all features of one image.
+#pragma once
+
+#include <laparoscope_servo/TrackedFeatures.h>
+#include <std_msgs/Header.h>
+
+#include "laparoscope_servo/features/tracked_feature.h"
+
+namespace laparoscope_servo {
+
+TrackedFeatures featuresMessage(const std_msgs::Header& header, const features::TrackedFeatures& tracked);
+
+}  // namespace laparoscope_servo

@@ -1,0 +1,71 @@
+#include "ros/features/feature_overlay.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <string>
+#include <vector>
+
+#include "ros/tracker/overlay.h"
+
+namespace laparoscope_servo {
+
+namespace {
+
+using features::State;
+
+const cv::Scalar kRed(0, 0, 255);
+const cv::Scalar kYellow(0, 255, 255);
+constexpr int kShift = 4;         // OpenCV draws in 1/16 px
+constexpr double kFarAway = 1e5;  // px: further points are not drawn, since fixed-point coordinates would overflow
+
+// Empty if a point cannot be drawn.
+std::vector<cv::Point> drawable(const std::vector<Eigen::Vector2d>& outline) {
+  std::vector<cv::Point> points;
+  for (const Eigen::Vector2d& p : outline) {
+    if (!(p.array().abs() < kFarAway).all()) return {};  // also for NaN
+    points.emplace_back(static_cast<int>(std::lround(p.x() * (1 << kShift))),
+                        static_cast<int>(std::lround(p.y() * (1 << kShift))));
+  }
+  return points;
+}
+
+void drawFeature(cv::Mat& canvas, const features::TrackedFeature& feature, int thickness) {
+  const std::vector<cv::Point> points = drawable(feature.outline);
+  if (points.empty()) return;
+  const bool seen = feature.state == State::kTracking;
+  const cv::Scalar& colour = seen ? kRed : kYellow;
+  const int line = seen ? thickness : 1;
+  if (points.size() == 1) {
+    cv::circle(canvas, points.front(), 3 * thickness << kShift, colour, line, cv::LINE_AA, kShift);
+  } else {
+    cv::polylines(canvas, points, false, colour, line, cv::LINE_AA, kShift);
+  }
+  // At its end, or where it is furthest to the right, where the text hides least of it.
+  const cv::Point at =
+      *std::max_element(points.begin(), points.end(), [](const cv::Point& a, const cv::Point& b) { return a.x < b.x; });
+  const double size = std::max(0.35, canvas.rows / 1200.0);
+  const int width = cv::getTextSize(feature.id, cv::FONT_HERSHEY_SIMPLEX, size, thickness, nullptr).width;
+  const int left = std::clamp((at.x >> kShift) + 4 * thickness, 0, std::max(0, canvas.cols - width));
+  drawText(canvas, feature.id, cv::Point(left, at.y >> kShift), size);
+}
+
+}  // namespace
+
+cv::Mat drawFeatures(const cv::Mat& image, const features::TrackedFeatures& tracked) {
+  cv::Mat canvas = canvasOf(image);
+  const int thickness = std::max(2, canvas.cols / 640);
+  std::size_t seen = 0;
+  for (const features::TrackedFeature& feature : tracked.features) {
+    if (feature.state == State::kTracking) ++seen;
+    if (feature.state == State::kTracking || feature.state == State::kSearching)
+      drawFeature(canvas, feature, thickness);
+  }
+  std::string text = features::stateName(tracked.state);
+  if (!tracked.features.empty()) text += "  " + std::to_string(seen) + " of " + std::to_string(tracked.features.size());
+  if (!tracked.reason.empty()) text += "  " + tracked.reason;
+  drawCaption(canvas, text);
+  return canvas;
+}
+
+}  // namespace laparoscope_servo

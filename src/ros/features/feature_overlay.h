@@ -1,0 +1,15 @@
+// Draws tracked features into the image, for a user.
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include "laparoscope_servo/features/tracked_feature.h"
+
+namespace laparoscope_servo {
+
+// A copy of `image` (8UC1 or 8UC3) as 8UC3 with the outline of each feature and its id: red where it was seen, thin and
+// yellow where it is expected while it is searched for, absent when it is lost; and a line of text: state, how many are
+// tracked, reason.
+cv::Mat drawFeatures(const cv::Mat& image, const features::TrackedFeatures& tracked);
+
+}  // namespace laparoscope_servo

@@ -1,0 +1,81 @@
+// A tracker of features for ROS: takes images and camera_info, returns what the messages say. The nodelets and the
+// offline tool both use it, so that their results are equal. Not thread-safe.
+#pragma once
+
+#include <sensor_msgs/CameraInfo.h>
+#include <sensor_msgs/Image.h>
+#include <std_msgs/Header.h>
+
+#include <memory>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <string>
+
+#include "laparoscope_servo/features/feature_tracker.h"
+#include "laparoscope_servo/image/repeat_watch.h"
+#include "laparoscope_servo/tracking/frozen_feed.h"
+#include "ros/features/feature_parameters.h"
+#include "ros/tracker/camera_info.h"
+#include "ros/tracker/image_intake.h"
+
+namespace laparoscope_servo {
+
+// The result for one image.
+struct ProcessedFeatures {
+  std_msgs::Header header;  // header of the image
+  cv::Mat image;            // as tracked, 8UC1 or 8UC3; may share the data of the message
+  features::TrackedFeatures result;
+  bool selected_now = false;
+  std::string selection_error;   // why what was requested, or is in the file, was not selected; else empty
+  std::string camera_error;      // why there are no intrinsics; else empty
+  image::Repeats repeats;        // repeats of the picture
+  double period = 0.0;           // s since the last image
+  double processing_time = 0.0;  // s, from the decoded image to the result
+};
+
+class FeatureSession {
+ public:
+  // The file of `input`, if there is one, is selected in the first image in which that is possible, unless something
+  // else was selected or reset() was called before. Throws std::invalid_argument if the file cannot be read.
+  FeatureSession(const FeatureInput& input, std::unique_ptr<features::FeatureTracker> tracker);
+
+  // Holds for the following images.
+  void setCameraInfo(const sensor_msgs::CameraInfo& info) { intrinsics_.set(info); }
+
+  // Processes the next image; `request` is selected in it. Throws ImageError or std::invalid_argument if the image
+  // cannot be used, or does not continue the sequence (see ImageGate); the session is then unchanged. The message must
+  // outlive the result's image. If the feed is frozen (see FrozenFeed), TRACKING is lowered to SEARCHING. If time
+  // begins again, the features are forgotten, and those of the file selected again.
+  ProcessedFeatures process(const sensor_msgs::Image& message,
+                            const std::optional<features::FeatureSelection>& request = std::nullopt);
+  // Processes an image decoded by OpenCV.
+  ProcessedFeatures process(const cv::Mat& decoded, const std_msgs::Header& header,
+                            const std::optional<features::FeatureSelection>& request = std::nullopt);
+
+  // See features::FeatureTracker.
+  bool findsByItself() const { return tracker_->findsByItself(); }
+  bool givesMask() const { return tracker_->givesMask(); }
+  cv::Mat mask() const { return tracker_->mask(); }
+
+  // Call if ROS time has jumped back: a loop is then accepted with its first image.
+  void clockJumpedBack() { intake_.clockJumpedBack(); }
+  // Forgets the features, also those of the file.
+  void reset();
+
+ private:
+  void complete(ProcessedFeatures& processed, const std::optional<features::FeatureSelection>& request);
+  void track(ProcessedFeatures& processed, const std::optional<features::FeatureSelection>& request);
+  void watchPicture(ProcessedFeatures& processed);
+
+  std::unique_ptr<features::FeatureTracker> tracker_;
+  ImageIntake intake_;
+  Intrinsics intrinsics_;
+  std::optional<features::FeatureSelection> from_file_;
+  bool file_pending_ = false;      // it is to be selected in the next image
+  bool file_selected_ = false;     // what is tracked was selected by it
+  bool time_began_again_ = false;  // since the last selection
+  image::RepeatWatch repeats_;
+  tracking::FrozenFeed feed_;
+};
+
+}  // namespace laparoscope_servo

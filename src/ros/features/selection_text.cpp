@@ -1,0 +1,162 @@
+#include "ros/features/selection_text.h"
+
+#include <yaml-cpp/yaml.h>
+
+#include <array>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+#include "laparoscope_servo/validation/error_report.h"
+
+namespace laparoscope_servo {
+
+namespace {
+
+using features::FeatureKind;
+using features::SelectedFeature;
+
+constexpr std::array<FeatureKind, 4> kWrittenKinds = {FeatureKind::kPoint, FeatureKind::kLine, FeatureKind::kEllipse,
+                                                      FeatureKind::kSpline};
+constexpr char kKeys[] = "id, one of point, line, ellipse, spline, and arc, range, desired";
+
+// Reads one feature, and keeps what is wrong with it.
+class Reader {
+ public:
+  Reader(const YAML::Node& node, std::vector<std::string>& errors) : node_(node), errors_(errors) {}
+
+  SelectedFeature read() {
+    if (!node_.IsMap()) {
+      refuse(node_, "a feature", "{id: ..., line: ...}");
+      return feature_;
+    }
+    if (node_["id"] && node_["id"].IsScalar()) feature_.id = node_["id"].Scalar();
+    if (feature_.id.empty()) refuse(node_["id"] ? node_["id"] : node_, "id", "a name");
+    readShape();
+    for (const auto& entry : node_) readOther(entry.first.Scalar(), entry.second);
+    return feature_;
+  }
+
+ private:
+  void refuse(const YAML::Node& where, const std::string& what, const std::string& expected) {
+    std::ostringstream text;
+    text << (feature_.id.empty() ? "a feature" : feature_.id) << ", line " << where.Mark().line + 1 << ": " << what;
+    if (where.IsScalar()) text << " = " << where.Scalar();
+    text << ", expected " << expected;
+    errors_.push_back(text.str());
+  }
+
+  double number(const YAML::Node& node, const std::string& what) {
+    double value = 0.0;
+    if (!node.IsScalar() || !YAML::convert<double>::decode(node, value)) refuse(node, what, "a number");
+    return value;
+  }
+
+  // Two numbers in brackets.
+  Eigen::Vector2d pair(const YAML::Node& node, const std::string& what, const std::string& expected) {
+    if (!node.IsSequence() || node.size() != 2) {
+      refuse(node, what, expected);
+      return Eigen::Vector2d::Zero();
+    }
+    return {number(node[0], what), number(node[1], what)};
+  }
+
+  void readPoints(const YAML::Node& node, const std::string& what) {
+    if (!node.IsSequence()) return refuse(node, what, "points: [[x, y], [x, y], ...], px");
+    for (const YAML::Node& point : node) feature_.points.push_back(pair(point, what, "points of two numbers: [x, y]"));
+  }
+
+  void readEllipse(const YAML::Node& node) {
+    features::EllipseSelection ellipse;
+    if (!node["centre"] || !node["radii"]) refuse(node, "ellipse", "centre: [x, y] and radii: [a, b], px, or points");
+    for (const auto& entry : node) {
+      const std::string key = entry.first.Scalar();
+      if (key == "centre") {
+        ellipse.centre = pair(entry.second, "centre", "[x, y], px");
+      } else if (key == "radii") {
+        const Eigen::Vector2d radii = pair(entry.second, "radii", "[a, b], px");
+        ellipse.a = radii.x();
+        ellipse.b = radii.y();
+      } else if (key == "angle") {
+        ellipse.angle = number(entry.second, "angle");
+      } else {
+        refuse(entry.first, "key of an ellipse", "centre, radii or angle");
+      }
+    }
+    feature_.ellipse = ellipse;
+  }
+
+  void readShape() {
+    int shapes = 0;
+    for (const FeatureKind kind : kWrittenKinds) {
+      const YAML::Node shape = node_[features::kindName(kind)];
+      if (!shape) continue;
+      ++shapes;
+      feature_.kind = kind;
+      if (kind == FeatureKind::kPoint) {
+        feature_.points.push_back(pair(shape, "point", "[x, y], px"));
+      } else if (kind == FeatureKind::kEllipse && shape.IsMap()) {
+        readEllipse(shape);
+      } else {
+        readPoints(shape, features::kindName(kind));
+      }
+    }
+    if (shapes != 1) refuse(node_, "its " + std::to_string(shapes) + " shapes", "one of point, line, ellipse, spline");
+  }
+
+  void readOther(const std::string& key, const YAML::Node& value) {
+    if (key == "id") return;
+    for (const FeatureKind kind : kWrittenKinds) {
+      if (key == features::kindName(kind)) return;
+    }
+    if (key == "range") {
+      feature_.range = number(value, "range");
+    } else if (key == "arc") {
+      const Eigen::Vector2d arc = pair(value, "arc", "[begin, extent], rad");
+      feature_.arc = features::ArcSelection{arc.x(), arc.y()};
+    } else if (key == "desired") {
+      if (!value.IsSequence()) return refuse(value, "desired", "a number for each parameter: [...]");
+      feature_.desired.resize(static_cast<Eigen::Index>(value.size()));
+      for (std::size_t k = 0; k < value.size(); ++k)
+        feature_.desired[static_cast<Eigen::Index>(k)] = number(value[k], "desired");
+    } else {
+      refuse(value, "key " + key, kKeys);
+    }
+  }
+
+  const YAML::Node node_;
+  std::vector<std::string>& errors_;
+  SelectedFeature feature_;
+};
+
+}  // namespace
+
+features::FeatureSelection parseSelection(const std::string& text) {
+  YAML::Node root;
+  try {
+    root = YAML::Load(text);
+  } catch (const YAML::Exception& error) {
+    throw std::invalid_argument(std::string("selection: ") + error.what());
+  }
+  if (!root.IsSequence() || root.size() == 0)
+    throw std::invalid_argument("selection: no list of features, expected [{id: shaft, line: [[x, y], [x, y]]}, ...]");
+  features::FeatureSelection selection;
+  std::vector<std::string> errors;
+  for (const YAML::Node& node : root) selection.push_back(Reader(node, errors).read());
+  validation::throwErrors("selection", errors);
+  return selection;
+}
+
+features::FeatureSelection readSelection(const std::string& file) {
+  const std::ifstream stream(file);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  if (!stream) throw std::invalid_argument("selection file '" + file + "' cannot be read");
+  try {
+    return parseSelection(text.str());
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument("'" + file + "': " + error.what());
+  }
+}
+
+}  // namespace laparoscope_servo

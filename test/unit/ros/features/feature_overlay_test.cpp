@@ -1,0 +1,61 @@
+#include "ros/features/feature_overlay.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace laparoscope_servo {
+namespace {
+
+using features::State;
+
+const cv::Vec3b kRed(0, 0, 255), kYellow(0, 255, 255), kGrey(90, 90, 90);
+
+// Edges are smoothed.
+bool isLike(const cv::Vec3b& a, const cv::Vec3b& b) {
+  return cv::norm(a, b, cv::NORM_INF) < 40.0;
+}
+
+// A horizontal line through the middle.
+features::TrackedFeatures lineIn(State state) {
+  features::TrackedFeatures tracked;
+  tracked.features.resize(1);
+  tracked.features[0].id = "shaft";
+  tracked.features[0].state = state;
+  tracked.features[0].outline = {{100.0, 120.0}, {300.0, 120.0}};
+  features::summarise(tracked, "");
+  return tracked;
+}
+
+TEST(FeatureOverlay, DrawsWhatIsSeenAndWhatIsSearched) {
+  for (const int type : {CV_8UC1, CV_8UC3}) {
+    const cv::Mat image(240, 400, type, cv::Scalar::all(90));
+    EXPECT_TRUE(isLike(drawFeatures(image, lineIn(State::kTracking)).at<cv::Vec3b>(120, 250), kRed));
+    EXPECT_TRUE(isLike(drawFeatures(image, lineIn(State::kSearching)).at<cv::Vec3b>(120, 250), kYellow));
+    EXPECT_EQ(drawFeatures(image, lineIn(State::kLost)).at<cv::Vec3b>(120, 250), kGrey);
+    EXPECT_EQ(cv::countNonZero(image.reshape(1) != 90), 0) << "the image itself was drawn on";
+  }
+}
+
+TEST(FeatureOverlay, WritesTheState) {
+  const cv::Mat image(240, 400, CV_8UC1, cv::Scalar(90));
+  features::TrackedFeatures none;
+  features::summarise(none, "nothing is selected");
+  const cv::Mat drawn = drawFeatures(image, none);
+  EXPECT_GT(cv::countNonZero(drawn.rowRange(0, 30).reshape(1) > 180), 50);
+  EXPECT_EQ(cv::countNonZero(drawn.rowRange(60, 240).reshape(1) != 90), 0);
+}
+
+TEST(FeatureOverlay, DrawsACentreAndNothingThatIsNowhere) {
+  const cv::Mat image(240, 400, CV_8UC1, cv::Scalar(90));
+  features::TrackedFeatures tracked = lineIn(State::kTracking);
+  tracked.features[0].outline = {{200.0, 120.0}};
+  EXPECT_GT(cv::countNonZero(drawFeatures(image, tracked)(cv::Rect(185, 105, 30, 30)).reshape(1) > 180), 5);
+  for (const double far : {1e9, std::numeric_limits<double>::quiet_NaN()}) {
+    tracked.features[0].outline = {{200.0, 120.0}, {far, 120.0}};
+    EXPECT_EQ(drawFeatures(image, tracked).at<cv::Vec3b>(120, 250), kGrey);
+  }
+}
+
+}  // namespace
+}  // namespace laparoscope_servo

@@ -1,0 +1,177 @@
+#include "ros/features/feature_session.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <stdexcept>
+
+#include "ros/features/feature_trackers.h"
+#include "ros/features/selection_text.h"
+#include "support/feature_scene.h"
+#include "support/temporary_folder.h"
+
+namespace laparoscope_servo {
+namespace {
+
+using features::State;
+using test_support::coveredScene;
+using test_support::featureScene;
+using test_support::imageAt;
+
+constexpr double kPeriod = 0.04;  // s
+
+class FeatureSessionTest : public testing::TestWithParam<const char*> {
+ protected:
+  static std::string selectionText() {
+    return GetParam() == std::string("dots") ? test_support::kDotsSelection : test_support::kEdgesSelection;
+  }
+
+  FeatureSession session(const std::string& file = "") {
+    FeatureInput input;
+    std::vector<std::string> errors;
+    auto tracker = makeFeatureTracker(GetParam(), {}, "", input, errors);
+    EXPECT_TRUE(errors.empty());
+    input.selection = file;
+    return FeatureSession(input, std::move(tracker));
+  }
+
+  // At the next stamp, a new picture.
+  ProcessedFeatures next(FeatureSession& session, double shift = 0.0) {
+    time_ += kPeriod;
+    return session.process(*imageAt(featureScene(shift, ++seed_), time_));
+  }
+
+  ProcessedFeatures select(FeatureSession& session) {
+    time_ += kPeriod;
+    return session.process(*imageAt(featureScene(0.0, ++seed_), time_), parseSelection(selectionText()));
+  }
+
+  double time_ = 1000.0;
+  unsigned seed_ = 0;
+  const test_support::TemporaryFolder folder_;
+};
+
+TEST_P(FeatureSessionTest, SelectsAndTracks) {
+  FeatureSession session = this->session();
+  EXPECT_EQ(next(session).result.state, State::kIdle);
+  const ProcessedFeatures selected = select(session);
+  EXPECT_TRUE(selected.selected_now) << selected.selection_error;
+  const ProcessedFeatures tracked = next(session, 1.0);
+  EXPECT_EQ(tracked.result.state, State::kTracking) << tracked.result.reason;
+  EXPECT_FALSE(tracked.selected_now);
+  EXPECT_EQ(tracked.header.frame_id, "optical_of_the_test");
+  EXPECT_NEAR(tracked.period, kPeriod, 1e-6);
+  EXPECT_EQ(tracked.result.features.size(), 2u);
+}
+
+TEST_P(FeatureSessionTest, GoesOnWhenASelectionIsRefused) {
+  FeatureSession session = this->session();
+  select(session);
+  time_ += kPeriod;
+  const ProcessedFeatures refused =
+      session.process(*imageAt(featureScene(0.0, ++seed_), time_), parseSelection("[{id: off, point: [9999, 5]}]"));
+  EXPECT_FALSE(refused.selected_now);
+  EXPECT_FALSE(refused.selection_error.empty());
+  EXPECT_EQ(refused.result.state, State::kTracking);
+}
+
+// The first images of a camera may be black.
+TEST_P(FeatureSessionTest, SelectsTheFileInTheFirstImageThatShowsIt) {
+  const std::string file = folder_.file("features.yaml");
+  std::ofstream(file) << selectionText();
+  FeatureSession session = this->session(file);
+  const ProcessedFeatures black = session.process(*imageAt(cv::Mat(240, 320, CV_8UC1, cv::Scalar(0)), time_));
+  EXPECT_FALSE(black.selected_now);
+  EXPECT_FALSE(black.selection_error.empty());
+  EXPECT_TRUE(next(session).selected_now);
+  EXPECT_FALSE(next(session).selected_now);
+  session.reset();
+  EXPECT_FALSE(next(session).selected_now);
+  EXPECT_EQ(next(session).result.state, State::kIdle);
+  EXPECT_THROW(this->session(folder_.file("absent.yaml")), std::invalid_argument);
+}
+
+TEST_P(FeatureSessionTest, ForgetsWhenTimeBeginsAgainAndSelectsTheFileAgain) {
+  const std::string file = folder_.file("features.yaml");
+  std::ofstream(file) << selectionText();
+  for (const bool with_file : {false, true}) {
+    FeatureSession session = this->session(with_file ? file : "");
+    select(session);
+    if (with_file) {
+      session.reset();
+      session = this->session(file);
+      next(session);
+    }
+    EXPECT_EQ(next(session).result.state, State::kTracking);
+    time_ -= 100.0;
+    session.clockJumpedBack();
+    const ProcessedFeatures again = next(session);
+    EXPECT_EQ(again.selected_now, with_file);
+    EXPECT_EQ(again.result.state, with_file ? State::kTracking : State::kIdle);
+    EXPECT_EQ(again.result.reason, with_file ? "" : "time jumped back");
+    EXPECT_EQ(next(session).result.reason, with_file ? "" : "time jumped back");
+  }
+}
+
+TEST_P(FeatureSessionTest, RefusesSingleImagesThatAreNoneOfTheSequence) {
+  FeatureSession session = this->session();
+  select(session);
+  EXPECT_THROW(session.process(*imageAt(featureScene(0.0, ++seed_), time_)), ImageError);
+  EXPECT_THROW(session.process(*imageAt(featureScene(0.0, ++seed_), time_ - 50.0)), ImageError);
+  const cv::Mat colour(240, 320, CV_8UC3, cv::Scalar::all(90)), small(120, 160, CV_8UC1, cv::Scalar(90));
+  EXPECT_THROW(session.process(*imageAt(colour, time_ + 0.01)), ImageError);
+  EXPECT_THROW(session.process(*imageAt(small, time_ + 0.02)), ImageError);
+  sensor_msgs::Image bayer = *imageAt(featureScene(0.0, ++seed_), time_ + 0.03);
+  bayer.encoding = "bayer_rggb8";
+  EXPECT_THROW(session.process(bayer), ImageError);
+  EXPECT_EQ(next(session).result.state, State::kTracking);
+}
+
+TEST_P(FeatureSessionTest, EndsWithAnotherCamera) {
+  FeatureSession session = this->session();
+  select(session);
+  const cv::Mat small(120, 160, CV_8UC1, cv::Scalar(90));
+  for (int k = 0; k < 2; ++k) EXPECT_THROW(session.process(*imageAt(small, time_ += kPeriod)), ImageError);
+  const ProcessedFeatures other = session.process(*imageAt(small, time_ += kPeriod));
+  EXPECT_EQ(other.result.state, State::kIdle);
+  EXPECT_NE(other.result.reason.find("another size or type"), std::string::npos) << other.result.reason;
+}
+
+TEST_P(FeatureSessionTest, BelievesNoFrozenFeed) {
+  FeatureSession session = this->session();
+  select(session);
+  const cv::Mat frozen = featureScene(0.0, ++seed_);
+  ProcessedFeatures processed;
+  for (int k = 0; k < 4; ++k) processed = session.process(*imageAt(frozen, time_ += kPeriod));
+  EXPECT_EQ(processed.result.state, State::kSearching);
+  EXPECT_NE(processed.result.reason.find("the picture repeats"), std::string::npos) << processed.result.reason;
+  for (const features::TrackedFeature& feature : processed.result.features) {
+    EXPECT_EQ(feature.state, State::kSearching);
+    EXPECT_TRUE(std::isinf(feature.expected_error));
+    EXPECT_TRUE(std::isinf(feature.covariance(0, 0)));
+  }
+  // The tracker has lost nothing.
+  for (int k = 0; k < 3; ++k) processed = next(session);
+  EXPECT_EQ(processed.result.state, State::kTracking) << processed.result.reason;
+}
+
+TEST_P(FeatureSessionTest, SearchesWhatIsCovered) {
+  FeatureSession session = this->session();
+  select(session);
+  EXPECT_EQ(session.process(*imageAt(coveredScene(++seed_), time_ += kPeriod)).result.state, State::kSearching);
+}
+
+TEST_P(FeatureSessionTest, TellsWhyThereAreNoIntrinsics) {
+  FeatureSession session = this->session();
+  EXPECT_NE(next(session).camera_error.find("no camera_info"), std::string::npos);
+  sensor_msgs::CameraInfo info;
+  info.K = {300.0, 0.0, 160.0, 0.0, 300.0, 120.0, 0.0, 0.0, 1.0};
+  session.setCameraInfo(info);
+  EXPECT_EQ(next(session).camera_error, "");
+}
+
+INSTANTIATE_TEST_SUITE_P(All, FeatureSessionTest, testing::Values("dots", "edges"));
+
+}  // namespace
+}  // namespace laparoscope_servo

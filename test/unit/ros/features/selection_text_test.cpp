@@ -1,0 +1,103 @@
+#include "ros/features/selection_text.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <stdexcept>
+
+#include "support/temporary_folder.h"
+
+namespace laparoscope_servo {
+namespace {
+
+using features::FeatureKind;
+using features::FeatureSelection;
+
+std::string errorOf(const std::string& text) {
+  try {
+    parseSelection(text);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(SelectionText, ReadsEveryShape) {
+  const FeatureSelection selection = parseSelection(R"(
+# what a surgeon's engineer writes
+- {id: shaft, line: [[100, 50], [300, 80.5]], range: 12}
+- {id: rim, ellipse: {centre: [160, 120], radii: [40, 30], angle: 0.2}, arc: [0.5, 2.0]}
+- {id: trocar, ellipse: [[1, 2], [3, 4], [5, 6], [7, 8], [9, 10]]}
+- {id: left dot, point: [80, 60], desired: [160, 120]}
+- {id: outline, spline: [[20, 30], [60, 40], [70, 80], [50, 90]]}
+)");
+  ASSERT_EQ(selection.size(), 5u);
+  EXPECT_EQ(selection[0].id, "shaft");
+  EXPECT_EQ(selection[0].kind, FeatureKind::kLine);
+  EXPECT_EQ(selection[0].points[1], Eigen::Vector2d(300.0, 80.5));
+  EXPECT_EQ(selection[0].range, 12.0);
+  EXPECT_EQ(selection[1].kind, FeatureKind::kEllipse);
+  ASSERT_TRUE(selection[1].ellipse);
+  EXPECT_EQ(selection[1].ellipse->centre, Eigen::Vector2d(160.0, 120.0));
+  EXPECT_EQ(selection[1].ellipse->b, 30.0);
+  EXPECT_EQ(selection[1].ellipse->angle, 0.2);
+  ASSERT_TRUE(selection[1].arc);
+  EXPECT_EQ(selection[1].arc->extent, 2.0);
+  EXPECT_FALSE(selection[2].ellipse);
+  EXPECT_EQ(selection[2].points.size(), 5u);
+  EXPECT_EQ(selection[3].id, "left dot");
+  EXPECT_EQ(selection[3].desired, Eigen::Vector2d(160.0, 120.0));
+  EXPECT_EQ(selection[4].kind, FeatureKind::kSpline);
+  EXPECT_EQ(selection[4].points.size(), 4u);
+}
+
+TEST(SelectionText, ReadsJson) {
+  EXPECT_EQ(parseSelection(R"([{"id": "a", "point": [80, 60.5]}])")[0].points[0], Eigen::Vector2d(80.0, 60.5));
+}
+
+TEST(SelectionText, NamesFeatureLineValueAndExpectation) {
+  EXPECT_EQ(errorOf("- {id: a, point: [1, 2]}\n- {id: b, point: [1, two]}"),
+            "selection: b, line 2: point = two, expected a number");
+  EXPECT_EQ(errorOf("- {id: a, point: [1]}"), "selection: a, line 1: point, expected [x, y], px");
+  EXPECT_EQ(errorOf("- {id: a, line: 7}"),
+            "selection: a, line 1: line = 7, expected points: [[x, y], [x, y], ...], px");
+  EXPECT_EQ(errorOf("- {point: [1, 2]}"), "selection: a feature, line 1: id, expected a name");
+  EXPECT_NE(errorOf("- {id: a, lien: [[1, 2], [3, 4]]}").find("key lien"), std::string::npos);
+  EXPECT_NE(errorOf("- {id: a, point: [1, 2], line: [[1, 2], [3, 4]]}").find("its 2 shapes"), std::string::npos);
+  EXPECT_NE(errorOf("- {id: a}").find("its 0 shapes"), std::string::npos);
+  EXPECT_NE(errorOf("- {id: a, ellipse: {centre: [1, 2]}}").find("radii: [a, b]"), std::string::npos);
+  EXPECT_NE(errorOf("- {id: a, ellipse: {centre: [1, 2], radii: [3, 4], tilt: 1}}").find("= tilt"), std::string::npos);
+  EXPECT_NE(errorOf("- {id: a, point: [1, 2], range: far}").find("range = far"), std::string::npos);
+  EXPECT_NE(errorOf("- {id: a, point: [1, 2], desired: 5}").find("desired = 5"), std::string::npos);
+  EXPECT_NE(errorOf("- seven").find("a feature = seven"), std::string::npos);
+}
+
+TEST(SelectionText, TellsAllErrorsAtOnce) {
+  const std::string error = errorOf("- {id: a, point: [x, y]}\n- {id: b}");
+  for (const char* part : {"= x", "= y", "b, line 2"}) EXPECT_NE(error.find(part), std::string::npos) << error;
+}
+
+TEST(SelectionText, RefusesWhatIsNoList) {
+  for (const char* text : {"", "[]", "7", "{id: a, point: [1, 2]}"})
+    EXPECT_NE(errorOf(text).find("no list of features"), std::string::npos) << text;
+  EXPECT_NE(errorOf("- {id: a, point: [1, 2}"), "");
+}
+
+TEST(SelectionText, NamesTheFile) {
+  const test_support::TemporaryFolder folder;
+  const std::string file = folder.file("features.yaml");
+  for (const bool there : {false, true}) {
+    if (there) std::ofstream(file) << "- {id: a}\n";
+    try {
+      readSelection(file);
+      FAIL() << there;
+    } catch (const std::invalid_argument& error) {
+      EXPECT_NE(std::string(error.what()).find(file), std::string::npos) << error.what();
+    }
+  }
+  std::ofstream(file) << "- {id: a, point: [1, 2]}\n";
+  EXPECT_EQ(readSelection(file).size(), 1u);
+}
+
+}  // namespace
+}  // namespace laparoscope_servo
