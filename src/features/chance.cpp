@@ -16,16 +16,19 @@ double part(double share, double chance) {
 
 }  // namespace
 
-bool isNoChance(const Agreement& a) {
-  if (a.sites <= 0) return false;
+double evidence(const Agreement& a) {
+  if (a.sites <= 0) return 0.0;
   const double share = static_cast<double>(a.agree) / a.sites;
   // A stray edge lies within the tolerance of a given curve.
   const double chance = std::clamp(a.strays * a.tolerance / a.range, 1e-3, 0.999);
-  if (!(share > chance)) return false;
+  if (!(share > chance)) return 0.0;
   // Hoeffding: of n sites at least share n agree with a probability of at most exp(-n D), D the divergence of the two.
-  const double divergence = part(share, chance) + part(1.0 - share, 1.0 - chance);
+  return a.independent * a.sites * (part(share, chance) + part(1.0 - share, 1.0 - chance));
+}
+
+bool isNoChance(const Agreement& a) {
   const double curves = std::min(a.freedoms, kMostFreedoms) * std::log(a.range / a.tolerance);
-  return a.independent * a.sites * divergence > curves - std::log(kFalseAlarms);
+  return evidence(a) > curves - std::log(kFalseAlarms);
 }
 
 }  // namespace laparoscope_servo::features

@@ -13,6 +13,10 @@ struct Agreement {
   double independent = 1.0;  // share of the sites that do not see what their neighbours see
 };
 
+// How improbable it is that, were the edges strewn at random, so many agree with one given curve: minus the logarithm
+// of a bound of the probability, at least 0.
+double evidence(const Agreement& agreement);
+
 // True when, were the edges strewn at random, fewer than one image in 10,000 would have as good a curve anywhere in the
 // range.
 bool isNoChance(const Agreement& agreement);

@@ -32,10 +32,13 @@ class EdgeFit::Implementation {
 
   EdgeReport learn(const cv::Mat& image, Curve& curve, double range) {
     reserve(curve);
-    // Which side is the brighter one; a curve over a background of both kinds comes last.
+    // Which side is the brighter one; a curve over a background of both kinds comes last. Where pieces do not look
+    // alike, each has a side of its own.
+    const bool alike = curve.likeSlots() >= curve.slots();
     double best = 0.0;
     EdgeSign sign = EdgeSign::kAny;
     for (const EdgeSign tried : {EdgeSign::kPositive, EdgeSign::kNegative, EdgeSign::kAny}) {
+      if (!alike && tried != EdgeSign::kAny) continue;
       sign_ = tried;
       const double score = searched(image, curve, range).score * (tried == EdgeSign::kAny ? 0.7 : 1.0);
       if (score > best) {
@@ -77,7 +80,7 @@ class EdgeFit::Implementation {
   void reserve(const Curve& curve) {
     const int rows = config_.max_sites + 16;
     const std::size_t size = static_cast<std::size_t>(rows);
-    memory_.reset(curve.slots());
+    memory_.reset(curve.slots(), curve.likeSlots());
     sites_.reserve(size);
     candidates_.resize(size);
     association_.reserve(curve.slots(), size);
@@ -91,8 +94,8 @@ class EdgeFit::Implementation {
   bool agrees(std::size_t site) const { return association_.findings()[site].weight >= kAgreeWeight; }
 
   float weight(const EdgeLooks* memory, const EdgeLooks& looks) const {
-    if (sign_ == EdgeSign::kRemembered) {
-      return memory != nullptr ? similarity(looks, *memory, static_cast<float>(config_.min_similarity)) : 0.0f;
+    if (sign_ == EdgeSign::kRemembered && memory != nullptr) {
+      return similarity(looks, *memory, static_cast<float>(config_.min_similarity));
     }
     if (sign_ == EdgeSign::kPositive && looks.contrast < 0.0f) return 0.0f;
     if (sign_ == EdgeSign::kNegative && looks.contrast > 0.0f) return 0.0f;

@@ -16,7 +16,8 @@ constexpr double kAlikeShare = 0.7;  // of the sites used
 
 }  // namespace
 
-void EdgeMemory::reset(int slots) {
+void EdgeMemory::reset(int slots, int like) {
+  like_ = like;
   entries_.assign(static_cast<std::size_t>(slots), Entry());
 }
 
@@ -30,7 +31,7 @@ void EdgeMemory::learn(int slot, const EdgeLooks& now, float share) {
 
 const EdgeLooks* EdgeMemory::find(int slot) const {
   const int slots = static_cast<int>(entries_.size());
-  for (int d = 0; d < slots; ++d) {
+  for (int d = 0; d < std::min(slots, like_ + 1); ++d) {
     for (const int s : {slot - d, slot + d}) {
       if (s >= 0 && s < slots && entries_[static_cast<std::size_t>(s)].known) {
         return &entries_[static_cast<std::size_t>(s)].looks;

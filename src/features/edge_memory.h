@@ -18,11 +18,11 @@ enum class EdgeSign {
 
 class EdgeMemory {
  public:
-  // Forgets everything; for a curve of so many slots.
-  void reset(int slots);
+  // Forgets everything; for a curve of so many slots, each of which looks like those up to `like` further on.
+  void reset(int slots, int like);
   // Adds the share `share` (0 to 1) of `now` to what is remembered of the slot; all of it where nothing is.
   void learn(int slot, const EdgeLooks& now, float share);
-  // Of the slot itself, else of the nearest one that is known; null while none is.
+  // Of the slot itself, else of the nearest one that is known and looks alike; null while none is.
   const EdgeLooks* find(int slot) const;
 
  private:
@@ -32,6 +32,7 @@ class EdgeMemory {
   };
 
   std::vector<Entry> entries_;
+  int like_ = 0;  // slots
 };
 
 // Looks of edges, pair by pair and all together, against those remembered; the means tell smaller differences.

@@ -57,6 +57,7 @@ void judge(const FitOutcome& fit, const EdgeConfig& config, double min_share, Ed
   agreement.range = fit.range;
   agreement.freedoms = fit.parameters;
   agreement.independent = std::min(1.0, config.spacing / kCorrelation);
+  report.evidence = evidence(agreement);
   if (report.inside < kLeastSites) {
     report.reason = Reason::kOutside;
   } else if (!(report.share >= min_share) || report.used < kLeastSites) {

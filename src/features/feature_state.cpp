@@ -50,6 +50,8 @@ const char* reasonText(Reason reason) {
       return "another feature was found in its place";
     case Reason::kNotSeen:
       return "nothing near there looks like it: covered, gone, or merged with something";
+    case Reason::kAmbiguous:
+      return "the image shows it in two poses that cannot be told apart";
   }
   return "";
 }

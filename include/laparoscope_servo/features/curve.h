@@ -40,6 +40,9 @@ class Curve {
 
   virtual int parameters() const = 0;
   virtual int slots() const = 0;
+  // How many slots further on the curve still looks as it does at a slot. Where none so near has been seen, any edge
+  // may be the curve's.
+  virtual int likeSlots() const { return slots(); }
   // About `spacing` px apart, `most` of them at most, probes aside. Overwrites `result`.
   virtual void sites(double spacing, int most, std::vector<Site>& result) const = 0;
   // By a step of its parameters, which displaces each site along its normal by its jacobian times the step, to first

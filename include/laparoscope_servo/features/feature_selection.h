@@ -1,7 +1,7 @@
 // What a person or a program selects for a tracker of features.
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,6 +31,7 @@ struct SelectedFeature {
   std::vector<Eigen::Vector2d> points;
   std::optional<EllipseSelection> ellipse;
   std::optional<ArcSelection> arc;
+  std::optional<Eigen::Isometry3d> pose;  // of a POSE: where the object is about, camera_T_object, m
   double range = 6.0;       // px, by which the edge may be off
   Eigen::VectorXd desired;  // see TrackedFeature; empty: none
 };

@@ -27,6 +27,7 @@ enum class Reason {
   kNotConfirmed,
   kTaken,
   kNotSeen,
+  kAmbiguous,
 };
 
 const char* stateName(State state);
