@@ -7,7 +7,7 @@ namespace {
 
 TEST(EdgeMemory, asksTheNearestSlotThatIsKnown) {
   EdgeMemory memory;
-  memory.reset(20);
+  memory.reset(20, 20);
   EXPECT_EQ(memory.find(7), nullptr);
   memory.learn(3, {10.0f, 100.0f, 110.0f}, 1.0f);
   memory.learn(15, {20.0f, 50.0f, 70.0f}, 1.0f);
@@ -16,13 +16,22 @@ TEST(EdgeMemory, asksTheNearestSlotThatIsKnown) {
   EXPECT_EQ(memory.find(8)->contrast, 10.0f);
   EXPECT_EQ(memory.find(10)->contrast, 20.0f);
   EXPECT_EQ(memory.find(19)->contrast, 20.0f);
-  memory.reset(20);
+  memory.reset(20, 20);
   EXPECT_EQ(memory.find(3), nullptr);
+}
+
+TEST(EdgeMemory, doesNotAskASlotThatDoesNotLookAlike) {
+  EdgeMemory memory;
+  memory.reset(20, 2);
+  memory.learn(3, {10.0f, 100.0f, 110.0f}, 1.0f);
+  EXPECT_NE(memory.find(5), nullptr);
+  EXPECT_EQ(memory.find(6), nullptr);
+  EXPECT_EQ(memory.find(0), nullptr);
 }
 
 TEST(EdgeMemory, takesThePartOfANewImageThatIsAskedFor) {
   EdgeMemory memory;
-  memory.reset(4);
+  memory.reset(4, 4);
   // The first looks are taken whole.
   memory.learn(1, {10.0f, 100.0f, 110.0f}, 0.2f);
   EXPECT_EQ(memory.find(1)->contrast, 10.0f);
