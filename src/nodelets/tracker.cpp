@@ -159,17 +159,17 @@ void Tracker::followRobot(const RobotMotionConfig& config) {
 }
 
 void Tracker::subscribeImages() {
-  // A queue of one: the control loop needs the newest image only.
-  constexpr std::uint32_t kQueue = 1;
   const ros::TransportHints no_delay = ros::TransportHints().tcpNoDelay();
   const image_transport::TransportHints hints("raw", no_delay, getPrivateNodeHandle());
   // subscribes to the topic itself, since only then the sender of an image is known
   if (hints.getTransport() == "raw") {
-    image_subscriber_ = getNodeHandle().subscribe("image", kQueue, &Tracker::rawImageCallback, this, no_delay);
+    image_subscriber_ =
+        getNodeHandle().subscribe("image", ImageBacklog::kQueue, &Tracker::rawImageCallback, this, no_delay);
     return;
   }
   transport_ = std::make_unique<image_transport::ImageTransport>(getNodeHandle());
-  transport_subscriber_ = transport_->subscribe("image", kQueue, &Tracker::imageCallback, this, hints);
+  // A queue of one, since it is not known how long an image has waited in it.
+  transport_subscriber_ = transport_->subscribe("image", 1, &Tracker::imageCallback, this, hints);
 }
 
 void Tracker::cameraInfoCallback(const ros::MessageEvent<const sensor_msgs::CameraInfo>& event) {
@@ -179,9 +179,14 @@ void Tracker::cameraInfoCallback(const ros::MessageEvent<const sensor_msgs::Came
 
 void Tracker::rawImageCallback(const ros::MessageEvent<const sensor_msgs::Image>& event) {
   const double now = steadyNow();
-  if (image_owner_.counts(event.getPublisherName(), now)) return imageCallback(event.getConstMessage());
-  refuse("several nodes publish " + image_subscriber_.getTopic() + ": " + image_owner_.complaint(now),
-         Refusal::kSender);
+  if (!image_owner_.counts(event.getPublisherName(), now)) {
+    return refuse("several nodes publish " + image_subscriber_.getTopic() + ": " + image_owner_.complaint(now),
+                  Refusal::kSender);
+  }
+  const sensor_msgs::ImageConstPtr message = event.getConstMessage();
+  if (!backlog_.takes(message->header.stamp, (ros::Time::now() - event.getReceiptTime()).toSec())) return;
+  imageCallback(message);
+  backlog_.took(steadyNow() - now);
 }
 
 // A bag that begins again also sets the clock back.

@@ -22,6 +22,7 @@
 #include "ros/common/owned_transforms.h"
 #include "ros/common/reconfigure_server.h"
 #include "ros/tracker/feed_owner.h"
+#include "ros/tracker/image_backlog.h"
 #include "ros/tracker/preview.h"
 #include "ros/tracker/region_desk.h"
 #include "ros/tracker/tracker_diagnostics.h"
@@ -85,6 +86,7 @@ class Tracker : public nodelet::Nodelet {
   std::unique_ptr<ros::AsyncSpinner> view_spinner_;
 
   FeedOwner image_owner_;
+  ImageBacklog backlog_;
   FeedOwner camera_info_owner_;
   ros::Time last_now_;
   std::unique_ptr<image_transport::ImageTransport> transport_;  // for other transports than raw
