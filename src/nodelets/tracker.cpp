@@ -184,7 +184,9 @@ void Tracker::rawImageCallback(const ros::MessageEvent<const sensor_msgs::Image>
                   Refusal::kSender);
   }
   const sensor_msgs::ImageConstPtr message = event.getConstMessage();
-  if (!backlog_.takes(message->header.stamp, (ros::Time::now() - event.getReceiptTime()).toSec())) return;
+  // The time of a recording goes at the player's pace, and tells nothing of how long an image has waited.
+  const double waited = ros::Time::isSimTime() ? 0.0 : (ros::Time::now() - event.getReceiptTime()).toSec();
+  if (!backlog_.takes(message->header.stamp, waited)) return;
   imageCallback(message);
   backlog_.took(steadyNow() - now);
 }
