@@ -63,8 +63,8 @@ void TrackerDiagnostics::processed(double now, const Processed& processed, bool 
   rectifies_ = processed.lens != nullptr;
 }
 
-// A gap in the stamps, relative to the usual period, counts as dropped images: they were lost on the way, or given up for
-// a newer one (ImageBacklog).
+// A gap in the stamps, relative to the usual period, counts as dropped images: they were lost on the way, or given up
+// for a newer one (ImageBacklog).
 void TrackerDiagnostics::countDropped(double now, double period) {
   if (!(period > 0.0)) return;
   // A gap can be detected only with a period from several images.
