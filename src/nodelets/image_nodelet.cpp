@@ -2,7 +2,6 @@
 
 #include <diagnostic_msgs/DiagnosticStatus.h>
 
-#include <cstdint>
 #include <exception>
 
 #include "ros/common/clocks.h"
@@ -41,17 +40,17 @@ void ImageNodelet::standAside(const std::string& why) {
 
 void ImageNodelet::subscribe() {
   camera_info_subscriber_ = getNodeHandle().subscribe("camera_info", 2, &ImageNodelet::cameraInfoCallback, this);
-  // A queue of one: the control loop needs the newest image only.
-  constexpr std::uint32_t kQueue = 1;
   const ros::TransportHints no_delay = ros::TransportHints().tcpNoDelay();
   const image_transport::TransportHints hints("raw", no_delay, getPrivateNodeHandle());
   // subscribes to the topic itself, since only then the sender of an image is known
   if (hints.getTransport() == "raw") {
-    image_subscriber_ = getNodeHandle().subscribe("image", kQueue, &ImageNodelet::rawImageCallback, this, no_delay);
+    image_subscriber_ =
+        getNodeHandle().subscribe("image", ImageBacklog::kQueue, &ImageNodelet::rawImageCallback, this, no_delay);
     return;
   }
   transport_ = std::make_unique<image_transport::ImageTransport>(getNodeHandle());
-  transport_subscriber_ = transport_->subscribe("image", kQueue, &ImageNodelet::imageCallback, this, hints);
+  // A queue of one, since it is not known how long an image has waited in it.
+  transport_subscriber_ = transport_->subscribe("image", 1, &ImageNodelet::imageCallback, this, hints);
 }
 
 void ImageNodelet::cameraInfoCallback(const ros::MessageEvent<const sensor_msgs::CameraInfo>& event) {
@@ -61,9 +60,16 @@ void ImageNodelet::cameraInfoCallback(const ros::MessageEvent<const sensor_msgs:
 
 void ImageNodelet::rawImageCallback(const ros::MessageEvent<const sensor_msgs::Image>& event) {
   const double now = steadyNow();
-  if (image_owner_.counts(event.getPublisherName(), now)) return imageCallback(event.getConstMessage());
-  refuse("several nodes publish " + image_subscriber_.getTopic() + ": " + image_owner_.complaint(now),
-         Refusal::kSender);
+  if (!image_owner_.counts(event.getPublisherName(), now)) {
+    return refuse("several nodes publish " + image_subscriber_.getTopic() + ": " + image_owner_.complaint(now),
+                  Refusal::kSender);
+  }
+  const sensor_msgs::ImageConstPtr message = event.getConstMessage();
+  // The time of a recording goes at the player's pace, and tells nothing of how long an image has waited.
+  const double waited = ros::Time::isSimTime() ? 0.0 : (ros::Time::now() - event.getReceiptTime()).toSec();
+  if (!backlog_.takes(message->header.stamp, waited)) return;
+  imageCallback(message);
+  backlog_.took(steadyNow() - now);
 }
 
 void ImageNodelet::imageCallback(const sensor_msgs::ImageConstPtr& message) {

@@ -15,6 +15,7 @@
 
 #include "ros/tracker/feed_owner.h"
 #include "ros/tracker/feed_statistics.h"
+#include "ros/tracker/image_backlog.h"
 #include "ros/tracker/image_conversion.h"
 
 namespace laparoscope_servo::nodelets {
@@ -58,6 +59,7 @@ class ImageNodelet : public nodelet::Nodelet {
   bool started_ = false;
   std::string why_aside_;
   FeedOwner image_owner_;
+  ImageBacklog backlog_;
   FeedOwner camera_info_owner_;
   ros::Time last_now_;
   std::unique_ptr<image_transport::ImageTransport> transport_;  // for other transports than raw

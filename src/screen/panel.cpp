@@ -3,12 +3,22 @@
 #include <ros/names.h>
 #include <rviz/config.h>
 
+#include <QDockWidget>
+#include <QGuiApplication>
 #include <QLabel>
+#include <QMainWindow>
+#include <QScreen>
 #include <pluginlib/class_list_macros.hpp>
 
 #include "screen/space/frame_rate.h"
 
 namespace laparoscope_servo::screen {
+
+namespace {
+
+constexpr int kViewWidth = 100;  // px, what is left at least for the view in space, and for frames
+
+}  // namespace
 
 Panel::Panel(QWidget* parent) : rviz::Panel(parent) {
   layout_ = new QVBoxLayout(this);
@@ -29,7 +39,7 @@ Panel::Panel(QWidget* parent) : rviz::Panel(parent) {
 }
 
 void Panel::onInitialize() {
-  FrameRate::guard(*vis_manager_);
+  FrameRate::guard(*vis_manager_, *this);
 }
 
 // Ignores a text that is no valid name.
@@ -46,8 +56,27 @@ void Panel::follow(const QString& space) {
   layout_->addWidget(screen_.get(), 1);
 }
 
+// rviz would put it below another screen, where 1000 px of height have no room for its STOP: it comes beside that one,
+// or where the display is too narrow for both, behind it, with a tab for each. Where the configuration has an
+// arrangement of its own, rviz restores that later.
+void Panel::standBesideOthers() {
+  auto* frame = qobject_cast<QMainWindow*>(window());
+  auto* dock = qobject_cast<QDockWidget*>(parentWidget());
+  if (frame == nullptr || dock == nullptr) return;
+  const int room = QGuiApplication::primaryScreen()->availableSize().width() - kViewWidth;
+  for (QDockWidget* other : frame->findChildren<QDockWidget*>()) {
+    if (other == dock || qobject_cast<Panel*>(other->widget()) == nullptr) continue;
+    if (other->minimumSizeHint().width() + dock->minimumSizeHint().width() <= room) {
+      frame->splitDockWidget(other, dock, Qt::Horizontal);
+    } else {
+      frame->tabifyDockWidget(other, dock);
+    }
+  }
+}
+
 void Panel::load(const rviz::Config& config) {
   rviz::Panel::load(config);
+  standBesideOthers();
   QString space;
   if (!config.mapGetString("Namespace", &space) || space.isEmpty()) return;
   space_->setText(space);

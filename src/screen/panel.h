@@ -24,6 +24,7 @@ class Panel : public rviz::Panel {
 
  private:
   void follow(const QString& space);
+  void standBesideOthers();
 
   QVBoxLayout* layout_;
   QLineEdit* space_;

@@ -191,15 +191,16 @@ void RosLink::stop() {
   dead_man_.letGo();
   slider_.letGo();
   tracker_.thaw();
-  const std::lock_guard<std::mutex> lock(mutex_);
-  if (!connection_) return;
-  connection_->robot_stop.publish(std_msgs::Empty());
-  connection_->controller_stop.publish(std_msgs::Empty());
-  connection_->sender->wake();
-  std_srvs::SetBool disengage;
-  disengage.request.data = 0;
-  calls_.call(connection_->node.resolveName("controller/engage"), "STOP, disengage", disengage);
-  calls_.call(connection_->node.resolveName("aesop/disable"), "STOP, disable", std_srvs::Trigger());
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!connection_) return;
+    connection_->robot_stop.publish(std_msgs::Empty());
+    connection_->controller_stop.publish(std_msgs::Empty());
+    connection_->sender->wake();
+  }
+  // Without the lock: the answer of another call may ask for it while calls_ waits for that answer.
+  engage(false, "STOP, disengage");
+  trigger("aesop/disable", "STOP, disable");
 }
 
 std::string RosLink::resolved(const std::string& name) const {
@@ -212,11 +213,11 @@ void RosLink::trigger(const std::string& service, const std::string& what) {
   if (!name.empty()) calls_.call(name, what, std_srvs::Trigger());
 }
 
-void RosLink::engage(bool on) {
+void RosLink::engage(bool on, const std::string& what) {
   std_srvs::SetBool request;
   request.request.data = static_cast<std::uint8_t>(on);
   const std::string name = resolved("controller/engage");
-  if (!name.empty()) calls_.call(name, on ? "Engage" : "Disengage", request);
+  if (!name.empty()) calls_.call(name, what, request);
 }
 
 void RosLink::selectTask(const std::string& task) {

@@ -51,7 +51,7 @@ class RosLink {
   void resume() { trigger("aesop/resume", "Resume"); }
   void clearFault() { trigger("aesop/clear_fault", "Clear fault"); }
   void clearRegion() { trigger("tracker/reset", "Clear region"); }
-  void engage(bool on);
+  void engage(bool on) { engage(on, on ? "Engage" : "Disengage"); }
   void selectTask(const std::string& task);
 
   HeldControl& deadMan() { return dead_man_; }
@@ -80,6 +80,7 @@ class RosLink {
   void renewed();
   std::string resolved(const std::string& name) const;
   void trigger(const std::string& service, const std::string& what);
+  void engage(bool on, const std::string& what);
   void take(const Answer& answer);
 
   std::function<void()> news_;

@@ -6,10 +6,10 @@
 #include <QApplication>
 #include <QGridLayout>
 #include <QKeyEvent>
-#include <QStyle>
 #include <QVBoxLayout>
 
 #include "ros/common/clocks.h"
+#include "screen/action_bar.h"
 #include "screen/band_text.h"
 #include "screen/minute_limits.h"
 
@@ -20,7 +20,6 @@ namespace {
 constexpr int kBeat = 50;            // ms
 constexpr double kMinuteBeat = 0.5;  // s between two updates of the last minute
 constexpr int kColumnWidth = 410;    // px
-constexpr int kActionsHeight = 96;   // px
 constexpr int kAnswerHeight = 40;    // px
 
 const char* const kStyle = R"(
@@ -49,14 +48,6 @@ std::string cartName(const std::string& space) {
   return name == "/" || name == "//" ? "" : ros::names::clean(name);
 }
 
-// Marks the active one of several buttons.
-void mark(QPushButton* button, bool active) {
-  if (button->property("active").toBool() == active) return;
-  button->setProperty("active", active);
-  button->style()->unpolish(button);
-  button->style()->polish(button);
-}
-
 }  // namespace
 
 ScreenWidget::ScreenWidget(QWidget* parent, const std::string& space) : QWidget(parent) {
@@ -80,7 +71,9 @@ ScreenWidget::ScreenWidget(QWidget* parent, const std::string& space) : QWidget(
   playback_ = new PlaybackBar(
       [this](const std::string& command, double position) { link_->controlPlayback(command, position); }, this);
   layout->addWidget(playback_, 1, 0);
-  layout->addWidget(makeActions(), 2, 0);
+  layout->addWidget(new ActionBar(
+                        *link_, [this] { stop(); }, this),
+                    2, 0);
   layout->addWidget(makeColumn(space), 0, 1, 3, 1);
   layout->setColumnStretch(0, 1);
   layout->setRowStretch(0, 1);
@@ -95,8 +88,7 @@ ScreenWidget::ScreenWidget(QWidget* parent, const std::string& space) : QWidget(
 
 ScreenWidget::~ScreenWidget() {
   qApp->removeEventFilter(this);
-  dead_man_->letGo();
-  for (VelocitySlider* slider : sliders_) slider->letGo();
+  letGo();
   link_.reset();
 }
 
@@ -106,46 +98,6 @@ void ScreenWidget::select(const QRect& pixels) {
   link_->tracker().selectRegion(pixels);
   if (facts.playback.connected && facts.playback.state == "PAUSED" && !facts.frozen)
     link_->controlPlayback("STEP", 0.0);
-}
-
-QPushButton* ScreenWidget::makeButton(const QString& text, const QString& tip, const std::function<void()>& act) {
-  auto* button = new QPushButton(text, this);
-  button->setObjectName(text.toLower().replace(' ', '_'));
-  button->setToolTip(tip);
-  button->setFocusPolicy(Qt::NoFocus);  // otherwise the space bar would press it
-  button->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Expanding);
-  connect(button, &QPushButton::clicked, this, [act] { act(); });
-  return button;
-}
-
-QWidget* ScreenWidget::makeActions() {
-  auto* actions = new QWidget(this);
-  actions->setFixedHeight(kActionsHeight);
-  auto* grid = new QGridLayout(actions);
-  grid->setContentsMargins(0, 0, 0, 0);
-  grid->setSpacing(6);
-  grid->addWidget(makeButton("Enable", "The arm may move when it is told to", [this] { link_->enable(); }), 0, 0);
-  grid->addWidget(makeButton("Disable", "The arm stands, and may be moved by hand", [this] { link_->disable(); }), 1,
-                  0);
-  grid->addWidget(makeButton("Engage", "The controller moves the scope", [this] { link_->engage(true); }), 0, 1);
-  grid->addWidget(makeButton("Disengage", "The controller stands", [this] { link_->engage(false); }), 1, 1);
-  grid->addWidget(makeButton("Hold", "The arm pauses", [this] { link_->pause(); }), 0, 2);
-  grid->addWidget(makeButton("Resume", "A paused arm goes on", [this] { link_->resume(); }), 1, 2);
-  grid->addWidget(makeButton("Clear region", "The tracker forgets its region", [this] { link_->clearRegion(); }), 0, 3);
-  grid->addWidget(makeButton("Clear fault", "After its cause was removed", [this] { link_->clearFault(); }), 1, 3);
-  grid->addWidget(
-      makeButton("Freeze", "Keeps this picture, to draw a region in it at leisure; the arm is not held by it",
-                 [this] { link_->tracker().freeze(); }),
-      0, 4);
-  grid->addWidget(makeButton("Live", "Back from the frozen picture", [this] { link_->tracker().thaw(); }), 1, 4);
-  auto* stop = makeButton("STOP", "Disengages and disables: also by Escape or Pause", [] {});
-  // Acts on the press, not on the release.
-  connect(stop, &QPushButton::pressed, this, [this] { this->stop(); });
-  stop->setMinimumWidth(136);
-  grid->addWidget(stop, 0, 5, 2, 1);
-  for (int column = 0; column < 5; ++column) grid->setColumnStretch(column, 2);
-  grid->setColumnStretch(5, 3);
-  return actions;
 }
 
 QWidget* ScreenWidget::makeColumn(const std::string& space) {
@@ -164,8 +116,8 @@ QWidget* ScreenWidget::makeColumn(const std::string& space) {
   layout->addWidget(tracker_ = new StateBand("Tracker", column));
   layout->addWidget(controller_ = new StateBand("Controller", column));
   layout->addWidget(robot_ = new StateBand("Robot", column));
-  const auto said = [this] { link_->said(); };
-  layout->addWidget(dead_man_ = new DeadManButton(link_->deadMan(), said, column));
+  layout->addWidget(dead_man_ = new DeadManButton(
+                        link_->deadMan(), [this] { link_->said(); }, column));
   layout->addWidget(makeTabs(), 1);
   answer_ = new QLabel(column);
   answer_->setObjectName("answer");
@@ -183,7 +135,7 @@ QWidget* ScreenWidget::makeTabs() {
   tabs->setObjectName("tabs");
   tabs->tabBar()->setFocusPolicy(Qt::NoFocus);  // otherwise arrow keys would change the tab
   tabs->setFocusPolicy(Qt::NoFocus);
-  tabs->addTab(makeDrive(), "Drive");
+  tabs->addTab(drive_ = new DrivePanel(*link_, tabs), "Drive");
   views_ = new ViewsPanel([this](const std::string& name) { link_->tracker().storeView(name); },
                           [this](const std::string& name) { link_->tracker().recallView(name); }, tabs);
   tabs->addTab(views_, "Views");
@@ -195,36 +147,6 @@ QWidget* ScreenWidget::makeTabs() {
   return tabs;
 }
 
-QWidget* ScreenWidget::makeDrive() {
-  auto* column = new QWidget(this);
-  auto* layout = new QVBoxLayout(column);
-  layout->setContentsMargins(2, 2, 2, 2);
-  layout->setSpacing(2);
-  const auto said = [this] { link_->said(); };
-  auto* tasks = new QHBoxLayout;
-  follow_ = makeButton("Follow", "The scope keeps the region where it was", [this] { link_->selectTask("HOLD_VIEW"); });
-  drive_ = makeButton("Drive by hand", "The scope follows the sliders", [this] { link_->selectTask("MANUAL"); });
-  for (QPushButton* button : {follow_, drive_}) {
-    button->setFixedHeight(32);
-    tasks->addWidget(button);
-  }
-  layout->addLayout(tasks);
-  const char* const names[4][3] = {
-      {"Pan", "left", "right"}, {"Tilt", "down", "up"}, {"Spin", "left", "right"}, {"Insertion", "out", "deeper"}};
-  const auto shares = [this] {
-    std::array<double, 4> values{};
-    for (std::size_t k = 0; k < values.size(); ++k) values[k] = sliders_[k] != nullptr ? sliders_[k]->share() : 0.0;
-    link_->setShares(values);
-    link_->said();
-  };
-  for (std::size_t k = 0; k < sliders_.size(); ++k) {
-    sliders_[k] = new VelocitySlider(names[k][0], names[k][1], names[k][2], link_->slider(), shares, said, column);
-    layout->addWidget(sliders_[k]);
-  }
-  layout->addStretch(1);
-  return column;
-}
-
 void ScreenWidget::refresh() {
   const Facts facts = link_->facts();
   const double now = steadyNow();
@@ -234,7 +156,7 @@ void ScreenWidget::refresh() {
   robot_->show(robotBand(facts, now));
   dead_man_->setWanted(facts.dead_man_wanted);
   playback_->show(facts.playback);
-  showTask(facts);
+  drive_->show(facts);
   views_->show(facts);
   parameters_->show(facts);
   showMinute(facts, now);
@@ -245,20 +167,6 @@ void ScreenWidget::showMinute(const Facts& facts, double now) {
   if (!minute_->isVisible() || now - minute_shown_at_ < kMinuteBeat) return;
   minute_shown_at_ = now;
   minute_->show(link_->minute(now), minuteLimits(facts));
-}
-
-void ScreenWidget::showTask(const Facts& facts) {
-  const std::string task = facts.controller.connected ? facts.controller.task : "";
-  mark(follow_, task == "HOLD_VIEW");
-  mark(drive_, task == "MANUAL");
-  const bool by_hand = task == "MANUAL" && facts.limits.has_value();
-  for (std::size_t k = 0; k < sliders_.size(); ++k) {
-    sliders_[k]->setEnabled(by_hand);
-    if (!facts.limits) continue;
-    const double limit = (*facts.limits)[k];
-    sliders_[k]->setLimit(k < 3 ? QString::number(limit, 'g', 3) + " rad/s"
-                                : QString::number(1e3 * limit, 'g', 3) + " mm/s");
-  }
 }
 
 void ScreenWidget::showAnswer(const Answer& answer) {
@@ -273,15 +181,19 @@ void ScreenWidget::showAnswer(const Answer& answer) {
 
 void ScreenWidget::beat() {
   dead_man_->beat();
-  for (VelocitySlider* slider : sliders_) slider->beat();
+  drive_->beat();
   refresh();
 }
 
 void ScreenWidget::stop() {
   link_->stop();
-  dead_man_->letGo();
-  for (VelocitySlider* slider : sliders_) slider->letGo();
+  letGo();
   image_->cancelDrag();
+}
+
+void ScreenWidget::letGo() {
+  dead_man_->letGo();
+  drive_->letGo();
 }
 
 bool ScreenWidget::hasFocusWithin() const {

@@ -5,22 +5,19 @@
 #pragma once
 
 #include <QLabel>
-#include <QPushButton>
 #include <QTabWidget>
 #include <QTimer>
 #include <QWidget>
-#include <array>
-#include <functional>
 #include <memory>
 
 #include "screen/dead_man_button.h"
+#include "screen/drive_panel.h"
 #include "screen/image_view.h"
 #include "screen/minute_panel.h"
 #include "screen/parameter_panel.h"
 #include "screen/playback_bar.h"
 #include "screen/ros_link.h"
 #include "screen/state_band.h"
-#include "screen/velocity_slider.h"
 #include "screen/views_panel.h"
 
 namespace laparoscope_servo::screen {
@@ -38,16 +35,14 @@ class ScreenWidget : public QWidget {
   void refresh();
   void beat();
   void stop();
+  // Ends what is held.
+  void letGo();
   bool hasFocusWithin() const;
   bool handleKey(int key, bool pressed);
   void select(const QRect& pixels);
-  QWidget* makeActions();
   QWidget* makeColumn(const std::string& space);
-  QWidget* makeDrive();
   QWidget* makeTabs();
-  QPushButton* makeButton(const QString& text, const QString& tip, const std::function<void()>& act);
   void showAnswer(const Answer& answer);
-  void showTask(const Facts& facts);
   void showMinute(const Facts& facts, double now);
 
   std::unique_ptr<RosLink> link_;
@@ -61,10 +56,8 @@ class ScreenWidget : public QWidget {
   MinutePanel* minute_;
   ParameterPanel* parameters_;
   double minute_shown_at_ = kNever;
-  QPushButton* follow_;
-  QPushButton* drive_;
+  DrivePanel* drive_;
   DeadManButton* dead_man_;
-  std::array<VelocitySlider*, 4> sliders_{};
   QTimer beat_timer_;
 };
 

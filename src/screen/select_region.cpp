@@ -29,15 +29,27 @@ void expectDisplay() {
   throw std::runtime_error("there is no display to draw a region on (DISPLAY is not set); give --roi x,y,width,height");
 }
 
+screen::Verdict verdictOn(const FirstImage& first, const QRect& region) {
+  const geometry::Rectangle roi{static_cast<double>(region.x()), static_cast<double>(region.y()),
+                                static_cast<double>(region.width()), static_cast<double>(region.height())};
+  screen::Verdict verdict;
+  verdict.why = first.refusal(roi);
+  verdict.taken = verdict.why.empty();
+  const auto proposal = verdict.taken ? std::nullopt : first.proposal(roi);
+  if (proposal) {
+    verdict.proposal = QRect(static_cast<int>(proposal->x), static_cast<int>(proposal->y),
+                             static_cast<int>(proposal->width), static_cast<int>(proposal->height));
+  }
+  return verdict;
+}
+
 int select(int& argc, char** argv, const OfflineOptions& offline) {
   expectDisplay();
   const FirstImage first(offline);
   const QImage picture = screen::previewImage(*imageMessage({}, first.picture(kPictureSide)));
   QApplication application(argc, argv);
-  screen::SelectWindow window(picture, QSize(first.size().width, first.size().height), [&](const QRect& region) {
-    return first.refusal({static_cast<double>(region.x()), static_cast<double>(region.y()),
-                          static_cast<double>(region.width()), static_cast<double>(region.height())});
-  });
+  screen::SelectWindow window(picture, QSize(first.size().width, first.size().height),
+                              [&](const QRect& region) { return verdictOn(first, region); });
   window.setWindowTitle(
       QString("Region in image %1 of %2").arg(first.frame()).arg(QString::fromStdString(offline.inputs.front())));
   window.resize(QSize(1280, 800).boundedTo(QGuiApplication::primaryScreen()->availableSize()));

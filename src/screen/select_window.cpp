@@ -46,11 +46,8 @@ SelectWindow::SelectWindow(const QImage& picture, const QSize& original, const J
 }
 
 void SelectWindow::judge(const QRect& region) {
-  Verdict verdict;
-  verdict.region = region;
-  verdict.why = judge_(region);
-  verdict.taken = verdict.why.empty();
-  facts_.verdict = verdict;
+  facts_.verdict = judge_(region);
+  facts_.verdict->region = region;
   image_->show(facts_, kNow);
 }
 

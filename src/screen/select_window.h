@@ -6,7 +6,6 @@
 #include <QWidget>
 #include <functional>
 #include <optional>
-#include <string>
 
 #include "screen/image_view.h"
 
@@ -15,8 +14,8 @@ namespace laparoscope_servo::screen {
 class SelectWindow : public QWidget {
   Q_OBJECT
  public:
-  // Why a region, in px of the original picture, would not be taken; empty: it would.
-  using Judge = std::function<std::string(const QRect&)>;
+  // What the tracker says of a region, in px of the original picture.
+  using Judge = std::function<Verdict(const QRect&)>;
 
   // `original`: its size, of which `picture` may be a smaller copy.
   SelectWindow(const QImage& picture, const QSize& original, const Judge& judge);

@@ -42,4 +42,8 @@ std::string FirstImage::refusal(const geometry::Rectangle& roi) const {
   return "";
 }
 
+std::optional<geometry::Rectangle> FirstImage::proposal(const geometry::Rectangle& roi) const {
+  return RegionDesk(parameters_).propose(snapshot_, roi);
+}
+
 }  // namespace laparoscope_servo

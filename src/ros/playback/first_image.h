@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <string>
 
 #include "laparoscope_servo/geometry/homography.h"
@@ -23,6 +24,8 @@ class FirstImage {
 
   // Why the tracker would not take this region, in px of the image; empty: it would.
   std::string refusal(const geometry::Rectangle& roi) const;
+  // A region near a refused one that the tracker would take; empty: there is none.
+  std::optional<geometry::Rectangle> proposal(const geometry::Rectangle& roi) const;
 
  private:
   TrackerParameters parameters_;

@@ -31,8 +31,8 @@ void FeedStatistics::processed(double now, double period, double processing_time
   refusal_.clear();
 }
 
-// A gap in the stamps, relative to the usual period, counts as dropped images: they were lost on the way, or replaced
-// by a newer one in the queue of one image.
+// A gap in the stamps, relative to the usual period, counts as dropped images: they were lost on the way, or given up
+// for a newer one (ImageBacklog).
 void FeedStatistics::countDropped(double now, double period) {
   if (!(period > 0.0)) return;
   // A gap can be detected only with a period from several images.

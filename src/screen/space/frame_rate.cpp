@@ -7,6 +7,7 @@
 #include <rviz/render_panel.h>
 
 #include <QEvent>
+#include <QPointer>
 #include <algorithm>
 
 namespace laparoscope_servo::screen {
@@ -31,12 +32,17 @@ bool drawnByProcessor(const std::string& renderer) {
   return has("llvmpipe") || has("softpipe") || has("swrast") || has("software rasterizer");
 }
 
-void FrameRate::guard(rviz::VisualizationManager& manager) {
+void FrameRate::guard(rviz::VisualizationManager& manager, const QObject& user) {
   const Ogre::RenderSystem* system = Ogre::Root::getSingleton().getRenderSystem();
   const bool slow = system != nullptr && drawnByProcessor(system->getCapabilities()->getDeviceName());
   rviz::Property* rate = rateOf(manager);
-  if (!slow || rate == nullptr || manager.findChild<FrameRate*>() != nullptr) return;
-  new FrameRate(manager, *rate);
+  if (!slow || rate == nullptr) return;
+  QPointer<FrameRate> guard = manager.findChild<FrameRate*>();
+  if (!guard) guard = new FrameRate(manager, *rate);
+  ++guard->users_;
+  connect(&user, &QObject::destroyed, [guard] {
+    if (guard && --guard->users_ == 0) delete guard;
+  });
 }
 
 FrameRate::FrameRate(rviz::VisualizationManager& manager, rviz::Property& rate)

@@ -1,5 +1,6 @@
 // Slows rviz's 3D view where the processor draws it: at 15 Hz that takes half of what the tracker needs. While somebody
-// turns the view it is faster. One for each rviz.
+// turns the view it is faster. One for each rviz, as long as one of its users lives: rviz unloads the library of the
+// panels before it deletes the view, whose events come here.
 #pragma once
 
 #include <rviz/visualization_manager.h>
@@ -14,8 +15,8 @@ bool drawnByProcessor(const std::string& renderer);
 class FrameRate : public QObject {
   Q_OBJECT
  public:
-  // Does nothing where a graphics card draws, or where the manager has one already.
-  static void guard(rviz::VisualizationManager& manager);
+  // Does nothing where a graphics card draws.
+  static void guard(rviz::VisualizationManager& manager, const QObject& user);
 
  private:
   FrameRate(rviz::VisualizationManager& manager, rviz::Property& rate);
@@ -26,6 +27,7 @@ class FrameRate : public QObject {
   int resting_;
   int last_;  // what was set here; another value is somebody's wish
   QTimer rest_;
+  int users_ = 0;
 };
 
 }  // namespace laparoscope_servo::screen

@@ -77,7 +77,7 @@ class CameraBench {
       : node_(space),
         homographies(node_, "tracker/homography"),
         task_errors(node_, "tracker/task_error"),
-        images_(node_.advertise<sensor_msgs::Image>("image", 1)),
+        images_(node_.advertise<sensor_msgs::Image>("image", 10)),
         infos_(node_.advertise<sensor_msgs::CameraInfo>("camera_info", 1)) {}
 
   bool ready() const {
@@ -102,13 +102,14 @@ class CameraBench {
     return homographies.waitFor(stamp);
   }
 
-  // Publishes an image with noise of one grey level, without which it would be one that repeats.
-  void send(const cv::Mat& image, const ros::Time& stamp) {
+  // An image with noise of one grey level, without which it would be one that repeats.
+  sensor_msgs::ImagePtr message(const cv::Mat& image, const ros::Time& stamp) {
     cv::Mat noise(image.size(), image.type());
     random_.fill(noise, cv::RNG::UNIFORM, 0, 2);
     noise += image;
-    images_.publish(cv_bridge::CvImage(header(stamp), image.channels() == 1 ? "mono8" : "bgr8", noise).toImageMsg());
+    return cv_bridge::CvImage(header(stamp), image.channels() == 1 ? "mono8" : "bgr8", noise).toImageMsg();
   }
+  void send(const cv::Mat& image, const ros::Time& stamp) { images_.publish(message(image, stamp)); }
 
   void publishInfo(double focal_length, unsigned width = 0, unsigned height = 0) {
     sensor_msgs::CameraInfo info;

@@ -95,6 +95,25 @@ TEST_F(TrackerNodelet, AnswersEveryImageWithItsHeaderAlsoWhileIdle) {
   EXPECT_EQ(error->header.frame_id, "optical_of_the_test");
 }
 
+// They come while the tracker is at work, as after a stall of the camera or of this machine. With their stamps' period
+// the tracker has time for them on any machine.
+TEST_F(TrackerNodelet, ProcessesImagesThatComeAtOnceInTheirOrder) {
+  constexpr int kAtOnce = 4;
+  ros::Time stamp = nextStamp() + ros::Duration(10.0);
+  const auto next = [&stamp] { return stamp += ros::Duration(0.5); };
+  ASSERT_TRUE(trackUntilAnswered(left(), image_, next)) << "the gap is believed";
+  for (int turn = 0; turn < 5; ++turn) {
+    std::vector<sensor_msgs::ImagePtr> messages;
+    for (int k = 0; k < kAtOnce; ++k) messages.push_back(left().message(image_, next()));
+    for (const auto& message : messages) left().publish(*message);
+    for (const auto& message : messages)
+      ASSERT_TRUE(left().homographies.waitFor(message->header.stamp)) << "turn " << turn;
+  }
+  trackUntilAnswered(left(), image_, [&stamp] { return stamp += ros::Duration(0.04); });
+  while (nextStamp() < stamp) {
+  }
+}
+
 TEST_F(TrackerNodelet, SelectsOnTheNextImageAndTracks) {
   const SelectRoiResponse answer = selectWhileRunning(image_, kRoi);
   ASSERT_TRUE(answer.success) << answer.message;

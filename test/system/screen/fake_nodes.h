@@ -28,7 +28,8 @@ namespace laparoscope_servo::test_support {
 
 class FakeNodes {
  public:
-  FakeNodes() {
+  // `space`: the namespace of the cart.
+  explicit FakeNodes(const std::string& space = "") : node_(space) {
     tracker_.state = TrackerState::IDLE;
     tracker_.reason = "no region of interest selected";
     tracker_.width = 1280;

@@ -4,7 +4,8 @@
 //   screen_load SECONDS FRAMES.csv [RATE]     60 images a second where nothing is said
 //
 // Every image is stamped when it is published. Two bands at its top tell its number by their grey, for who looks at the
-// screen. FRAMES.csv: number, stamp [s], delay to the homography [s; empty: none], of that the processing [s], state.
+// screen. FRAMES.csv: number, stamp [s], how late it was published [s], delay to the homography [s; empty: none], of
+// that the processing [s], state.
 #include <cv_bridge/cv_bridge.h>
 #include <laparoscope_servo/Homography.h>
 #include <laparoscope_servo/SelectRoi.h>
@@ -33,6 +34,7 @@ constexpr int kLevels = 12;  // 144 numbers, 2.4 s
 
 struct Frame {
   ros::Time stamp;
+  double late = 0.0;
   double delay = -1.0;
   double processing = 0.0;
   int state = -1;
@@ -106,11 +108,14 @@ int main(int argc, char** argv) {
     std_msgs::Header header;
     header.frame_id = "camera";
     const sensor_msgs::ImagePtr message = cv_bridge::CvImage(header, "bgr8", picture).toImageMsg();
-    std::this_thread::sleep_until(begin + std::chrono::duration<double>(k / rate));
+    const auto due = begin + std::chrono::duration<double>(k / rate);
+    std::this_thread::sleep_until(due);
     message->header.stamp = ros::Time::now();
     {
       const std::lock_guard<std::mutex> lock(mutex);
-      frames[static_cast<std::size_t>(k)].stamp = message->header.stamp;
+      Frame& frame = frames[static_cast<std::size_t>(k)];
+      frame.stamp = message->header.stamp;
+      frame.late = std::chrono::duration<double>(std::chrono::steady_clock::now() - due).count();
       published = static_cast<std::size_t>(k) + 1;
     }
     images.publish(message);
@@ -120,9 +125,9 @@ int main(int argc, char** argv) {
   const std::lock_guard<std::mutex> lock(mutex);
   std::ofstream file(argv[2]);
   file.precision(6);
-  file << "number,stamp,delay,processing,state\n" << std::fixed;
+  file << "number,stamp,late,delay,processing,state\n" << std::fixed;
   for (std::size_t k = 0; k < published; ++k) {
-    file << k << ',' << frames[k].stamp.toSec() << ',';
+    file << k << ',' << frames[k].stamp.toSec() << ',' << frames[k].late << ',';
     if (frames[k].state >= 0) file << frames[k].delay;
     file << ',' << frames[k].processing << ',' << frames[k].state << '\n';
   }

@@ -2,9 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <QGuiApplication>
-#include <chrono>
 #include <filesystem>
-#include <functional>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -28,15 +26,6 @@ class ScreenReplay : public testing::Test {
       cv::imwrite(folder_.file(cv::format("images/%03d.png", k)), scene(cv::Rect(40 + k, 40 + k / 2, 320, 240)));
     }
   }
-  // The text in which these words stand, or the last one that was read.
-  std::string readUntil(const std::vector<std::string>& words, double seconds = 60.0) {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
-    std::string text;
-    do {
-      text = test_support::textOnDisplay();
-    } while (!test_support::notRead(text, words).empty() && std::chrono::steady_clock::now() < end);
-    return text;
-  }
 
   test_support::VirtualDisplay display_;
   test_support::TemporaryFolder folder_;
@@ -50,7 +39,7 @@ TEST_F(ScreenReplay, SaysThatTheRecordingHasEnded) {
                  folder_.file("images")},
       log);
   const std::vector<std::string> words{"ENDED", "last picture"};
-  const std::string text = readUntil(words);
+  const std::string text = test_support::readUntil(words);
   EXPECT_EQ(test_support::notRead(text, words), "") << text;
   launch.kill(SIGINT);
   EXPECT_EQ(launch.exitStatus(60.0), 0);

@@ -16,8 +16,9 @@ namespace laparoscope_servo::test_support {
 
 class VirtualDisplay {
  public:
-  // Sets DISPLAY; to be made before the QApplication. Twice as large for a QT_SCALE_FACTOR of 2.
-  VirtualDisplay() {
+  // Sets DISPLAY; to be made before the QApplication. `wanted`: WIDTHxHEIGHT; empty: 1600x1000, twice that for a
+  // QT_SCALE_FACTOR of 2.
+  explicit VirtualDisplay(const std::string& wanted = "") {
     int pipe_ends[2];
     if (::pipe(pipe_ends) != 0) throw std::runtime_error("no pipe");
     process_ = ::fork();
@@ -25,8 +26,11 @@ class VirtualDisplay {
       const int null = ::open("/dev/null", O_WRONLY);
       ::dup2(null, STDERR_FILENO);
       const std::string descriptor = std::to_string(pipe_ends[1]);
-      const char* size = std::getenv("QT_SCALE_FACTOR") == nullptr ? "1600x1000x24" : "3200x2000x24";
-      ::execlp("Xvfb", "Xvfb", "-displayfd", descriptor.c_str(), "-screen", "0", size, "-nolisten", "tcp", nullptr);
+      const std::string size = !wanted.empty()                             ? wanted
+                               : std::getenv("QT_SCALE_FACTOR") == nullptr ? "1600x1000"
+                                                                           : "3200x2000";
+      ::execlp("Xvfb", "Xvfb", "-displayfd", descriptor.c_str(), "-screen", "0", (size + "x24").c_str(), "-nolisten",
+               "tcp", nullptr);
       ::_exit(127);
     }
     ::close(pipe_ends[1]);

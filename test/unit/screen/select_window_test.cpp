@@ -16,8 +16,11 @@ class SelectWindowTest : public testing::Test {
   SelectWindowTest() {
     QImage picture(640, 360, QImage::Format_RGB32);
     picture.fill(QColor(180, 70, 60));
-    window_ = std::make_unique<SelectWindow>(picture, kOriginal, [](const QRect& region) -> std::string {
-      return region.width() < 100 ? "ROI is too small, expected at least 100 px" : "";
+    window_ = std::make_unique<SelectWindow>(picture, kOriginal, [this](const QRect& region) {
+      Verdict verdict;
+      verdict.taken = region.width() >= 100;
+      if (!verdict.taken) verdict.why = "ROI is too small, expected at least 100 px", verdict.proposal = proposal_;
+      return verdict;
     });
     window_->resize(900, 640);
     window_->show();
@@ -34,6 +37,19 @@ class SelectWindowTest : public testing::Test {
   }
   void press(int key) { QTest::keyClick(&image(), static_cast<Qt::Key>(key)); }
 
+  // Whether a pixel along the upper edge of a rectangle, in px of the original, has the colour of what would be taken.
+  bool isOutlined(const QRect& region) {
+    const QRectF outline = Letterbox(kOriginal, QRectF(image().rect())).fromPixels(region);
+    const QImage shown = image().grab().toImage();
+    for (int x = qRound(outline.left()); x <= qRound(outline.right()); ++x) {
+      for (int y = qRound(outline.top()) - 2; y <= qRound(outline.top()) + 2; ++y) {
+        if (shown.pixelColor(x, y) == QColor(0x5c, 0xf0, 0x8c)) return true;
+      }
+    }
+    return false;
+  }
+
+  QRect proposal_;
   std::unique_ptr<SelectWindow> window_;
 };
 
@@ -69,6 +85,18 @@ TEST_F(SelectWindowTest, WhatTheTrackerWouldNotTakeIsNotTaken) {
   draw({700, 100}, {900, 400});
   press(Qt::Key_Return);
   EXPECT_TRUE(window_->selected()) << "another one is";
+}
+
+TEST_F(SelectWindowTest, ShowsARegionThatWouldDo) {
+  const QRect proposal(640, 300, 200, 200);
+  draw({200, 100}, {260, 400});
+  press(Qt::Key_Return);
+  EXPECT_FALSE(words().contains("dotted")) << words().toStdString();
+  EXPECT_FALSE(isOutlined(proposal));
+  proposal_ = proposal;
+  press(Qt::Key_Return);
+  EXPECT_TRUE(words().endsWith("The dotted one would do.")) << words().toStdString();
+  EXPECT_TRUE(isOutlined(proposal));
 }
 
 TEST_F(SelectWindowTest, ReturnWithoutARegionSaysSoAndEscapeEnds) {
