@@ -23,7 +23,8 @@ EdgeFeatureTracker::~EdgeFeatureTracker() = default;
 
 const TrackedFeatures& EdgeFeatureTracker::select(const cv::Mat& image, double stamp, const FeatureSelection& selection,
                                                   const FeaturePrior&) {
-  validation::throwErrors("selection", validate(selection, {FeatureKind::kLine, FeatureKind::kEllipse}));
+  validation::throwErrors("selection",
+                          validate(selection, {FeatureKind::kLine, FeatureKind::kEllipse, FeatureKind::kSpline}));
   if (selection.empty()) throw std::invalid_argument("selection: 0 features, expected at least 1");
   std::vector<std::unique_ptr<TrackedCurve>> curves;
   for (const SelectedFeature& selected : selection) {

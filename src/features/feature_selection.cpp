@@ -82,6 +82,10 @@ class Judge {
     const FeatureKind kind = feature_.kind;
     if (kind == FeatureKind::kPoint && given != 1) refuse("number of points", given, "1: where it is");
     if (kind == FeatureKind::kLine && given != 2) refuse("number of points", given, "2: the line's ends");
+    const std::size_t least = feature_.closed ? 4 : 3;
+    if (kind == FeatureKind::kSpline && given < least) {
+      refuse("number of points", given, std::to_string(least) + " or more on the spline");
+    }
     if (kind != FeatureKind::kEllipse) return;
     if (feature_.ellipse && given > 0) refuse("number of points", given, "0 beside centre and radii");
     if (!feature_.ellipse && given < 5) refuse("number of points", given, "5 or more, or centre and radii");
@@ -96,6 +100,9 @@ class Judge {
       for (const double radius : {feature_.ellipse->a, feature_.ellipse->b}) {
         if (!(radius > 0.0 && std::isfinite(radius))) refuse("radius", radius, "a positive number, px");
       }
+    }
+    if (feature_.closed && feature_.kind != FeatureKind::kSpline) {
+      refuse("kind", kindName(feature_.kind), "spline, if closed");
     }
     if (!feature_.arc) return;
     if (feature_.kind != FeatureKind::kEllipse) refuse("kind", kindName(feature_.kind), "ellipse beside an arc");

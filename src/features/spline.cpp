@@ -121,6 +121,15 @@ void Spline::move(const Eigen::VectorXd& step) {
   points_ = moved;
 }
 
+void Spline::spread(const Eigen::MatrixXd& of_parameters, Eigen::MatrixXd& result) const {
+  result.resize(2 * size_, 2 * size_);
+  for (int k = 0; k < size_; ++k) {
+    for (int l = 0; l < size_; ++l) {
+      result.block<2, 2>(2 * k, 2 * l) = of_parameters(k, l) * normal(k) * normal(l).transpose();
+    }
+  }
+}
+
 void Spline::transform(const Eigen::Matrix3d& motion) {
   for (int k = 0; k < size_; ++k) {
     Eigen::Vector2d& point = points_[static_cast<std::size_t>(k)];

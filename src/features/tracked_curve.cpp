@@ -6,12 +6,14 @@
 #include "laparoscope_servo/features/curve_tracker.h"
 #include "laparoscope_servo/features/ellipse.h"
 #include "laparoscope_servo/features/line.h"
+#include "laparoscope_servo/features/spline.h"
 
 namespace laparoscope_servo::features {
 
 namespace {
 
 constexpr int kOutlinePieces = 48;
+constexpr int kSplineSteps = 4;  // of the outline, from knot to knot
 
 void curveOf(const SelectedFeature& selected, Line& line) {
   line = Line(selected.points[0], selected.points[1]);
@@ -25,6 +27,10 @@ void curveOf(const SelectedFeature& selected, Ellipse& ellipse) {
     ellipse = Ellipse::throughPoints(selected.points);
   }
   if (selected.arc) ellipse.setArc(selected.arc->begin, selected.arc->extent);
+}
+
+void curveOf(const SelectedFeature& selected, Spline& spline) {
+  spline = Spline::throughPoints(selected.points, selected.closed);
 }
 
 // `covariance`: of the curve's own parameters.
@@ -43,6 +49,17 @@ void tellCurve(const Ellipse& ellipse, const Eigen::MatrixXd& covariance, Tracke
   for (int k = 0; k <= kOutlinePieces; ++k)
     told.outline[static_cast<std::size_t>(k)] =
         ellipse.at(ellipse.arcBegin() + k * ellipse.arcExtent() / kOutlinePieces);
+}
+
+void tellCurve(const Spline& spline, const Eigen::MatrixXd& covariance, TrackedFeature& told) {
+  told.parameters.resize(2 * spline.size());
+  for (int k = 0; k < spline.size(); ++k) told.parameters.segment<2>(2 * k) = spline.controlPoint(k);
+  if (told.state == State::kTracking) spline.spread(covariance, told.covariance);
+  const int steps = kSplineSteps * spline.pieces();
+  told.outline.resize(static_cast<std::size_t>(steps + 1));
+  for (int k = 0; k <= steps; ++k) {
+    told.outline[static_cast<std::size_t>(k)] = spline.at(static_cast<double>(k) / kSplineSteps);
+  }
 }
 
 template <class C>
@@ -79,7 +96,8 @@ class TrackedCurveOf : public TrackedCurve {
 std::unique_ptr<TrackedCurve> makeTrackedCurve(FeatureKind kind, const EdgeConfig& config) {
   if (kind == FeatureKind::kLine) return std::make_unique<TrackedCurveOf<Line>>(config);
   if (kind == FeatureKind::kEllipse) return std::make_unique<TrackedCurveOf<Ellipse>>(config);
-  throw std::invalid_argument(std::string("a ") + kindName(kind) + " is no curve, expected line or ellipse");
+  if (kind == FeatureKind::kSpline) return std::make_unique<TrackedCurveOf<Spline>>(config);
+  throw std::invalid_argument(std::string("a ") + kindName(kind) + " is no curve, expected line, ellipse or spline");
 }
 
 }  // namespace laparoscope_servo::features

@@ -1,4 +1,4 @@
-// Lines and ellipses behind the interface of all trackers: a CurveTracker for each, with an id.
+// Lines, ellipses and splines behind the interface of all trackers: a CurveTracker for each, with an id.
 #pragma once
 
 #include <memory>

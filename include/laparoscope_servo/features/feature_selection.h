@@ -27,11 +27,12 @@ struct SelectedFeature {
   std::string id;  // not empty, and no other's
   FeatureKind kind = FeatureKind::kPoint;
   // px. A point: the point. A line: its two ends. An ellipse: five or more points on it, or none and `ellipse`. A
-  // spline: points on it, in order.
+  // spline: points on it, in order, 3 or more.
   std::vector<Eigen::Vector2d> points;
   std::optional<EllipseSelection> ellipse;
   std::optional<ArcSelection> arc;
   std::optional<Eigen::Isometry3d> pose;  // of a POSE: where the object is about, camera_T_object, m
+  bool closed = false;      // of a spline: it ends where it begins, and has 4 points or more
   double range = 6.0;       // px, by which the edge may be off
   Eigen::VectorXd desired;  // see TrackedFeature; empty: none
 };

@@ -33,6 +33,9 @@ class Spline : public Curve {
   Eigen::Vector2d at(double t) const;
   double length() const;  // px
 
+  // Of x and y of all control points, px^2, from that of the curve's parameters: none of it is along the curve.
+  void spread(const Eigen::MatrixXd& of_parameters, Eigen::MatrixXd& result) const;
+
   // Parameters: of each control point the displacement along the curve's normal there, px. Along the curve an edge
   // shows none.
   int parameters() const override { return size_; }

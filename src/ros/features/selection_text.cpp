@@ -18,7 +18,7 @@ using features::SelectedFeature;
 
 constexpr std::array<FeatureKind, 4> kWrittenKinds = {FeatureKind::kPoint, FeatureKind::kLine, FeatureKind::kEllipse,
                                                       FeatureKind::kSpline};
-constexpr char kKeys[] = "id, one of point, line, ellipse, spline, and arc, range, desired";
+constexpr char kKeys[] = "id, one of point, line, ellipse, spline, and arc, closed, range, desired";
 
 // Reads one feature, and keeps what is wrong with it.
 class Reader {
@@ -111,6 +111,9 @@ class Reader {
     }
     if (key == "range") {
       feature_.range = number(value, "range");
+    } else if (key == "closed") {
+      if (!value.IsScalar() || !YAML::convert<bool>::decode(value, feature_.closed))
+        refuse(value, "closed", "true or false");
     } else if (key == "arc") {
       const Eigen::Vector2d arc = pair(value, "arc", "[begin, extent], rad");
       feature_.arc = features::ArcSelection{arc.x(), arc.y()};

@@ -115,6 +115,38 @@ TEST(FeatureTracker, tellsALineAndAnEllipseOfOneImage) {
   }
 }
 
+TEST(FeatureTracker, tellsASpline) {
+  EdgeFeatureTracker tracker;
+  FeatureSelection selection(1);
+  selection[0].id = "outline";
+  selection[0].kind = FeatureKind::kSpline;
+  selection[0].closed = true;
+  const Ellipse first(kDisc, 25.0, 22.0, 0.3);
+  for (int k = 0; k < 10; ++k) selection[0].points.push_back(first.at(0.2 * M_PI * k));
+  tracker.select(scene(0.0), 0.0, selection, {});
+  const TrackedFeatures& told = tracker.track(scene(2.0), kPeriod, {});
+  ASSERT_EQ(told.state, State::kTracking) << told.reason;
+  const TrackedFeature& spline = told.features[0];
+  EXPECT_EQ(spline.kind, FeatureKind::kSpline);
+  EXPECT_EQ(spline.parameters.size(), 20);
+  ASSERT_EQ(spline.covariance.rows(), 20);
+  // Across the curve a control point is known, along it there is nothing to be known.
+  const Eigen::Matrix2d of_first = spline.covariance.topLeftCorner<2, 2>();
+  EXPECT_GT(of_first.trace(), 0.0);
+  EXPECT_NEAR(of_first.determinant(), 0.0, 1e-9);
+  const Ellipse truth(kDisc + Eigen::Vector2d(2.0, 0.0), 25.0, 22.0, 0.3);
+  const EllipseCoefficients c = truth.coefficients();
+  for (const Eigen::Vector2d& p : spline.outline) {
+    const double value =
+        p.x() * p.x() + c[0] * p.y() * p.y() + 2.0 * (c[1] * p.x() * p.y() + c[2] * p.x() + c[3] * p.y()) + c[4];
+    EXPECT_NEAR(value / 50.0, 0.0, 0.5);  // the equation grows by about 2 x 25 a px
+  }
+  // One that is covered is not known at all.
+  tracker.track(covered(), 2.0 * kPeriod, {});
+  EXPECT_EQ(spline.state, State::kSearching);
+  EXPECT_TRUE(std::isinf(spline.covariance(3, 3)));
+}
+
 TEST(FeatureTracker, drawsAnArcOnly) {
   EdgeFeatureTracker tracker;
   FeatureSelection selection(1, edges()[1]);

@@ -29,7 +29,7 @@ TEST(SelectionText, ReadsEveryShape) {
 - {id: rim, ellipse: {centre: [160, 120], radii: [40, 30], angle: 0.2}, arc: [0.5, 2.0]}
 - {id: trocar, ellipse: [[1, 2], [3, 4], [5, 6], [7, 8], [9, 10]]}
 - {id: left dot, point: [80, 60], desired: [160, 120]}
-- {id: outline, spline: [[20, 30], [60, 40], [70, 80], [50, 90]]}
+- {id: outline, spline: [[20, 30], [60, 40], [70, 80], [50, 90]], closed: true}
 )");
   ASSERT_EQ(selection.size(), 5u);
   EXPECT_EQ(selection[0].id, "shaft");
@@ -49,6 +49,7 @@ TEST(SelectionText, ReadsEveryShape) {
   EXPECT_EQ(selection[3].desired, Eigen::Vector2d(160.0, 120.0));
   EXPECT_EQ(selection[4].kind, FeatureKind::kSpline);
   EXPECT_EQ(selection[4].points.size(), 4u);
+  EXPECT_TRUE(selection[4].closed);
 }
 
 TEST(SelectionText, ReadsJson) {
@@ -67,6 +68,7 @@ TEST(SelectionText, NamesFeatureLineValueAndExpectation) {
   EXPECT_NE(errorOf("- {id: a}").find("its 0 shapes"), std::string::npos);
   EXPECT_NE(errorOf("- {id: a, ellipse: {centre: [1, 2]}}").find("radii: [a, b]"), std::string::npos);
   EXPECT_NE(errorOf("- {id: a, ellipse: {centre: [1, 2], radii: [3, 4], tilt: 1}}").find("= tilt"), std::string::npos);
+  EXPECT_NE(errorOf("- {id: a, spline: [[1, 2], [3, 4]], closed: round}").find("closed = round"), std::string::npos);
   EXPECT_NE(errorOf("- {id: a, point: [1, 2], range: far}").find("range = far"), std::string::npos);
   EXPECT_NE(errorOf("- {id: a, point: [1, 2], desired: 5}").find("desired = 5"), std::string::npos);
   EXPECT_NE(errorOf("- seven").find("a feature = seven"), std::string::npos);
