@@ -1,4 +1,4 @@
-// The nodelet laparoscope_servo/Edges: tracks lines and ellipses, by their edges.
+// The nodelet laparoscope_servo/Edges: tracks lines, ellipses and splines, by their edges.
 #include <pluginlib/class_list_macros.hpp>
 
 #include "nodelets/feature_nodelet.h"

@@ -3,6 +3,7 @@
 #include <diagnostic_msgs/DiagnosticStatus.h>
 
 #include <exception>
+#include <utility>
 
 #include "ros/common/clocks.h"
 #include "ros/common/network_exposure.h"
@@ -67,9 +68,22 @@ void ImageNodelet::rawImageCallback(const ros::MessageEvent<const sensor_msgs::I
   const sensor_msgs::ImageConstPtr message = event.getConstMessage();
   // The time of a recording goes at the player's pace, and tells nothing of how long an image has waited.
   const double waited = ros::Time::isSimTime() ? 0.0 : (ros::Time::now() - event.getReceiptTime()).toSec();
-  if (!backlog_.takes(message->header.stamp, waited)) return;
+  left_.reset();
+  if (!backlog_.takes(message->header.stamp, waited)) return leaveForLater(message);
   imageCallback(message);
   backlog_.took(steadyNow() - now);
+}
+
+// The timer's turn comes behind the images that wait already: the newest of a burst is processed, whatever came before.
+void ImageNodelet::leaveForLater(const sensor_msgs::ImageConstPtr& message) {
+  constexpr double kSoon = 1e-4;  // s
+  left_ = message;
+  left_timer_ = getNodeHandle().createWallTimer(
+      ros::WallDuration(kSoon),
+      [this](const ros::WallTimerEvent&) {
+        if (const sensor_msgs::ImageConstPtr newest = std::exchange(left_, nullptr)) imageCallback(newest);
+      },
+      true);
 }
 
 void ImageNodelet::imageCallback(const sensor_msgs::ImageConstPtr& message) {

@@ -51,6 +51,7 @@ class ImageNodelet : public nodelet::Nodelet {
   void imageCallback(const sensor_msgs::ImageConstPtr& message);
   // For the raw transport, with which the sender of an image is known.
   void rawImageCallback(const ros::MessageEvent<const sensor_msgs::Image>& event);
+  void leaveForLater(const sensor_msgs::ImageConstPtr& message);
   void cameraInfoCallback(const ros::MessageEvent<const sensor_msgs::CameraInfo>& event);
   void refuse(const std::string& error, Refusal cause = Refusal::kData);
   void fillDiagnostics(diagnostic_updater::DiagnosticStatusWrapper& status);
@@ -60,6 +61,8 @@ class ImageNodelet : public nodelet::Nodelet {
   std::string why_aside_;
   FeedOwner image_owner_;
   ImageBacklog backlog_;
+  sensor_msgs::ImageConstPtr left_;  // the last one that was not taken, until another one comes
+  ros::WallTimer left_timer_;
   FeedOwner camera_info_owner_;
   ros::Time last_now_;
   std::unique_ptr<image_transport::ImageTransport> transport_;  // for other transports than raw

@@ -144,10 +144,10 @@ void ControllerNode::publish(const servo::ControllerOutput& output) {
 }
 
 void ControllerNode::warn(const std::string& caution) {
-  if (caution == said_caution_ || steadyNow() < next_caution_) return;
+  if (caution.empty() || caution == said_caution_ || steadyNow() < next_caution_) return;
   said_caution_ = caution;
   next_caution_ = steadyNow() + kCautionPause;
-  if (!caution.empty()) ROS_WARN("The scope: %s.", caution.c_str());
+  ROS_WARN("The scope: %s.", caution.c_str());
 }
 
 void ControllerNode::publishState(const servo::ControllerOutput& output) {

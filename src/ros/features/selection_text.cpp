@@ -132,9 +132,26 @@ class Reader {
   SelectedFeature feature_;
 };
 
+// yaml-cpp before 0.7 goes down without limit, until its stack ends.
+bool isNestedTooDeep(const std::string& text) {
+  constexpr int kDeepest = 32;    // a selection has four
+  int brackets = 0, entries = 0;  // those that are open; "- " of one line, each an entry of the one before
+  for (std::size_t k = 0; k < text.size(); ++k) {
+    const char c = text[k];
+    if (c == '[' || c == '{') ++brackets;
+    if (c == ']' || c == '}') --brackets;
+    if (c == '\n') entries = 0;
+    if ((c == '-' || c == '?') && k + 1 < text.size() && text[k + 1] == ' ') ++entries;
+    if (brackets > kDeepest || entries > kDeepest) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 features::FeatureSelection parseSelection(const std::string& text) {
+  if (isNestedTooDeep(text))
+    throw std::invalid_argument("selection: nested more than 32 deep, expected a list of features");
   YAML::Node root;
   try {
     root = YAML::Load(text);

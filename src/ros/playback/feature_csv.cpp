@@ -11,7 +11,7 @@ namespace {
 
 std::string listed(const Eigen::VectorXd& numbers) {
   std::string text;
-  for (const double number : numbers) text += (text.empty() ? "" : " ") + exact(number);
+  for (Eigen::Index k = 0; k < numbers.size(); ++k) text += (text.empty() ? "" : " ") + exact(numbers[k]);
   return text;
 }
 

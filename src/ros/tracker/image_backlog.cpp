@@ -25,10 +25,11 @@ double ImageBacklog::Recent::median() const {
 }
 
 bool ImageBacklog::takes(const ros::Time& stamp, double waited) {
-  const double period = (stamp - last_).toSec();
+  const double period = stamp.toSec() - last_.toSec();  // ros::Duration throws beyond 68 years
   if (!last_.isZero() && period > 0.0) periods_.add(period);
   last_ = stamp;
   const double usual = periods_.median();
+  if (!(usual > 0.0)) return true;  // stamps that tell nothing: who refuses them has to see the image
   return !(waited > usual) || !(durations_.median() > kCatchesUp * usual);
 }
 

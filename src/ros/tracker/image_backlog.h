@@ -2,7 +2,8 @@
 //
 // All of them while the tracker needs less than half of the images' period: four that wait are then done within four
 // periods, and from one image to the next the region moves least. A slower tracker would fall behind for good, so it
-// takes only images that have waited less than one period, behind which no newer one can wait.
+// takes only images that have waited less than one period, and whoever asks processes the last one that was not taken
+// when no newer one waits.
 #pragma once
 
 #include <ros/time.h>

@@ -249,7 +249,8 @@ SafetyOutput SafetyMachine::output(const SafetyFacts& facts) const {
     output.caution += (output.caution.empty() ? "" : "; ") + caution;
   };
   if (seen < 1.0) add(text("slow: visible fraction below ", c.slow_below));
-  if (recent < 1.0) add(text("slow: image older than ", c.slow_age * c.max_task_error_age, " s"));
+  // The age goes up and down with each image: said is only what halves the speed.
+  if (recent < 0.5) add(text("slow: image older than ", 0.5 * (1.0 + c.slow_age) * c.max_task_error_age, " s"));
   if (!sees_enough) add(text("not deeper: visible fraction below ", c.min_visible_for_insertion));
   if (!knows_where) add(text("not deeper: corner error above ", c.max_corner_error_for_insertion, " px"));
   if (facts.residual == ResidualLevel::kWarning) add("the residual of the insertion point grows");

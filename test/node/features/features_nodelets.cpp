@@ -84,7 +84,7 @@ TEST_P(FeaturesNodelets, SaysWhatIsWrongWithASelectionAndGoesOn) {
       {kind() == "dots" ? "[{id: a, point: [90, 50]}, {id: b, point: [91, 50]}]"  // one dot twice
                         : "[{id: short, line: [[50, 50], [50, 50]]}]",
        kind() == "dots" ? "no other point" : "short: line from (50, 50) to (50, 50)"},
-      {other, "expected " + std::string(kind() == "dots" ? "point" : "line or ellipse") + " of this tracker"},
+      {other, "expected " + std::string(kind() == "dots" ? "point" : "line, ellipse or spline") + " of this tracker"},
       {"[{id: nan, point: [.nan, 50]}]", kind() == "dots" ? "point = [nan, 50]" : "of this tracker"},
       {"[{id: x, lien: [[1, 2], [3, 4]]}]", "key lien"},
       {"[{id: x", "selection: "},

@@ -85,6 +85,15 @@ TEST(SelectionText, RefusesWhatIsNoList) {
   EXPECT_NE(errorOf("- {id: a, point: [1, 2}"), "");
 }
 
+TEST(SelectionText, RefusesWhatIsNestedWithoutEnd) {
+  for (const std::string& open : {"[", "{a: ", "- "}) {
+    std::string text;
+    for (int k = 0; k < 100000; ++k) text += open;
+    EXPECT_NE(errorOf(text).find("nested"), std::string::npos) << open;
+  }
+  EXPECT_EQ(errorOf("# ------------------------------------------ a heading\n- {id: a, point: [1, 2]}\n"), "");
+}
+
 TEST(SelectionText, NamesTheFile) {
   const test_support::TemporaryFolder folder;
   const std::string file = folder.file("features.yaml");

@@ -61,6 +61,18 @@ TEST(ImageBacklog, AFastTrackerCatchesUpAfterAStallAndLosesNothing) {
   EXPECT_GT(feed.longestWait(), 3.0 * kPeriod);
 }
 
+TEST(ImageBacklog, ImagesWithoutUsableStampsAreForWhoRefusesThem) {
+  for (const ros::Time& stamp : {ros::Time(), ros::Time(1000.0), ros::Time(4294967295U, 0)}) {
+    ImageBacklog backlog;
+    for (int k = 0; k < 4; ++k) {
+      EXPECT_TRUE(backlog.takes(stamp, 1e-4)) << stamp;
+      backlog.took(1e-4);
+    }
+    EXPECT_NO_THROW(backlog.takes(ros::Time(1.0), 0.0));
+    EXPECT_NO_THROW(backlog.takes(ros::Time(4294967295U, 0), 0.0));
+  }
+}
+
 TEST(ImageBacklog, AlsoWhenTheFirstImagesComeAtOnce) {
   ImageBacklog backlog;
   for (int k = 0; k < 4; ++k) {
