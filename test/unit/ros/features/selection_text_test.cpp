@@ -86,7 +86,7 @@ TEST(SelectionText, RefusesWhatIsNoList) {
 }
 
 TEST(SelectionText, RefusesWhatIsNestedWithoutEnd) {
-  for (const std::string& open : {"[", "{a: ", "- "}) {
+  for (const char* const open : {"[", "{a: ", "- "}) {
     std::string text;
     for (int k = 0; k < 100000; ++k) text += open;
     EXPECT_NE(errorOf(text).find("nested"), std::string::npos) << open;
