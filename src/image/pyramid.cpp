@@ -11,7 +11,10 @@ namespace laparoscope_servo::image {
 
 namespace {
 
-constexpr float kSide = 0.5f * 0.65f * 0.65f;  // kSmoothSide
+// The first smoothing: a kernel of three pixels with the variance of a Gaussian of sigma 0.65 px.
+constexpr double kSmoothSide = 0.5 * 0.65 * 0.65;
+constexpr double kSmoothMiddle = 1.0 - 2.0 * kSmoothSide;
+constexpr float kSide = 0.5f * 0.65f * 0.65f;
 constexpr float kMiddle = 1.0f - 2.0f * kSide;
 
 constexpr int kPadding = 2;  // pixels on each side of a row that is halved
@@ -73,6 +76,27 @@ cv::Size halved(const cv::Size& size) {
 
 }  // namespace
 
+// Both kernels are separable, so the kernel along a row tells all. Halving puts its 1 4 6 4 1 onto every scale-th
+// pixel.
+LevelNoise levelNoise(int scale) {
+  std::vector<double> kernel = {kSmoothSide, kSmoothMiddle, kSmoothSide};
+  for (int step = 1; step < scale; step *= 2) {
+    std::vector<double> wider(kernel.size() + 4 * step, 0.0);
+    const double binomial[] = {1.0 / 16.0, 4.0 / 16.0, 6.0 / 16.0, 4.0 / 16.0, 1.0 / 16.0};
+    for (int tap = 0; tap < 5; ++tap) {
+      for (std::size_t k = 0; k < kernel.size(); ++k) wider[k + tap * step] += binomial[tap] * kernel[k];
+    }
+    kernel = wider;
+  }
+  // of pixels of the level `apart` from each other
+  const auto covariance = [&](std::size_t apart) {
+    double sum = 0.0;
+    for (std::size_t k = apart * scale; k < kernel.size(); ++k) sum += kernel[k] * kernel[k - apart * scale];
+    return sum;
+  };
+  return {covariance(0), (covariance(0) - covariance(2)) * covariance(0)};
+}
+
 void RegionPyramid::Plane::resize(const cv::Size& size, const cv::Size& most) {
   if (view.size() == size) return;
   data.reserve(most.area());
@@ -125,23 +149,28 @@ void RegionPyramid::halve(const cv::Mat1f& fine, cv::Mat1f& coarse) {
   }
 }
 
-void RegionPyramid::build(const cv::Mat& image, const cv::Rect& region, int levels, const Channels& channels) {
+void RegionPyramid::build(const cv::Mat& image, const cv::Rect& region, int levels, const Channels& channels,
+                          int finest) {
   checkType(image);
   const cv::Rect inside = region & cv::Rect(0, 0, image.cols, image.rows);
   if (inside.empty() || levels < 1) {
     throw std::invalid_argument("region of interest holds no pixel of the image");
   }
   region_ = inside;
+  skipped_ = 0;
+  while (1 << skipped_ < finest) ++skipped_;
   levels_ = levels;
+  const int all = skipped_ + levels_;
   channels_ = image.channels() == 1 ? 1 : channels.count;
-  planes_.resize(static_cast<std::size_t>(channels_) * levels_);
+  const std::size_t count = static_cast<std::size_t>(channels_) * all;
+  if (planes_.size() != count) planes_ = std::vector<Plane>(count);  // a plane's view would not survive a copy
   rows_.reserve(4 * (static_cast<std::size_t>(image.cols) + 2 * kPadding));
   for (int c = 0; c < channels_; ++c) {
-    Plane* plane = planes_.data() + static_cast<std::size_t>(c) * levels_;
+    Plane* plane = planes_.data() + static_cast<std::size_t>(c) * all;
     cv::Size most = image.size();
     plane[0].resize(region_.size(), most);
     smooth(image(region_), channels.weights[c], plane[0].view);
-    for (int l = 1; l < levels_; ++l) {
+    for (int l = 1; l < all; ++l) {
       most = halved(most);
       plane[l].resize(halved(plane[l - 1].view.size()), most);
       halve(plane[l - 1].view, plane[l].view);

@@ -167,7 +167,8 @@ TrackResult RegionTracker::Implementation::select(const cv::Mat& image, double s
   attempt.evidence.esm.status = EsmStatus::kConverged;
   attempt.evidence.esm.corner_error = attempt.evidence.corner_error = error;
   attempt.evidence.centre_error = error;  // it is not known worse than the worst corner
-  attempt.evidence.visible_fraction = cv::sum(aligner_.weights())[0] / roi.width / roi.height;
+  const cv::Mat1f weights = aligner_.weights();
+  attempt.evidence.visible_fraction = cv::sum(weights)[0] / weights.cols / weights.rows;
   attempt.evidence.zncc = 1.0;
   TrackResult result = report(attempt);
   result.selected_now = true;

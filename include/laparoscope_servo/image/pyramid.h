@@ -1,10 +1,11 @@
 // A pyramid around a region of an image, of one channel or several.
 //
-// Level l is 2^l times as coarse as the image. The centre of its pixel (0, 0) lies on the image's pixel origin(), so a
-// point (u, v) of the image is ((u - origin.x) / 2^l, (v - origin.y) / 2^l) at level l.
+// Level l is scale(l) times as coarse as the image, twice as coarse as level l - 1; scale(0) is 1 unless another one is
+// wanted. The centre of a level's pixel (0, 0) lies on the image's pixel origin(), so a point (u, v) of the image is
+// ((u - origin.x) / scale, (v - origin.y) / scale) there.
 //
-// Level 0 is smoothed a little (sigma 0.65 px): bilinear interpolation is then accurate, and gradients are those of the
-// tissue rather than of the noise.
+// The image is smoothed a little (sigma 0.65 px) before anything else: bilinear interpolation is then accurate, and
+// gradients are those of the tissue rather than of the noise.
 #pragma once
 
 #include <Eigen/Core>
@@ -28,13 +29,13 @@ struct Channels {
   std::array<ChannelWeights, kMaxChannels> weights;
 };
 
-// Level 0's smoothing: a kernel of three pixels with the variance of a Gaussian of sigma 0.65 px.
-constexpr double kSmoothSide = 0.5 * 0.65 * 0.65;
-constexpr double kSmoothMiddle = 1.0 - 2.0 * kSmoothSide;
-// What it leaves of white noise with a standard deviation of 1: that of level 0, and the mean square of the central
-// differences there, both directions together.
-constexpr double kNoiseLeft = kSmoothMiddle * kSmoothMiddle + 2.0 * kSmoothSide * kSmoothSide;
-constexpr double kNoiseGradient = (kSmoothMiddle * kSmoothMiddle + kSmoothSide * kSmoothSide) * kNoiseLeft;
+// What a level shows of white noise in the image with a standard deviation of 1.
+struct LevelNoise {
+  double deviation = 0.0;  // standard deviation of a pixel
+  double gradient = 0.0;   // mean square of the central differences, both directions together
+};
+// For a level of this scale, a power of 2.
+LevelNoise levelNoise(int scale);
 
 class RegionPyramid {
  public:
@@ -43,16 +44,21 @@ class RegionPyramid {
   RegionPyramid& operator=(RegionPyramid&&) noexcept = default;
 
   // `image` is CV_8UC1 (there is then one channel, and weights are ignored) or CV_8UC3, blue first. `region` is cut to
-  // the image; it must then hold at least one pixel, else std::invalid_argument. Buffers are reused.
-  void build(const cv::Mat& image, const cv::Rect& region, int levels, const Channels& channels);
+  // the image; it must then hold at least one pixel, else std::invalid_argument. `finest` is level 0's scale, a power
+  // of 2. Buffers are reused.
+  void build(const cv::Mat& image, const cv::Rect& region, int levels, const Channels& channels, int finest = 1);
 
   int levels() const { return levels_; }
   int channels() const { return channels_; }
-  const cv::Mat1f& level(int l, int channel = 0) const { return planes_[channel * levels_ + l].view; }
+  // px of the image per px of level `l`.
+  int scale(int l) const { return 1 << (skipped_ + l); }
+  const cv::Mat1f& level(int l, int channel = 0) const {
+    return planes_[channel * (skipped_ + levels_) + skipped_ + l].view;
+  }
   cv::Point origin() const { return region_.tl(); }
   // Takes pixels of the image to those of level `l`.
   Eigen::Matrix3d levelFromImage(int l) const {
-    const double size = 1 << l;
+    const double size = scale(l);
     Eigen::Matrix3d m = Eigen::Matrix3d::Identity();
     m.diagonal().head<2>().setConstant(1.0 / size);
     m.topRightCorner<2, 1>() << -origin().x / size, -origin().y / size;
@@ -72,9 +78,10 @@ class RegionPyramid {
   void halve(const cv::Mat1f& fine, cv::Mat1f& coarse);
 
   cv::Rect region_;
+  int skipped_ = 0;  // levels finer than level 0
   int levels_ = 0;
   int channels_ = 0;
-  std::vector<Plane> planes_;  // ordered by channel
+  std::vector<Plane> planes_;  // ordered by channel, then from fine to coarse, with the skipped levels
   std::vector<float> rows_;
 };
 

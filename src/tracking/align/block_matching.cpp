@@ -61,9 +61,10 @@ double vertex(double left, double middle, double right) {
 
 void BlockMatching::setReference(const image::RegionPyramid& reference, const geometry::Rectangle& roi) {
   level_ = 0;
-  while (level_ + 1 < reference.levels() && std::max(roi.width, roi.height) / (1 << level_) > kLargest) ++level_;
+  while (level_ + 1 < reference.levels() && std::max(roi.width, roi.height) / reference.scale(level_) > kLargest)
+    ++level_;
   level_ = std::min(level_ + coarser_, reference.levels() - 1);
-  scale_ = 1 << level_;
+  scale_ = reference.scale(level_);
   const cv::Size inner(static_cast<int>(roi.width / scale_), static_cast<int>(roi.height / scale_));
   const cv::Size size(inner.width + 2 * kReach, inner.height + 2 * kReach);
   reference_T_crop_ << scale_, 0.0, roi.x - kReach * scale_, 0.0, scale_, roi.y - kReach * scale_, 0.0, 0.0, 1.0;
@@ -98,7 +99,7 @@ void BlockMatching::look(const image::RegionPyramid& current, const Eigen::Matri
   const int l = std::min(level_, current.levels() - 1);
   if (lens_) {
     image::warpBilinear(current.level(l), g * reference_T_crop_, *lens_,
-                        {current.origin(), static_cast<double>(1 << l)}, warped_, valid_);
+                        {current.origin(), static_cast<double>(current.scale(l))}, warped_, valid_);
   } else {
     image::warpBilinear(current.level(l), current.levelFromImage(l) * g * reference_T_crop_, warped_, valid_);
   }

@@ -46,10 +46,10 @@ bool usable(const EsmResult& estimate) {
 
 }  // namespace
 
-Eigen::Matrix3d imageFromPatch(const geometry::Rectangle& roi) {
-  Eigen::Matrix3d m = Eigen::Matrix3d::Identity();
-  m.topRightCorner<2, 1>() << roi.x, roi.y;
-  return m;
+int finestScale(const geometry::Rectangle& roi) {
+  int scale = 1;
+  while (roi.width * roi.height > kMostPixels * scale * scale) scale *= 2;
+  return scale;
 }
 
 RegionAligner::RegionAligner(const TrackerConfig& config, std::shared_ptr<const image::Lens> lens)
@@ -64,27 +64,33 @@ RegionAligner::RegionAligner(const TrackerConfig& config, std::shared_ptr<const 
 void RegionAligner::setReference(const cv::Mat& image, const geometry::Rectangle& roi) {
   const cv::Rect box = image::seenBox(lens_.get(), roi.corners(), 0.0) & cv::Rect(cv::Point(0, 0), image.size());
   channels_ = chosenChannels(config_.channels, image(box), config_.saturation);
-  const cv::Rect with_border = image::seenBox(lens_.get(), roi.corners(), kBorder * (1 << config_.levels));
+  finest_ = finestScale(roi);
+  const cv::Rect with_border = image::seenBox(lens_.get(), roi.corners(), kBorder * (finest_ << config_.levels));
   noise_ = noiseOf(mixed(image(box), channels_.weights[0]));
-  pyramid_.build(image, with_border, config_.levels, channels_);
+  pyramid_.build(image, with_border, config_.levels, channels_, finest_);
   esm_.setReference(pyramid_, roi);
   blocks_.setReference(pyramid_, roi);
   far_blocks_.setReference(pyramid_, roi);
   sample(image, Eigen::Matrix3d::Identity());
-  gates_.setReference(patch_, cv::Size(static_cast<int>(roi.width), static_cast<int>(roi.height)),
-                      coloursIn(channels_));
+  gates_.setReference(patch_, patchSize(), coloursIn(channels_));
   if (!mask_.empty()) gates_.hideInReference(covered_.blue);
   esm_.setWeights(weights());
 }
 
 ReferenceTexture RegionAligner::referenceTexture() {
   const cv::Mat1f plane = esm_.level(0).planes[0].value.view();
+  const image::LevelNoise left = image::levelNoise(finest_);
+  const double typical = kTypicalNoise * (left.deviation / image::levelNoise(1).deviation);
   ReferenceTexture result;
-  result.noise = std::max(kTypicalNoise, image::kNoiseLeft * noise_);
-  esm_.setWeights(weights().mul(textureShare(plane, image::kNoiseGradient * noise_ * noise_)));
+  result.noise = std::max(typical, left.deviation * noise_);
+  esm_.setWeights(weights().mul(textureShare(plane, left.gradient * noise_ * noise_)));
   result.corner_error = esm_.referenceCornerError(result.noise);
   esm_.setWeights(weights());
   return result;
+}
+
+cv::Size RegionAligner::patchSize() const {
+  return {esm_.level(0).width, esm_.level(0).height};
 }
 
 // Samples the image for the gates where `g` puts the ROI.
@@ -97,9 +103,9 @@ void RegionAligner::sample(const cv::Mat& image, const Eigen::Matrix3d& g) {
 }
 
 void RegionAligner::sample(const cv::Mat& image, const Eigen::Matrix3d& g, image::ColourPatch& patch) const {
-  const cv::Size size(static_cast<int>(roi().width), static_cast<int>(roi().height));
+  const cv::Size size = patchSize();
   const int step = samplingStep(size, occlusion_);
-  Eigen::Matrix3d image_T_sample = g * imageFromPatch(roi());
+  Eigen::Matrix3d image_T_sample = g * esm_.level(0).image_T_patch;
   image_T_sample.leftCols<2>() *= step;
   const cv::Size samples((size.width + step - 1) / step, (size.height + step - 1) / step);
   if (lens_) {
@@ -128,11 +134,11 @@ Alignment RegionAligner::align(const cv::Mat& image, const EsmState& start, cons
   Alignment result;
   result.esm.state = start;
   result.esm.status = EsmStatus::kOutOfView;
-  const double margin = reach + kBorder * (1 << (esm_.levels() - 1));
+  const double margin = reach + kBorder * esm_.level(esm_.levels() - 1).scale;
   const cv::Rect box = image::seenBox(lens_.get(), geometry::apply(start.g, roi().corners()), margin);
   result.in_image = !(box & cv::Rect(cv::Point(0, 0), image.size())).empty();
   if (!result.in_image) return result;
-  pyramid_.build(image, box, config_.levels, channels_);
+  pyramid_.build(image, box, config_.levels, channels_, finest_);
   // Where the prediction was off, so are masks that are drawn there; those of the image before move with the region.
   bool looked = prior == nullptr || surprise_ <= kGateShift * lengthUnit(roi());
   if (looked) look(image, start.g);
@@ -189,10 +195,12 @@ const std::vector<BlockShift>& RegionAligner::measure(const EsmResult& estimate,
 }
 
 int RegionAligner::visibleBlocks(const std::vector<BlockShift>& shifts) const {
-  const cv::Mat1f weight = esm_.level(0).weight.view();
+  const EsmLevel& level = esm_.level(0);
+  const cv::Mat1f weight = level.weight.view();
   const auto visible = [&](const BlockShift& block) {
-    const cv::Point centre(cvRound(block.centre.x() - roi().x), cvRound(block.centre.y() - roi().y));
-    const int half = static_cast<int>(blocks_.side() / 2.0);
+    const cv::Point centre(cvRound((block.centre.x() - level.image_T_patch(0, 2)) / level.scale),
+                           cvRound((block.centre.y() - level.image_T_patch(1, 2)) / level.scale));
+    const int half = static_cast<int>(blocks_.side() / level.scale / 2.0);
     const cv::Rect box =
         cv::Rect(centre.x - half, centre.y - half, 2 * half, 2 * half) & cv::Rect({0, 0}, weight.size());
     return cv::mean(weight(box))[0] >= kBlockVisible;
@@ -262,7 +270,7 @@ cv::Mat RegionAligner::occlusionMask(const Eigen::Matrix3d& g, const cv::Size& s
   const cv::Rect box = image::seenBox(lens_.get(), corners, 1.0) & cv::Rect(cv::Point(0, 0), size);
   if (box.empty()) return mask;
   cv::Mat1b part = mask(box);
-  image::drawMask(areas, g * imageFromPatch(roi()), lens_.get(), box, part);
+  image::drawMask(areas, g * esm_.level(0).image_T_patch, lens_.get(), box, part);
   return mask;
 }
 

@@ -6,6 +6,9 @@
 //   4. Structure gate on the aligned region; while it rejects further areas, ESM on the finest level again.
 //   5. Block matching checks the estimate, and corrects it where both contradict each other.
 //   6. If most blocks were not found, block matching on a coarser level, which searches further.
+//
+// All of it works on patches of at most kMostPixels: for a larger ROI the finest level is coarser than the image. The
+// errors that are claimed are those of what was used.
 #pragma once
 
 #include <Eigen/Core>
@@ -42,7 +45,8 @@ struct ReferenceTexture {
   double noise = 0.0;         // grey levels, of the finest level: the image's own, or kTypicalNoise where that is more
   double corner_error = 0.0;  // px, that this noise causes; infinite where the texture does not determine the motion
 };
-constexpr double kTypicalNoise = 2.0;  // grey levels, of a laparoscope's camera, as the finest level shows it
+// grey levels, of a laparoscope's camera, in a level of scale 1
+constexpr double kTypicalNoise = 2.0;
 
 class RegionAligner {
  public:
@@ -80,12 +84,13 @@ class RegionAligner {
 
   const Esm& esm() const { return esm_; }
   const OcclusionGates& gates() const { return gates_; }
-  // Current weights of the ROI's pixels; valid until the next call of a member function.
+  // Current weights of the finest level's pixels; valid until the next call of a member function.
   cv::Mat1f weights() { return gates_.weights().view(); }
   const image::Channels& channels() const { return channels_; }
   const geometry::Rectangle& roi() const { return esm_.roi(); }
 
  private:
+  cv::Size patchSize() const;
   void sample(const cv::Mat& image, const Eigen::Matrix3d& g);
   void sample(const cv::Mat& image, const Eigen::Matrix3d& g, image::ColourPatch& patch) const;
   void look(const cv::Mat& image, const Eigen::Matrix3d& g);
@@ -103,6 +108,7 @@ class RegionAligner {
   OcclusionGates gates_;
   BlockMatching blocks_;
   BlockMatching far_blocks_;
+  int finest_ = 1;  // scale of the finest level
   image::RegionPyramid pyramid_;
   image::Channels channels_ = image::kLuma;
   image::ColourPatch patch_;
@@ -113,7 +119,9 @@ class RegionAligner {
   double surprise_ = 0.0;  // px, distance of the worst corner from the prediction in the last image
 };
 
-// Pixels of a patch of the ROI's size to those of the image that the ROI is taken from.
-Eigen::Matrix3d imageFromPatch(const geometry::Rectangle& roi);
+// px of the image per px of the finest level on which a ROI of this size is tracked, a power of 2: the least for which
+// the ROI has no more than kMostPixels there.
+constexpr double kMostPixels = 200000.0;
+int finestScale(const geometry::Rectangle& roi);
 
 }  // namespace laparoscope_servo::tracking

@@ -256,7 +256,7 @@ EsmStatus Esm::settle(const image::RegionPyramid& current, int l, int patience, 
     if (result.last_step * contraction / (1.0 - contraction) < accuracy) return EsmStatus::kConverged;
     // The rest of the way is small against the estimate's own uncertainty.
     if (result.last_step_deviations * contraction / (1.0 - contraction) < kSettled) return EsmStatus::kConverged;
-    if (k > 0 && l == 0 && result.last_step < kFar && prior != nullptr &&
+    if (k > 0 && l == 0 && result.last_step < kFar * scale && prior != nullptr &&
         prior->noise > kCorrelated * std::pow(result.sigma, 2))
       return EsmStatus::kConverged;
     if (k >= patience && result.last_step > kFar * scale) break;

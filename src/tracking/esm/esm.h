@@ -89,7 +89,7 @@ class Esm {
   // in whole pixels.
   void setReference(const image::RegionPyramid& reference, const geometry::Rectangle& roi);
 
-  // Sets the weights of the ROI's pixels, CV_32F of its size, for the following alignments. A pixel of a coarser level
+  // Sets the weights of level 0's pixels, CV_32F of its size, for the following alignments. A pixel of a coarser level
   // gets the least of the weights that it covers.
   void setWeights(const cv::Mat1f& weights);
 

@@ -50,7 +50,7 @@ void keepInside(const float* __restrict weight, const float* __restrict above, c
 
 EsmLevel::EsmLevel(const image::RegionPyramid& reference, const geometry::Rectangle& roi, int l,
                    const image::Lens* lens) {
-  const int size = 1 << l;
+  const int size = reference.scale(l);
   // Without a lens the level's pixels are used as they are. With a lens they are resampled, starting at the ROI's first
   // pixel.
   const int x = lens != nullptr ? 0 : static_cast<int>(roi.x) - reference.origin().x;

@@ -140,10 +140,11 @@ void FeatureSearch::drawStrip() {
 // Uses the whole crop except the covered parts of the ROI: the tissue around the ROI moves with it, and small or smooth
 // regions are found by their surroundings.
 void FeatureSearch::describe(Keyframe& keyframe, const geometry::Rectangle& roi) {
-  Eigen::Matrix3d from_roi = Eigen::Matrix3d::Identity();
-  from_roi.topRightCorner<2, 1>() << roi.x, roi.y;
+  Eigen::Matrix3d from_mask = Eigen::Matrix3d::Identity();
+  from_mask.diagonal().head<2>() << roi.width / keyframe.trusted.cols, roi.height / keyframe.trusted.rows;
+  from_mask.topRightCorner<2, 1>() << roi.x, roi.y;
   cv::Mat1b covered;
-  image::drawMask(keyframe.trusted == 0, keyframe.g * from_roi, lens_.get(),
+  image::drawMask(keyframe.trusted == 0, keyframe.g * from_mask, lens_.get(),
                   cv::Rect(keyframe.first, keyframe.crop.size()), covered);
   const CoarseImage small = coarseImage(keyframe.crop, coarse_.scale, weights_, saturation_);
   keyframe.described = true;

@@ -142,7 +142,9 @@ std::optional<SearchPlace> RegionSearch::nextSuggested(const cv::Mat& image) {
 
 double RegionSearch::alignmentCost(int iterations) const {
   const geometry::Rectangle& roi = keyframes_.roi();
-  return roi.width * roi.height * (nominal_cost::kPixelLookedAt + iterations * nominal_cost::kPixelIterated);
+  const double scale = finestScale(roi);
+  return roi.width * roi.height / (scale * scale) *
+         (nominal_cost::kPixelLookedAt + iterations * nominal_cost::kPixelIterated);
 }
 
 bool RegionSearch::judge(const Attempt& attempt, const RegionAligner& aligner) {

@@ -18,7 +18,9 @@ struct Keyframe {
   cv::Mat crop;       // part of the raw image: the ROI with a margin
   cv::Point first;    // px, of the crop's first pixel in that image
   Eigen::Matrix3d g;  // pixels of the reference to pixels of that image, determinant 1
-  cv::Mat1b trusted;  // 255 for the ROI's pixels (of the reference) that were neither occluded nor saturated, else 0
+  // Mask of the ROI in the reference: 255 where it was neither occluded nor saturated, else 0. Its pixels are those of
+  // the weights that were given.
+  cv::Mat1b trusted;
 
   // true: the features are computed. A search computes them when it first needs them, so that tracking only pays for
   // the copy
@@ -37,8 +39,8 @@ class Keyframes {
   explicit Keyframes(int capacity, std::shared_ptr<const image::Lens> lens = nullptr)
       : capacity_(capacity), lens_(std::move(lens)) {}
 
-  // Forgets every keyframe; the reference becomes the first. `weights` is CV_32F of the ROI's size, 0 where it cannot
-  // be trusted.
+  // Forgets every keyframe; the reference becomes the first. `weights` is CV_32F of the ROI's size or a fraction
+  // of it, 0 where it cannot be trusted.
   void setReference(const cv::Mat& image, const geometry::Rectangle& roi, const cv::Mat1f& weights);
 
   // Whether a keyframe at `g` would be at a distance of at least 1 from each that is stored and, when all places are

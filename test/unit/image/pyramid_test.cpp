@@ -32,6 +32,23 @@ TEST(RegionPyramid, LevelsShowAPlaneOfGreyLevelsAtTheirCoordinates) {
   }
 }
 
+TEST(RegionPyramid, ACoarserFinestLevelIsTheLevelOfThatScale) {
+  const cv::Mat image = test::tissue(cv::Size(150, 130), 4);
+  const cv::Rect region(11, 7, 120, 101);
+  RegionPyramid from_image, from_scale;
+  from_image.build(image, region, 5, kLuma);
+  for (const int scale : {2, 4}) {
+    from_scale.build(image, region, 2, kLuma, scale);
+    for (int l = 0; l < 2; ++l) {
+      const int same = l + (scale == 2 ? 1 : 2);
+      EXPECT_EQ(from_scale.scale(l), from_image.scale(same));
+      ASSERT_EQ(from_scale.level(l).size(), from_image.level(same).size());
+      EXPECT_EQ(cv::norm(from_scale.level(l), from_image.level(same), cv::NORM_INF), 0.0);
+      EXPECT_EQ(from_scale.levelFromImage(l), from_image.levelFromImage(same));
+    }
+  }
+}
+
 TEST(RegionPyramid, WeighsTheChannels) {
   const cv::Mat image(30, 30, CV_8UC3, cv::Scalar(10, 20, 30));
   RegionPyramid pyramid;
@@ -68,18 +85,22 @@ TEST(RegionPyramid, LeavesOfNoiseWhatItSaysItLeaves) {
   cv::Mat1b noise(400, 400);
   cv::RNG(5).fill(noise, cv::RNG::NORMAL, 128.0, 10.0);
   RegionPyramid pyramid;
-  pyramid.build(noise, cv::Rect(0, 0, 400, 400), 1, kLuma);
-  const cv::Mat1f level = pyramid.level(0);
-  cv::Scalar mean, deviation;
-  cv::meanStdDev(level, mean, deviation);
-  EXPECT_NEAR(deviation[0], 10.0 * kNoiseLeft, 0.1);
-  double square = 0.0;
-  for (int j = 1; j < 399; ++j) {
-    for (int i = 1; i < 399; ++i)
-      square += std::pow(0.5 * (level(j, i + 1) - level(j, i - 1)), 2) +
-                std::pow(0.5 * (level(j + 1, i) - level(j - 1, i)), 2);
+  pyramid.build(noise, cv::Rect(0, 0, 400, 400), 3, kLuma);
+  for (int l = 0; l < 3; ++l) {
+    const LevelNoise left = levelNoise(pyramid.scale(l));
+    const cv::Mat1f level = pyramid.level(l);
+    cv::Scalar mean, deviation;
+    cv::meanStdDev(level, mean, deviation);
+    EXPECT_NEAR(deviation[0] / (10.0 * left.deviation), 1.0, 0.05) << l;
+    double square = 0.0;
+    for (int j = 1; j + 1 < level.rows; ++j) {
+      for (int i = 1; i + 1 < level.cols; ++i)
+        square += std::pow(0.5 * (level(j, i + 1) - level(j, i - 1)), 2) +
+                  std::pow(0.5 * (level(j + 1, i) - level(j - 1, i)), 2);
+    }
+    square /= (level.rows - 2.0) * (level.cols - 2.0);
+    EXPECT_NEAR(square / (100.0 * left.gradient), 1.0, 0.08) << l;
   }
-  EXPECT_NEAR(square / (398.0 * 398.0), 100.0 * kNoiseGradient, 0.5);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -154,11 +155,14 @@ int differentStates(const Outcome& a, const Outcome& b) {
 
 constexpr Camera kUsual = {25.0, 1.0};
 const Camera kOthers[] = {{12.5, 1.0}, {60.0, 1.0}, {25.0, 0.5}, {25.0, 2.0}, {25.0, 4.0}};
+const Camera kLarge = {25.0, 6.0};  // the region's finest level is coarser than the image
 
 TEST(Rates, AFlatRegionIsTrackedLostAndFoundAlike) {
   const Outcome usual = run(kUsual, 0.0);
   ASSERT_LT(worst(usual.clear), 0.2);
-  for (const Camera& camera : kOthers) {
+  std::vector<Camera> others(std::begin(kOthers), std::end(kOthers));
+  others.push_back(kLarge);
+  for (const Camera& camera : others) {
     SCOPED_TRACE(text(camera));
     const Outcome outcome = run(camera, 0.0);
     EXPECT_EQ(outcome.lies, 0);

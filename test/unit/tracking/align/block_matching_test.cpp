@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
+#include "support/synthetic_lens.h"
 #include "support/synthetic_tissue.h"
 #include "tracking/align/shift_fit.h"
 
@@ -68,6 +70,35 @@ TEST_F(BlockMatchingTest, ShiftsAreOfTheReferenceWhateverTheHomographyShows) {
   for (const BlockShift& s : shifts) {
     if (s.confident) {
       EXPECT_LT((s.shift - Eigen::Vector2d(2.0, 4.0)).norm(), 0.2);
+    }
+  }
+}
+
+// Raw images of a lens; the finest level is as coarse as the image or coarser.
+TEST(BlockMatchingOfRawImages, ShiftsAreInRectifiedPixelsAtAnyFinestScale) {
+  const cv::Size size(480, 360);
+  const geometry::Rectangle roi = {150, 90, 150, 140};
+  const auto lens = std::make_shared<const image::Lens>(test::laparoscope(size, 330.0));
+  const test::LensView view(*lens, size);
+  const cv::Mat scene = test::tissue(cv::Size(640, 480), 3);
+  const Eigen::Vector2d true_shift(4.0, -3.0);
+  Eigen::Matrix3d g = Eigen::Matrix3d::Identity();
+  g.topRightCorner<2, 1>() = true_shift;
+  for (const int finest : {1, 2}) {
+    SCOPED_TRACE(finest);
+    const auto pyramid = [&](const cv::Mat& image) {
+      image::RegionPyramid result;
+      result.build(image, cv::Rect(cv::Point(0, 0), image.size()), 2, image::kLuma, finest);
+      return result;
+    };
+    BlockMatching matching(lens);
+    matching.setReference(pyramid(view(scene, Eigen::Matrix3d::Identity())), roi);
+    const std::vector<BlockShift>& shifts = matching.measure(pyramid(view(scene, g)), Eigen::Matrix3d::Identity());
+    EXPECT_GE(confidentShifts(shifts), 25);
+    for (const BlockShift& s : shifts) {
+      if (s.confident) {
+        EXPECT_LT((s.shift - true_shift).norm(), 0.3 * finest);
+      }
     }
   }
 }

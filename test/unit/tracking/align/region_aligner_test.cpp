@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "support/synthetic_tissue.h"
@@ -118,6 +120,51 @@ TEST_F(RegionAlignerTest, WhatStandsStillDoesNotHoldTheRestThatHasMovedFar) {
     const double u = geometry::apply(found.esm.state.g, Eigen::Vector2d(135.0, 135.0)).x();  // on the tissue
     EXPECT_NEAR(u, 135.0 + shift, 2.0);
     EXPECT_LT(found.blocks.off, 2.5);
+  }
+}
+
+TEST(FinestScale, IsTheLeastThatLeavesFewEnoughPixels) {
+  EXPECT_EQ(finestScale({0, 0, 220, 340}), 1);
+  EXPECT_EQ(finestScale({0, 0, 400, 500}), 1);
+  EXPECT_EQ(finestScale({0, 0, 401, 500}), 2);
+  EXPECT_EQ(finestScale({0, 0, 800, 1000}), 2);
+  EXPECT_EQ(finestScale({0, 0, 3840, 2160}), 8);
+}
+
+// The same region with more pixels: from 447 px on its finest level is coarser than the image. What is found, what is
+// covered and what is claimed are the same shares of the region.
+TEST(RegionAlignerOfLargeRegions, FindsCoversAndClaimsAlikeAtAnySize) {
+  const cv::Mat small = cv::min(test::tissue(cv::Size(240, 200), 22), 240);
+  double claimed_once = 0.0;
+  for (const int size : {1, 2, 5, 9}) {
+    SCOPED_TRACE(size);
+    cv::Mat scene;
+    cv::resize(small, scene, cv::Size(), size, size, cv::INTER_CUBIC);
+    const geometry::Rectangle roi = {60.0 * size, 50.0 * size, 110.0 * size, 100.0 * size};
+    RegionAligner aligner{TrackerConfig()};
+    aligner.setReference(scene, roi);
+    EXPECT_EQ(aligner.esm().level(0).scale, size <= 2 ? 1 : size <= 5 ? 2 : 4);
+    EXPECT_LT(aligner.referenceTexture().corner_error, 0.5 * size);
+    cv::RNG rng(5);
+    double error = 0.0, claimed = 0.0;
+    constexpr int kTrials = 6;
+    for (int trial = 0; trial < kTrials; ++trial) {
+      const Eigen::Matrix3d truth = test::randomHomography(roi, 3.0 * size, rng);
+      cv::Mat image = test::view(scene, truth, 1.1, -5.0, 3.0, 40 + trial);
+      image(cv::Rect(60 * size, 50 * size, 40 * size, 100 * size)).setTo(cv::Scalar(190, 190, 190));
+      const Alignment found = aligner.align(image, EsmState(), nullptr, 32.0 * size);
+      const double off = geometry::cornerDistance(found.esm.state.g, truth, roi) / size;
+      EXPECT_LT(off, 0.6);
+      EXPECT_NEAR(found.visible_fraction, 0.62, 0.06);
+      EXPECT_NEAR(found.esm.state.gain, 1.0 / 1.1, 0.03);
+      error += off * off / kTrials;
+      claimed += std::pow(found.esm.corner_error / size, 2) / kTrials;
+    }
+    // cornerDistance is of the worst corner, which is 1.5 times what a corner that is expected worst has.
+    EXPECT_LT(std::sqrt(error), 2.0 * std::sqrt(claimed));
+    EXPECT_GT(std::sqrt(error), 0.3 * std::sqrt(claimed));
+    if (size == 1) claimed_once = claimed;
+    EXPECT_LT(claimed, claimed_once * 1.1 + 1e-9);  // with more pixels it is known no worse
   }
 }
 

@@ -57,6 +57,25 @@ TEST_F(FeatureSearchTest, AnImageThatIsScaledDownGivesPlacesInItsOwnPixels) {
   EXPECT_LT(geometry::cornerDistance(found[0].g, g, kRoi), 15.0);
 }
 
+// The mask of a large region has fewer pixels than the region; the same part of it is covered.
+TEST_F(FeatureSearchTest, AMaskOfFewerPixelsCoversTheSamePart) {
+  const cv::Mat image = seen(motion(1.0, 0.3, 0.0, {230.0, 190.0}));
+  std::vector<std::size_t> points;
+  for (const int scale : {1, 2}) {
+    cv::Mat1f weights(120 / scale, 130 / scale, 1.0f);
+    weights(cv::Rect(0, 0, weights.cols, weights.rows / 2)).setTo(0.0f);
+    views_.setReference(scene_, kRoi, weights);
+    const std::vector<FeatureCandidate> found = find(image);
+    ASSERT_FALSE(found.empty());
+    for (const cv::Point2f& p : views_.at(0).features.points) {
+      const bool covered = p.x > kRoi.x + 3 && p.x < kRoi.x + kRoi.width - 4 && p.y > kRoi.y + 3 && p.y < kRoi.y + 56;
+      EXPECT_FALSE(covered) << p << ' ' << scale;
+    }
+    points.push_back(views_.at(0).features.points.size());
+  }
+  EXPECT_EQ(points[0], points[1]);
+}
+
 TEST_F(FeatureSearchTest, TakesGreyImages) {
   cv::Mat grey, moved;
   cv::cvtColor(scene_, grey, cv::COLOR_BGR2GRAY);
