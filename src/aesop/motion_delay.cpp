@@ -22,7 +22,10 @@ void MotionDelay::sent(const JointVector& velocity, double now) {
     phase_ = Phase::kNone;
     if (from_rest) begin(Phase::kStarting, velocity, now);
   } else if (!moves && moved) {
-    const bool steady = phase_ == Phase::kNone && !measured_.isZero(0.0);
+    // A command that faded before it ended tells no moment from which to measure.
+    const double changed = (sent_ - measured_).cwiseAbs().maxCoeff();
+    const double speed = measured_.cwiseAbs().maxCoeff();
+    const bool steady = phase_ == Phase::kNone && speed > 0.0 && changed <= kConstant * speed;
     phase_ = Phase::kNone;
     if (steady) begin(Phase::kStopping, measured_, now);
   } else if (phase_ == Phase::kStarting && std::abs(velocity[joint_] - speed_) > kConstant * std::abs(speed_)) {

@@ -138,7 +138,7 @@ TEST(LaunchFiles, EveryNodeOfAnotherPackageIsKeptToTheLoopbackAddress) {
       ++others;
     }
   }
-  EXPECT_EQ(others, 5) << "rviz twice, a manager, and what loads the nodelets of tracker and camera";
+  EXPECT_EQ(others, 6) << "rviz twice, a manager, and what loads the nodelets of tracker, features and camera";
 }
 
 TEST(LaunchFiles, EveryArgumentIsDocumented) {

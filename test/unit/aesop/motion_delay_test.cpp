@@ -97,6 +97,18 @@ TEST(MotionDelay, aRampIsNoStep) {
   EXPECT_FALSE(delay.start());
 }
 
+// A command that ran out faded before: its last step is not when the arm was told to stop.
+TEST(MotionDelay, aCommandThatFadedIsNoStep) {
+  MotionDelay delay;
+  LateArm arm(delay, 0.15);
+  arm.run(0.0, 0.5);
+  arm.run(0.05, 1.0);
+  for (const double share : {0.75, 0.5, 0.25}) arm.run(0.05 * share, kPeriod);
+  arm.run(0.0, 1.0);
+  EXPECT_TRUE(delay.start());
+  EXPECT_FALSE(delay.stop());
+}
+
 TEST(MotionDelay, aStepBeforeTheArmStandsIsNone) {
   MotionDelay delay;
   LateArm arm(delay, 0.15);

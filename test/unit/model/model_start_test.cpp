@@ -59,7 +59,7 @@ TEST_F(ModelStartTest, whatCannotBeToldApartIsRefusedByName) {
 TEST_F(ModelStartTest, anImageWithoutTheModelIsRefused) {
   const auto model = test::modelOf(test::kCube);
   const Eigen::Isometry3d pose = test::viewOf(*model, 0.42);
-  for (unsigned seed = 1; seed <= 10; ++seed) {
+  for (unsigned seed = 1; seed <= 40; ++seed) {
     cv::Mat1f grain(scene_.size);
     cv::RNG rng(seed);
     rng.fill(grain, cv::RNG::NORMAL, 0.0, 1.0);

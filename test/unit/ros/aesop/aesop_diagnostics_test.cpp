@@ -84,7 +84,8 @@ TEST_F(AesopDiagnosticsTest, measuresTheDelayOfTheArm) {
   enable();
   EXPECT_EQ(value(filled(), "delay of the arm, start to half its speed [s]"), "not measured yet");
   run(1.5, 0.05);
-  run(2.0);  // the last command runs out after 0.2 s
+  driver_.command(scope::Velocity(), 1000.0 + now_, 1000.0 + now_, now_);
+  run(2.0);
   const auto status = filled();
   const sim::ArmConfig arm;
   for (const char* key :

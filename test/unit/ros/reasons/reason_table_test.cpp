@@ -87,7 +87,8 @@ const std::vector<std::string>& sourceLiterals() {
 // Every file in which reasons are written, and what in it is none: of answers, of the log, of diagnostics.
 const std::map<std::string, std::set<std::string>>& filesWithReasons() {
   static const std::map<std::string, std::set<std::string>> files{
-      {"src/tracking/region_tracker.cpp", {}},
+      {"src/tracking/region_tracker.cpp",
+       {"external mask of ", " px and OpenCV type ", ", expected the image's size, ", " px, and type "}},
       {"src/tracking/roi_check.cpp",
        {"image is empty, expected at least one pixel", "image of OpenCV type ",
         ", expected 8 bit with one channel or three"}},
