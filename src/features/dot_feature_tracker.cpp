@@ -10,7 +10,6 @@ namespace laparoscope_servo::features {
 namespace {
 
 constexpr std::size_t kOutlinePoints = 24;
-constexpr std::size_t kReasonLength = 160;  // more than any text has, so that none allocates
 
 }  // namespace
 
@@ -20,15 +19,8 @@ const TrackedFeatures& DotFeatureTracker::select(const cv::Mat& image, double st
   std::vector<Eigen::Vector2d> points;
   for (const SelectedFeature& feature : selection) points.push_back(feature.points.front());
   tracker_.select(image, stamp, points);
-  told_.features.assign(selection.size(), {});
-  for (std::size_t k = 0; k < selection.size(); ++k) {
-    TrackedFeature& told = told_.features[k];
-    told.id = selection[k].id;
-    told.desired = selection[k].desired;
-    told.reason.reserve(kReasonLength);
-    told.outline.resize(kOutlinePoints + 1);
-  }
-  told_.reason.reserve(2 * kReasonLength);
+  begin(told_, selection);
+  for (TrackedFeature& told : told_.features) told.outline.resize(kOutlinePoints + 1);
   tell();
   return told_;
 }

@@ -8,12 +8,6 @@
 
 namespace laparoscope_servo::features {
 
-namespace {
-
-constexpr std::size_t kReasonLength = 160;  // more than any text has, so that none allocates
-
-}  // namespace
-
 EdgeFeatureTracker::EdgeFeatureTracker(const EdgeConfig& config) : config_(config) {
   validation::throwErrors("edges", validate(config));
   summarise(told_, reasonText(Reason::kNothingSelected));
@@ -36,15 +30,7 @@ const TrackedFeatures& EdgeFeatureTracker::select(const cv::Mat& image, double s
     }
   }
   curves_ = std::move(curves);
-  told_.features.assign(selection.size(), {});
-  told_.reason.reserve(2 * kReasonLength);
-  for (std::size_t k = 0; k < selection.size(); ++k) {
-    TrackedFeature& told = told_.features[k];
-    told.id = selection[k].id;
-    told.kind = selection[k].kind;
-    told.desired = selection[k].desired;
-    told.reason.reserve(kReasonLength);
-  }
+  begin(told_, selection);
   tell();
   return told_;
 }

@@ -137,4 +137,17 @@ std::vector<std::string> validate(const FeatureSelection& selection, const std::
   return errors;
 }
 
+void begin(TrackedFeatures& told, const FeatureSelection& selection) {
+  constexpr std::size_t kReasonLength = 160;  // more than any text has
+  told.features.assign(selection.size(), {});
+  told.reason.reserve(2 * kReasonLength);
+  for (std::size_t k = 0; k < selection.size(); ++k) {
+    TrackedFeature& feature = told.features[k];
+    feature.id = selection[k].id;
+    feature.kind = selection[k].kind;
+    feature.desired = selection[k].desired;
+    feature.reason.reserve(kReasonLength);
+  }
+}
+
 }  // namespace laparoscope_servo::features

@@ -14,7 +14,6 @@ using features::State;
 
 namespace {
 
-constexpr std::size_t kReasonLength = 160;  // more than any text has, so that none allocates
 constexpr Eigen::Index kParameters = 6;
 
 }  // namespace
@@ -44,14 +43,8 @@ const features::TrackedFeatures& ModelFeatureTracker::select(const cv::Mat& imag
   }
   trackers_ = std::move(trackers);
   camera_ = *prior.camera;
-  told_.features.assign(selection.size(), {});
-  told_.reason.reserve(2 * kReasonLength);
-  for (std::size_t k = 0; k < selection.size(); ++k) {
-    features::TrackedFeature& told = told_.features[k];
-    told.id = selection[k].id;
-    told.kind = features::FeatureKind::kPose;
-    told.desired = selection[k].desired;
-    told.reason.reserve(kReasonLength);
+  features::begin(told_, selection);
+  for (features::TrackedFeature& told : told_.features) {
     told.parameters.setZero(kParameters);
     told.covariance.setZero(kParameters, kParameters);
     told.outline.reserve(static_cast<std::size_t>(config_.edges.max_sites));

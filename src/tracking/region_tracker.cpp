@@ -29,14 +29,6 @@ constexpr double kSearchReach = 0.25;  // of the ROI's larger side, when it has 
 // less than this were held for a second in 42 cases, the others in 15 of 32.
 constexpr double kClearly = 0.3;
 
-void checkMask(const cv::Mat& mask, const cv::Mat& image) {
-  if (mask.empty() || (mask.type() == CV_8UC1 && mask.size() == image.size())) return;
-  std::ostringstream text;
-  text << "external mask of " << mask.cols << " x " << mask.rows << " px and OpenCV type " << mask.type()
-       << ", expected the image's size, " << image.cols << " x " << image.rows << " px, and type " << CV_8UC1;
-  throw std::invalid_argument(text.str());
-}
-
 }  // namespace
 
 const char* stateName(State state) {

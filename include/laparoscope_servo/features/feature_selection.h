@@ -32,9 +32,9 @@ struct SelectedFeature {
   std::optional<EllipseSelection> ellipse;
   std::optional<ArcSelection> arc;
   std::optional<Eigen::Isometry3d> pose;  // of a POSE: where the object is about, camera_T_object, m
-  bool closed = false;      // of a spline: it ends where it begins, and has 4 points or more
-  double range = 6.0;       // px, by which the edge may be off
-  Eigen::VectorXd desired;  // see TrackedFeature; empty: none
+  bool closed = false;                    // of a spline: it ends where it begins, and has 4 points or more
+  double range = 6.0;                     // px, by which the edge may be off
+  Eigen::VectorXd desired;                // see TrackedFeature; empty: none
 };
 
 using FeatureSelection = std::vector<SelectedFeature>;
@@ -43,5 +43,9 @@ using FeatureSelection = std::vector<SelectedFeature>;
 // empty or twice there, a number that is not finite, a range outside [1, 100] px, a kind that is not among `kinds`, a
 // number of points, or of desired values, that the kind does not have. Empty: none.
 std::vector<std::string> validate(const FeatureSelection& selection, const std::vector<FeatureKind>& kinds);
+
+// The features of a selection in place of those that were told of before: ids, kinds, desired values, and room for
+// every reason, so that telling of them allocates nothing.
+void begin(TrackedFeatures& told, const FeatureSelection& selection);
 
 }  // namespace laparoscope_servo::features

@@ -53,6 +53,24 @@ TEST(FeatureSelection, takesWhatIsWhole) {
   EXPECT_TRUE(validate({}, kAll).empty());
 }
 
+TEST(FeatureSelection, whatIsToldBeginsWithIdsKindsAndDesiredValues) {
+  SelectedFeature point, pose;
+  point.id = "dot";
+  point.desired = Eigen::Vector2d(3.0, 4.0);
+  pose.id = "clamp";
+  pose.kind = FeatureKind::kPose;
+  TrackedFeatures told;
+  told.features.resize(3);
+  told.features[0].reason = "of the one before";
+  begin(told, {point, pose});
+  ASSERT_EQ(told.features.size(), 2u);
+  EXPECT_EQ(told.features[0].id, "dot");
+  EXPECT_EQ(told.features[0].desired, point.desired);
+  EXPECT_EQ(told.features[0].reason, "");
+  EXPECT_EQ(told.features[1].id, "clamp");
+  EXPECT_EQ(told.features[1].kind, FeatureKind::kPose);
+}
+
 TEST(FeatureSelection, refusesIdsThatTellNothing) {
   std::vector<std::string> errors = validate({point("a"), point("a")}, kAll);
   ASSERT_EQ(errors.size(), 1u);
