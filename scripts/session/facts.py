@@ -46,8 +46,14 @@ class Changes:
         return total
 
 
+class TwoCarts(Exception):
+    """A bag holds more than one cart, or tracker, and nobody said which one is meant."""
+
+
 class Session:
-    def __init__(self):
+    def __init__(self, cart=""):
+        self.cart = cart.rstrip("/")  # namespace of the topics that are read; empty: all, which must be of one cart
+        self.topics = {}  # what is told by a topic: the one topic that is read for it
         self.sources = []  # path, what is wrong with it
         self.begin, self.end = math.inf, -math.inf
         self.count = 0
@@ -60,6 +66,16 @@ class Session:
         self.safety = []  # time, who, what, why
         self.images = []  # time, stamp, (bag, kind, place)
         self.session_text = ""
+
+    def reads(self, topic):
+        return topic.startswith(self.cart + "/")
+
+    def owns(self, role, topic):
+        """Whether the topic is the one that this is read from: the first one seen. A second one is another cart's or tracker's."""
+        first = self.topics.setdefault(role, topic)
+        if first != topic and role != "images":
+            raise TwoCarts(f"holds {role} of two: {first} and {topic}. Choose a cart by the namespace of its topics: --cart NAMESPACE")
+        return first == topic
 
     def seen(self, time):
         self.begin, self.end = min(self.begin, time), max(self.end, time)
@@ -134,33 +150,53 @@ def read_bag(session, path, progress):
     bag = Bag(path)
     for message in bag.messages():
         progress(message.time)
+        if not session.reads(message.topic):
+            continue
         session.seen(message.time)
         try:
             take(session, bag, message)
         except (struct.error, IndexError) as error:  # another version's message
             bag.problem = f"holds messages of {message.topic} that cannot be read: {error}"
+        except TwoCarts as error:
+            raise TwoCarts(f"{path} {error}") from None
     session.sources.append((str(path), bag.problem))
+
+
+def role_of(kind, topic):
+    """What a message tells of the session; empty: nothing that the report is made of."""
+    if kind == "laparoscope_servo/Homography":
+        return "" if topic.endswith("/recorded/tracker/homography") else "results"  # the player's copies of earlier ones
+    if kind in ("sensor_msgs/CompressedImage", "sensor_msgs/Image"):
+        return "" if "/tracker/" in topic else "images"  # the tracker's previews and masks are none of the camera's
+    ends = {"laparoscope_servo/ScopeVelocity": ("servo_command", "commands"), "geometry_msgs/PoseStamped": ("measured_cp", "positions"),
+            "laparoscope_servo/ControllerState": ("", "the controller's states"),
+            "laparoscope_servo/OperatingState": ("", "the robot's states"), "std_msgs/String": ("session", "parameters")}
+    end, role = ends.get(kind, ("", ""))
+    return role if topic.endswith(end) else ""
 
 
 def take(session, bag, message):
     kind, time, topic = message.kind, message.time, message.topic
-    if kind == "laparoscope_servo/Homography":
+    if kind == "std_msgs/Empty" and topic.endswith("/stop"):  # the controller's and the robot's
+        session.safety.append((time, "somebody", f"stop on {topic}", ""))
+    role = role_of(kind, topic)
+    if not role or not session.owns(role, topic):
+        return
+    if role == "results":
         session.tracker_result(time, messages.homography(message.data))
-    elif kind == "laparoscope_servo/ScopeVelocity" and topic.endswith("servo_command"):
+    elif role == "commands":
         session.commands.add(time, *messages.scope_velocity(message.data))
-    elif kind == "geometry_msgs/PoseStamped" and topic.endswith("measured_cp"):
+    elif role == "positions":
         session.positions.add(time, *messages.position(message.data))
-    elif kind == "laparoscope_servo/ControllerState":
+    elif role == "the controller's states":
         state = messages.controller_state(message.data)
         safety_event(session, time, "controller", state["state"], state["reason"], session.controller)
-    elif kind == "laparoscope_servo/OperatingState":
+    elif role == "the robot's states":
         state = messages.operating_state(message.data)
         safety_event(session, time, "robot", state["state"], state["reason"], session.robot)
-    elif kind == "std_msgs/Empty" and topic.endswith("/stop"):
-        session.safety.append((time, "somebody", f"stop on {topic}", ""))
-    elif kind in ("sensor_msgs/CompressedImage", "sensor_msgs/Image"):
+    elif role == "images":
         session.images.append((time, messages.header(message.head(16))[0], (bag, kind, message.place)))
-    elif kind == "std_msgs/String" and topic.endswith("session"):
+    else:
         session.session_text = messages.string(message.data)
 
 

@@ -126,6 +126,36 @@ TEST_F(SessionReport, TellsHowFarRecomputedResultsAreFromRecordedOnes) {
   EXPECT_EQ(report("'" + bag(false) + "'", "--recomputed '" + folder_.file("nothing.bag") + "'"), 1);
 }
 
+// A bag of two carts on one master. Their states and commands must not become those of one.
+TEST_F(SessionReport, OfTwoCartsItTellsOfTheOneThatIsChosen) {
+  const std::string file = folder_.file("two.bag");
+  rosbag::Bag bag(file, rosbag::bagmode::Write);
+  for (int k = 0; k < 100; ++k) {
+    for (const std::string cart : {"/left", "/right"}) {
+      Homography result;
+      result.header.stamp = at(k);
+      result.state = cart == "/left" ? Homography::TRACKING : Homography::LOST;
+      bag.write(cart + "/tracker/homography", at(k), result);
+      ControllerState state;
+      state.state = cart == "/left" ? "SERVO" : "LOST";
+      bag.write(cart + "/controller/state", at(k), state);
+    }
+  }
+  bag.close();
+  ASSERT_EQ(report("'" + file + "'"), 1);
+  EXPECT_NE(contents("log").find("/left/tracker/homography and /right/tracker/homography"), std::string::npos)
+      << contents("log");
+  EXPECT_NE(contents("log").find("--cart"), std::string::npos) << contents("log");
+  EXPECT_FALSE(std::filesystem::exists(folder_.file("report.html")));
+  ASSERT_EQ(report("'" + file + "'", "--cart /right"), 0) << contents("log");
+  EXPECT_TRUE(has("100 results of the tracker"));
+  EXPECT_TRUE(has("begins as LOST"));
+  EXPECT_FALSE(has("SERVO"));
+  ASSERT_EQ(report("'" + file + "'", "--cart /middle"), 0);
+  EXPECT_TRUE(has("There is nothing in it"));
+  EXPECT_NE(contents("log").find("no topic begins with /middle/"), std::string::npos) << contents("log");
+}
+
 TEST_F(SessionReport, WithoutPicturesItTellsTheRest) {
   ASSERT_EQ(report("'" + bag(false) + "'"), 0) << contents("log");
   EXPECT_TRUE(has("no picture") && has("found again"));
