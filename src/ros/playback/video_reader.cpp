@@ -100,7 +100,10 @@ void VideoReader::openDecoder() {
   int result = avcodec_parameters_to_context(codec_.get(), stream_->codecpar);
   if (standsAlone(codec_->codec_id)) codec_->err_recognition |= AV_EF_EXPLODE | AV_EF_CRCCHECK;
   codec_->pkt_timebase = stream_->time_base;
-  codec_->thread_count = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, kMostThreads));
+  // On more threads libav conceals damage within a picture with the one before, and often does not mark it.
+  codec_->thread_count = standsAlone(codec_->codec_id)
+                             ? static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, kMostThreads))
+                             : 1;
   if (result >= 0) result = avcodec_open2(codec_.get(), codec, nullptr);
   if (result < 0) refuse(libav::errorText(result));
 }

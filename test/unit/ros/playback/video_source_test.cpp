@@ -258,6 +258,38 @@ TEST_F(VideoSourceTest, DamagedPicturesAreNamedWithTheirPlace) {
   }
 }
 
+// The decoder conceals it with the picture before, so that it looks like a picture; the tracker must not see it.
+TEST_F(VideoSourceTest, DamageInTheMiddleOfAPictureIsTold) {
+  if (!test_support::canEncode("libx264")) GTEST_SKIP() << "libav cannot write H.264 here";
+  cv::Mat scene(540, 720, CV_8UC3), noise(480, 640, CV_8UC3);
+  cv::RNG dice(3);
+  dice.fill(scene, cv::RNG::UNIFORM, 0, 255);
+  cv::GaussianBlur(scene, scene, cv::Size(), 2.0);
+  cv::normalize(scene, scene, 20, 235, cv::NORM_MINMAX);
+  std::vector<cv::Mat> images;
+  for (int k = 0; k < kPictures; ++k) {
+    dice.fill(noise, cv::RNG::UNIFORM, 0, 20);
+    images.push_back(scene(cv::Rect(2 * k, k, 640, 480)) + noise);
+  }
+  TestVideo video;
+  video.codec = "libx264";
+  video.between = 2;
+  const std::string path = write("film.mp4", video, images);
+  const auto places = test_support::packetsOf(path);
+  const std::string whole = test_support::bytesOf(path);
+  int damaged = 0, told = 0;
+  for (const auto& place : places) {
+    if (place.size < 800) continue;  // bits of few blocks may by chance be others
+    std::string bytes = whole;
+    for (std::size_t k = place.size / 3; k < place.size * 2 / 3; ++k) bytes[place.at + k] ^= 0x5A;
+    test_support::writeBytes(path, bytes);
+    ++damaged;
+    told += lostOf(readAll(path)) > 0 ? 1 : 0;
+  }
+  EXPECT_GE(damaged, 5);
+  EXPECT_GE(told, 0.8 * damaged) << damaged << " pictures were damaged, one a time";
+}
+
 // Where the damage is in what the container says of its packets, nothing comes of them at all.
 TEST_F(VideoSourceTest, PicturesThatADamagedContainerHidesAreToldToo) {
   for (const char* codec : {"mjpeg", "mpeg4"}) {
