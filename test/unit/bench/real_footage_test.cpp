@@ -85,9 +85,11 @@ class DrawnRegions : public RealFootage {
     program("build/bench/bench_film",
             "film=$1 roi=$3 from=$5\n"
             "while [ \"$1\" != --tables ]; do shift; done\n"
-            "n=$(cat '" + folder_.file("count") + "' 2>/dev/null || echo 0); echo $((n + 1)) >'" + folder_.file("count") +
+            "n=$(cat '" +
+                folder_.file("count") + "' 2>/dev/null || echo 0); echo $((n + 1)) >'" + folder_.file("count") +
                 "'\n"
-                "state=$((n % 2 ? 1 : 3)); [ $state = 3 ] || echo $roi $from >>'" + folder_.file("asked") +
+                "state=$((n % 2 ? 1 : 3)); [ $state = 3 ] || echo $roi $from >>'" +
+                folder_.file("asked") +
                 "'\n"
                 "{ echo frame,state,processing_time; echo 0,$state,9; echo 1,$state,0.002; } >\"$2/ours.csv\"\n");
     program("judge",
