@@ -8,6 +8,7 @@ import cv2
 import numpy as np
 
 TRACKING = 1
+FILMS = (".mp4", ".avi", ".mkv", ".mov")
 REGIONS = pathlib.Path(__file__).with_name("regions.csv")
 
 
@@ -44,6 +45,39 @@ def read_regions(table, folder, only=()):
     if not regions:
         raise SystemExit(f"{table}: no region{' called ' + ', '.join(only) if only else ''}")
     return regions
+
+
+def write_regions(table, regions):
+    """A table for read_regions."""
+    with open(table, "w", newline="", encoding="utf-8") as out:
+        writer = csv.writer(out, lineterminator="\n")
+        writer.writerow(("film", "roi", "from"))
+        writer.writerows((r.film.name, r.roi_text, r.first) for r in regions)
+
+
+def random_regions(folder, seed, limit):
+    """Regions that nobody chose, without end: each film of the folder in turn, from an image on that has `limit` images after it if the film
+    is that long; sides from 40 px (or a sixth of the image, if that is more) to a half of the image, all ratios alike."""
+    films = sorted(f for f in pathlib.Path(folder).iterdir() if f.suffix in FILMS)
+    if not films:
+        raise SystemExit(f"{folder}: no film ({', '.join(FILMS)})")
+    sizes = [size_of(film) for film in films]
+    draw = np.random.default_rng(seed)
+    while True:
+        for film, (width, height, count) in zip(films, sizes):
+            shorter = min(width, height)
+            w, h = (int(np.exp(draw.uniform(*np.log([max(40.0, shorter / 6), side / 2])))) for side in (width, height))
+            x, y = int(draw.integers(width - w + 1)), int(draw.integers(height - h + 1))
+            yield Region(film, (x, y, w, h), int(draw.integers(max(1, count - limit))))
+
+
+def size_of(film):
+    """Width and height, px, and the number of images."""
+    source = cv2.VideoCapture(str(film))
+    width, height, count = (int(source.get(p)) for p in (cv2.CAP_PROP_FRAME_WIDTH, cv2.CAP_PROP_FRAME_HEIGHT, cv2.CAP_PROP_FRAME_COUNT))
+    if width < 80 or height < 80 or count < 1:
+        raise SystemExit(f"{film}: {count} images of {width} x {height} px, expected images of at least 80 x 80 px")
+    return width, height, count
 
 
 def rate_of(film):

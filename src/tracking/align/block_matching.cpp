@@ -11,7 +11,10 @@ namespace laparoscope_servo::tracking {
 
 namespace {
 
-constexpr int kLargest = 160;   // px of the level, the ROI's larger side: a finer level adds no information
+// px of the level, the ROI's larger side: blocks are a tenth of it or more. Half as fine, a block of a region with two
+// surfaces in it holds both of them.
+constexpr int kLargest = 240;
+constexpr int kEnough = 12;     // blocks with unique texture, a third of all; with fewer a coarser level is tried
 constexpr int kAround = 7;      // px, half the window of the local mean and deviation
 constexpr float kFloor = 1.5f;  // grey levels: a smaller deviation is noise
 // deviations, at which contrast is clipped so that an edge or a highlight does not dominate
@@ -60,10 +63,17 @@ double vertex(double left, double middle, double right) {
 }  // namespace
 
 void BlockMatching::setReference(const image::RegionPyramid& reference, const geometry::Rectangle& roi) {
-  level_ = 0;
-  while (level_ + 1 < reference.levels() && std::max(roi.width, roi.height) / reference.scale(level_) > kLargest)
-    ++level_;
-  level_ = std::min(level_ + coarser_, reference.levels() - 1);
+  int level = 0;
+  while (level + 1 < reference.levels() && std::max(roi.width, roi.height) / reference.scale(level) > kLargest) ++level;
+  setReference(reference, roi, level);
+  const int unique = blocks();
+  if (unique >= kEnough || level + 1 >= reference.levels()) return;
+  setReference(reference, roi, level + 1);
+  if (blocks() <= unique) setReference(reference, roi, level);
+}
+
+void BlockMatching::setReference(const image::RegionPyramid& reference, const geometry::Rectangle& roi, int level) {
+  level_ = std::min(level, reference.levels() - 1);
   scale_ = reference.scale(level_);
   const cv::Size inner(static_cast<int>(roi.width / scale_), static_cast<int>(roi.height / scale_));
   const cv::Size size(inner.width + 2 * kReach, inner.height + 2 * kReach);

@@ -30,14 +30,18 @@ class BlockMatching {
   static constexpr int kMostBlocks = kAlong * kAlong;
   static constexpr int kSide = 24;  // side of a block, px of the level on which blocks are searched
 
-  // With a lens pyramids are of raw images; everything else is in rectified pixels. `coarser`: how many levels coarser
-  // than usual the search is; each level doubles the search range.
-  explicit BlockMatching(std::shared_ptr<const image::Lens> lens = nullptr, int coarser = 0)
-      : lens_(std::move(lens)), coarser_(coarser) {}
+  // With a lens pyramids are of raw images; everything else is in rectified pixels.
+  explicit BlockMatching(std::shared_ptr<const image::Lens> lens = nullptr) : lens_(std::move(lens)) {}
 
+  // Searches on the finest level that tells something: one on which the ROI is not too large and enough blocks have
+  // unique texture. On smooth tissue that is a coarser level, where a block holds more of it.
   // The pyramid must hold the ROI with kReach px of the search level around it.
   void setReference(const image::RegionPyramid& reference, const geometry::Rectangle& roi);
+  // Searches on this level of the pyramid, or on its coarsest one. Each level doubles the search range.
+  void setReference(const image::RegionPyramid& reference, const geometry::Rectangle& roi, int level);
 
+  // Level of the pyramid on which blocks are searched.
+  int level() const { return level_; }
   // Number of blocks whose texture is unique within the search range.
   int blocks() const { return static_cast<int>(blocks_.size()); }
   // px of the reference per px of the level on which blocks are searched.
@@ -59,7 +63,6 @@ class BlockMatching {
   Peak find(const cv::Point& block);
 
   std::shared_ptr<const image::Lens> lens_;
-  int coarser_ = 0;
   int level_ = 0;
   double scale_ = 1.0;  // px of the reference per px of the level
   Eigen::Matrix3d reference_T_crop_ = Eigen::Matrix3d::Identity();

@@ -36,7 +36,11 @@ constexpr double kGainChangeRate = 0.5;  // 1/s
 // is the ROI, whatever the illumination and the noise; in images of other scenes fewer than three blocks moved alike.
 constexpr int kEnoughBlocks = 6;
 constexpr double kRecognised = 0.3;
-constexpr double kNear = 3.0;       // px, limit of the median distance of the blocks
+constexpr double kNear = 3.0;  // px, limit of the median distance of the blocks
+// If the blocks that recognise it are spread less than blocks all over one half of it would be, its corners are
+// extrapolated by more than is seen: then the corner error counts, with another limit, from which on it is wrong.
+constexpr double kSpread = 0.5;
+constexpr double kWrong = 5.0;      // px
 constexpr int kTelling = 8;         // blocks; with fewer that have unique texture, block matching is inconclusive
 constexpr int kVisibleTelling = 6;  // kTelling for blocks that are not covered
 constexpr int kFewBlocks = 3;       // blocks that moved alike: the least number for any of them to be confident
@@ -48,8 +52,8 @@ constexpr double kFoundOfVisible = 0.25;
 // covered in part. But if the gates reject all textured areas, the estimate may be wrong: if at least kPartlyVisible is
 // visible, block matching is also required once no leastBlocks() blocks were found for kUnproven.
 constexpr double kMostlyVisible = 0.5;
-constexpr double kPartlyVisible = 0.35;
-constexpr double kUnproven = 0.5;  // s
+constexpr double kPartlyVisible = 0.25;
+constexpr double kUnproven = 0.2;  // s
 
 // A record can be better than any later correct estimate: values at least this good always pass.
 constexpr double kGoodZncc = 0.9;
@@ -129,8 +133,10 @@ std::string doubt(const Evidence& e, const QualityConfig& q) {
   const double max_sigma = std::max(kGoodSigma, tolerance.sigma + tolerance.sigma_factor * e.record.sigma());
   if (!recognised && !(e.esm.sigma <= max_sigma))
     return text("residual [grey levels]", e.esm.sigma, "at most", max_sigma);
-  if (!recognised && !(e.esm.corner_error <= q.max_corner_error)) {
-    return text("expected corner error [px]", e.esm.corner_error, "at most", q.max_corner_error);
+  const double max_corner_error = recognised ? std::max(q.max_corner_error, kWrong * unit) : q.max_corner_error;
+  const bool determined = recognised && blocks.spread >= kSpread;
+  if (!determined && !(e.esm.corner_error <= max_corner_error)) {
+    return text("expected corner error [px]", e.esm.corner_error, "at most", max_corner_error);
   }
   if (!(e.esm.centre_error <= q.max_centre_error)) {
     return text("expected error of the centre [px]", e.esm.centre_error, "at most", q.max_centre_error);

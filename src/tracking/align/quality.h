@@ -41,6 +41,7 @@ struct BlockEvidence {
   double off = 0.0;
   int visible = 0;                          // blocks seen that are not covered
   Matrix8d deformation = Matrix8d::Zero();  // see deformationCovariance
+  double spread = 0.0;                      // 0 to 1, see spreadOfShifts
 };
 
 // lengthUnit()s of the image: if the median of the blocks is off by more, the estimate is wrong; an estimate counts as

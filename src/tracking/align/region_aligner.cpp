@@ -59,7 +59,7 @@ RegionAligner::RegionAligner(const TrackerConfig& config, std::shared_ptr<const 
       esm_(config.esm, lens),
       gates_(config.occlusion, config.esm.saturation),
       blocks_(lens),
-      far_blocks_(lens, 1) {}
+      far_blocks_(lens) {}
 
 void RegionAligner::setReference(const cv::Mat& image, const geometry::Rectangle& roi) {
   const cv::Rect box = image::seenBox(lens_.get(), roi.corners(), 0.0) & cv::Rect(cv::Point(0, 0), image.size());
@@ -70,7 +70,7 @@ void RegionAligner::setReference(const cv::Mat& image, const geometry::Rectangle
   pyramid_.build(image, with_border, config_.levels, channels_, finest_);
   esm_.setReference(pyramid_, roi);
   blocks_.setReference(pyramid_, roi);
-  far_blocks_.setReference(pyramid_, roi);
+  far_blocks_.setReference(pyramid_, roi, blocks_.level() + 1);
   sample(image, Eigen::Matrix3d::Identity());
   gates_.setReference(patch_, patchSize(), coloursIn(channels_));
   if (!mask_.empty()) gates_.hideInReference(covered_.blue);
@@ -191,6 +191,7 @@ const std::vector<BlockShift>& RegionAligner::measure(const EsmResult& estimate,
   evidence.seen = static_cast<int>(shifts.size());
   evidence.confident = confidentShifts(shifts);
   evidence.off = medianShift(shifts, estimate.state.g);
+  evidence.spread = spreadOfShifts(shifts, roi(), blocks_.side());
   return shifts;
 }
 

@@ -57,6 +57,28 @@ double medianShift(const std::vector<BlockShift>& shifts, const Eigen::Matrix3d&
   return lengths.empty() ? std::numeric_limits<double>::quiet_NaN() : robust::median(lengths);
 }
 
+double spreadOfShifts(const std::vector<BlockShift>& shifts, const geometry::Rectangle& roi, double side) {
+  // Centres lie from half a block inside of the region's border on.
+  const Eigen::Array2d range(std::max(roi.width - side, 1.0), std::max(roi.height - side, 1.0));
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
+  int count = 0;
+  for (const BlockShift& s : shifts) {
+    if (!s.confident) continue;
+    const Eigen::Vector2d p = (s.centre - roi.centre()).array() / range;
+    sum += p;
+    squares += p * p.transpose();
+    ++count;
+  }
+  if (count == 0) return 0.0;
+  const Eigen::Vector2d mean = sum / count;
+  const Eigen::Matrix2d covariance = squares / count - mean * mean.transpose();
+  const double half_trace = 0.5 * covariance.trace();
+  const double least = half_trace - std::hypot(0.5 * (covariance(0, 0) - covariance(1, 1)), covariance(0, 1));
+  constexpr double kEven = (BlockMatching::kAlong + 1.0) / (12.0 * (BlockMatching::kAlong - 1));  // variance of a row
+  return std::sqrt(std::max(least, 0.0) / kEven);
+}
+
 Matrix8d deformationCovariance(const std::vector<BlockShift>& shifts, double median, const geometry::Rectangle& roi) {
   const double deviation = median / robust::kRayleighMedian;  // in each direction
   const int count = confidentShifts(shifts);

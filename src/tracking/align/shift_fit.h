@@ -30,4 +30,8 @@ Matrix8d deformationCovariance(const std::vector<BlockShift>& shifts, double med
 double medianShift(const std::vector<BlockShift>& shifts, const Eigen::Matrix3d& g);
 int confidentShifts(const std::vector<BlockShift>& shifts);
 
+// How far the confident shifts are spread over the region, in the direction in which they are spread least: their
+// standard deviation over that of blocks all over the region. 0 (one place, or one line) to about 1; 0 without any.
+double spreadOfShifts(const std::vector<BlockShift>& shifts, const geometry::Rectangle& roi, double side);
+
 }  // namespace laparoscope_servo::tracking

@@ -76,6 +76,74 @@ TEST_F(RealFootage, AJudgeThatFailsIsQuoted) {
   EXPECT_NE(output.text.find("no such patches"), std::string::npos) << output.text;
 }
 
+// A tracker that refuses each second region, and keeps where it was asked to track.
+class DrawnRegions : public RealFootage {
+ protected:
+  void SetUp() override {
+    RealFootage::SetUp();
+    if (IsSkipped()) return;
+    program("build/bench/bench_film",
+            "film=$1 roi=$3 from=$5\n"
+            "while [ \"$1\" != --tables ]; do shift; done\n"
+            "n=$(cat '" +
+                folder_.file("count") + "' 2>/dev/null || echo 0); echo $((n + 1)) >'" + folder_.file("count") +
+                "'\n"
+                "state=$((n % 2 ? 1 : 3)); [ $state = 3 ] || echo $roi $from >>'" +
+                folder_.file("asked") +
+                "'\n"
+                "{ echo frame,state,processing_time; echo 0,$state,9; echo 1,$state,0.002; } >\"$2/ours.csv\"\n");
+    program("judge",
+            "echo '{\"tracking\": 0.5, \"wrong\": 2, \"unsupported\": 1, \"unclear\": 0, \"longest_seen_run\": 0}'\n");
+  }
+  std::string asked(const std::string& options) {
+    for (const char* name : {"asked", "count"}) std::filesystem::remove(folder_.file(name));
+    const auto output = run("--limit 2 " + options);
+    EXPECT_EQ(output.status, 0) << output.text;
+    text_ = output.text;
+    return contents("asked");
+  }
+
+  std::string text_;  // of the last run
+};
+
+TEST_F(DrawnRegions, AreTakenInTheirOrderAndLieInTheFilm) {
+  const std::string first = asked("--random 6 --seed 3");
+  std::istringstream lines(first);
+  int x, y, width, height, from, count = 0;
+  for (char comma; lines >> x >> comma >> y >> comma >> width >> comma >> height >> from; ++count) {
+    EXPECT_TRUE(x >= 0 && y >= 0 && width >= 40 && height >= 40 && x + width <= 160 && y + height <= 120) << first;
+    EXPECT_TRUE(from >= 0 && from <= 1) << first;  // of three images two are wanted
+  }
+  EXPECT_EQ(count, 6) << first;
+  EXPECT_NE(text_.find("6 regions were refused"), std::string::npos) << text_;
+  EXPECT_TRUE(std::regex_search(text_, std::regex("all films +ours +0.500 +12 +6 +of 6 TRACKING images of 6 regions")))
+      << text_;
+  EXPECT_EQ(asked("--random 6 --seed 3"), first);
+  EXPECT_NE(asked("--random 6 --seed 4"), first);
+}
+
+TEST_F(DrawnRegions, AreWrittenForAnotherBuild) {
+  const std::string drawn = asked("--random 3 --keep '" + folder_.file("kept") + "'");
+  std::istringstream table(contents("kept/drawn.csv"));
+  std::string line;
+  std::getline(table, line);
+  EXPECT_EQ(line, "film,roi,from");
+  std::string written;
+  std::smatch row;
+  while (std::getline(table, line) && std::regex_match(line, row, std::regex("film.avi,\"([0-9,]+)\",([0-9]+)")))
+    written += row[1].str() + " " + row[2].str() + "\n";
+  EXPECT_EQ(written, drawn);
+}
+
+TEST_F(DrawnRegions, FilmsWithoutARegionThatIsTakenAreGivenUp) {
+  program("build/bench/bench_film",
+          "while [ \"$1\" != --tables ]; do shift; done\n"
+          "{ echo frame,state,processing_time; echo 0,3,9; } >\"$2/ours.csv\"\n");
+  const auto output = run("--random 2");
+  EXPECT_EQ(output.status, 1);
+  EXPECT_NE(output.text.find("51 regions were refused, 0 taken"), std::string::npos) << output.text;
+}
+
 TEST_F(RealFootage, AFilmThatIsNotThereIsNamed) {
   std::filesystem::remove(folder_.file("film.avi"));
   program("judge", "exit 2\n");

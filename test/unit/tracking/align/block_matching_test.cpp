@@ -175,9 +175,36 @@ TEST_F(BlockMatchingTest, ASmallRegionIsNotFoundInAnotherScene) {
   EXPECT_LE(images_with_proof, 1);
 }
 
+// Smooth tissue: what a block of the fine level holds looks alike all around.
+TEST_F(BlockMatchingTest, OnSmoothTissueBlocksAreLargerAndTellMore) {
+  cv::Mat smooth;
+  cv::GaussianBlur(scene_, smooth, cv::Size(), 12.0);
+  cv::addWeighted(smooth, 4.0, smooth, 0.0, -300.0, smooth);
+  BlockMatching fine, chosen;
+  fine.setReference(pyramid(smooth), kRoi, 0);
+  chosen.setReference(pyramid(smooth), kRoi);
+  EXPECT_LT(fine.blocks(), 12);
+  EXPECT_EQ(chosen.level(), 1);
+  EXPECT_GT(chosen.blocks(), fine.blocks());
+  EXPECT_EQ(matching_.level(), 0) << "where the fine level tells enough";
+}
+
+// A block of a region that holds two surfaces should hold one of them only.
+TEST(BlockMatchingOfLargerRegions, BlocksAreSmallAgainstTheRegion) {
+  const cv::Mat scene = test::tissue(cv::Size(700, 500), 23);
+  for (const double side : {60.0, 120.0, 200.0, 240.0, 400.0, 480.0}) {
+    image::RegionPyramid pyramid;
+    pyramid.build(scene, cv::Rect(cv::Point(0, 0), scene.size()), 3, image::kLuma);
+    BlockMatching matching;
+    matching.setReference(pyramid, {100, 10, side, 0.8 * side});
+    EXPECT_LE(matching.side(), std::max(24.0, 0.2 * side)) << side;
+    EXPECT_GE(matching.blocks(), 30) << side;
+  }
+}
+
 TEST_F(BlockMatchingTest, ACoarserLevelFindsWhatIsTooFarForTheFineOne) {
-  BlockMatching coarse(nullptr, 1);
-  coarse.setReference(pyramid(scene_), kRoi);
+  BlockMatching coarse;
+  coarse.setReference(pyramid(scene_), kRoi, matching_.level() + 1);
   EXPECT_EQ(coarse.scale(), 2.0 * matching_.scale());
   const cv::Mat image = moved(12.0, -3.0);
   EXPECT_LT(confidentShifts(measured(image)), 3);

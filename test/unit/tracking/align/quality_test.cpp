@@ -232,6 +232,24 @@ TEST(Doubt, NearlyConvergedIsGoodEnough) {
   EXPECT_EQ(doubt(e, QualityConfig()), "");
 }
 
+// Blocks in one place say nothing of the corners: the estimate turns about them, and its corner error grows.
+TEST(Doubt, PiecesInOnePlaceDoNotMakeUpForUncertainCorners) {
+  Evidence e = good();
+  e.esm.corner_error = 7.0;
+  e.blocks = {10, 10, 0.3};
+  e.blocks.spread = 0.3;
+  EXPECT_NE(doubt(e, QualityConfig()).find("corner error"), std::string::npos);
+  e.blocks.spread = 0.6;
+  EXPECT_EQ(doubt(e, QualityConfig()), "");
+  e.blocks.spread = 0.3;
+  e.esm.corner_error = 4.5;  // less than an error that is wrong
+  EXPECT_EQ(doubt(e, QualityConfig()), "");
+  QualityConfig config;
+  config.max_corner_error = 8.0;
+  e.esm.corner_error = 7.0;
+  EXPECT_EQ(doubt(e, config), "");
+}
+
 // Where more is visible, more of the blocks have to be found; a search has to find some in any case.
 TEST(Doubt, AsksForMoreBlocksTheMoreIsVisible) {
   const auto refused = [](double visible, int confident, bool from_track) {
@@ -261,9 +279,10 @@ TEST(Doubt, AsksForBlocksThatNothingCoversAndForOthersAfterAWhile) {
   e.blocks.visible = 6;
   EXPECT_NE(doubt(e, QualityConfig()).find("pieces of the region found"), std::string::npos);
   e.blocks.visible = 5;
-  e.unproven = 0.6;
+  e.unproven = 0.25;
+  e.visible_fraction = 0.2;
   EXPECT_EQ(doubt(e, QualityConfig()), "") << "beside an instrument a block is covered, too";
-  e.visible_fraction = 0.4;
+  e.visible_fraction = 0.3;
   EXPECT_NE(doubt(e, QualityConfig()).find("pieces of the region found"), std::string::npos);
   e.blocks.confident = 4;
   e.blocks.off = 1.0;

@@ -121,6 +121,21 @@ TEST(MedianShift, IsInPixelsOfTheImageAndNanWithoutAny) {
   EXPECT_TRUE(std::isnan(medianShift({}, Eigen::Matrix3d::Identity())));
 }
 
+TEST(SpreadOfShifts, IsThatOfTheConfidentBlocksInTheDirectionOfTheLeast) {
+  std::vector<BlockShift> shifts = shiftsOf(geometry::Vector8d::Zero(), 0.0);
+  const auto keep = [&](auto which) {
+    for (std::size_t k = 0; k < shifts.size(); ++k) shifts[k].confident = which(k / 6, k % 6);
+    return spreadOfShifts(shifts, kRoi, kSide);
+  };
+  EXPECT_NEAR(keep([](std::size_t, std::size_t) { return true; }), 1.0, 0.02);
+  EXPECT_NEAR(keep([](std::size_t, std::size_t column) { return column < 3; }), 0.5, 0.05);
+  EXPECT_NEAR(keep([](std::size_t row, std::size_t) { return row >= 3; }), 0.5, 0.05);
+  EXPECT_NEAR(keep([](std::size_t row, std::size_t) { return row == 2; }), 0.0, 1e-6);
+  EXPECT_NEAR(keep([](std::size_t row, std::size_t column) { return row == column; }), 0.0, 0.05) << "a diagonal";
+  EXPECT_EQ(keep([](std::size_t row, std::size_t column) { return row == 0 && column == 5; }), 0.0);
+  EXPECT_EQ(keep([](std::size_t, std::size_t) { return false; }), 0.0);
+}
+
 double cornersBy(const Matrix8d& covariance) {
   return cornerError(Eigen::Matrix3d::Identity(), kRoi, covariance);
 }
