@@ -58,8 +58,10 @@ void Tracker::start() {
   session_ = std::make_unique<TrackerSession>(parameters);
   views_ = std::make_unique<ViewLibrary>(parameters);
   desk_ = std::make_unique<RegionDesk>(parameters);
-  statistics_ = std::make_unique<TrackerDiagnostics>(parameters.tracking, parameters.robot_motion.enabled);
+  statistics_ = std::make_unique<TrackerDiagnostics>(parameters.tracking, parameters.robot_motion.enabled,
+                                                     parameters.external_mask.enabled);
   if (parameters.robot_motion.enabled) followRobot(parameters.robot_motion);
+  if (parameters.external_mask.enabled) followMasks(parameters.external_mask);
 
   ros::NodeHandle& node = getNodeHandle();
   ros::NodeHandle& private_node = getPrivateNodeHandle();
@@ -109,6 +111,34 @@ void Tracker::followRobot(const RobotMotionConfig& config) {
     if (!motion && !word.complaint.empty()) why += "; " + word.complaint;
     return motion;
   });
+}
+
+void Tracker::followMasks(MaskInputConfig config) {
+  constexpr std::uint32_t kQueue = 10;  // masks that come while an image is processed, and those of a stranger between
+  if (!config.owner.empty()) config.owner = getNodeHandle().resolveName(config.owner, false);
+  masks_ = std::make_unique<MaskInput>(config, session_->parameters().input);
+  session_->setMaskSource(
+      [this](const cv::Mat& image, const ros::Time& stamp) { return masks_->at(stamp, image.size()); });
+  mask_subscriber_ = getPrivateNodeHandle().subscribe("external_mask", kQueue, &Tracker::takeMask, this,
+                                                      ros::TransportHints().tcpNoDelay());
+}
+
+// A mask that is refused leaves tracking as it is.
+void Tracker::takeMask(const ros::MessageEvent<const sensor_msgs::Image>& event) {
+  const double now = steadyNow();
+  // Simulated time comes on its own topic, before or after the mask.
+  const ros::Time clock = ros::Time::isSimTime() ? ros::Time() : ros::Time::now();
+  try {
+    masks_->take(event.getConstMessage(), {event.getPublisherName(), event.getConnectionHeaderPtr(), now, clock});
+  } catch (const std::exception& error) {
+    statistics_->maskRefused(now, error.what());
+    NODELET_WARN_THROTTLE(kThrottle, "external mask refused: %s", error.what());
+  }
+}
+
+void Tracker::clockJumpedBack() {
+  session_->clockJumpedBack();
+  if (masks_) masks_->clockJumpedBack();
 }
 
 void Tracker::process(const sensor_msgs::ImageConstPtr& message) {

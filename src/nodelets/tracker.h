@@ -20,6 +20,7 @@
 #include "nodelets/service_thread.h"
 #include "ros/common/owned_transforms.h"
 #include "ros/common/reconfigure_server.h"
+#include "ros/tracker/mask_input.h"
 #include "ros/tracker/preview.h"
 #include "ros/tracker/region_desk.h"
 #include "ros/tracker/tracker_diagnostics.h"
@@ -39,11 +40,13 @@ class Tracker : public ImageNodelet {
   void start() override;
   void notStarted(const std::string& why) override;
   void followRobot(const RobotMotionConfig& config);
+  void followMasks(MaskInputConfig config);
 
   // The functions below run in the nodelet's own single-threaded queue.
   void process(const sensor_msgs::ImageConstPtr& message) override;
   void takeCameraInfo(const sensor_msgs::CameraInfo& info) override { session_->setCameraInfo(info); }
-  void clockJumpedBack() override { session_->clockJumpedBack(); }
+  void clockJumpedBack() override;
+  void takeMask(const ros::MessageEvent<const sensor_msgs::Image>& event);
   void refused(const std::string& error, Refusal cause) override;
   void diagnose(double now, const FeedPublishers& publishers,
                 diagnostic_updater::DiagnosticStatusWrapper& status) override;
@@ -62,6 +65,8 @@ class Tracker : public ImageNodelet {
   TrackerRequest::Answer ask(const TrackerRequest::Question& question);
 
   std::unique_ptr<OwnedTransforms> transforms_;  // only with robot_motion
+  std::unique_ptr<MaskInput> masks_;             // only with external_mask
+  ros::Subscriber mask_subscriber_;
   std::unique_ptr<TrackerSession> session_;
   TrackerParameters parameters_;  // as read, then buffer for live_.take()
   std::unique_ptr<TrackerDiagnostics> statistics_;

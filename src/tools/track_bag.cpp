@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <functional>
 #include <iostream>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,8 +37,9 @@ struct Command {
   OfflineOptions offline;
   std::string tracker = "region";
   std::string roi;
-  bool draw = false;      // --select of the region tracker
-  std::string selection;  // --select FILE of the others
+  bool draw = false;              // --select of the region tracker
+  std::optional<int> late_masks;  // --instruments of the region tracker
+  std::string selection;          // --select FILE of the others
   std::string parameters;
 };
 
@@ -66,6 +68,9 @@ options::options_description describeOptions(Command& command, bool features) {
     add("select", options::bool_switch(&command.draw),
         "the region is drawn in a window that shows the first image; with another tracker --select FILE.yaml: the file "
         "with the features");
+    add("instruments", options::value<int>()->implicit_value(0)->notifier([&](int late) { command.late_masks = late; }),
+        "instruments are found, too, and the region tracker is told what they cover; =N: N images late, as between "
+        "nodes, 0 unless said otherwise");
   }
   describeInput(description, command.offline, command.parameters);
   add("csv", options::value(&command.offline.csv), "table to write, a line per image, or per image and feature");
@@ -205,6 +210,8 @@ int runRegion(Command& command) {
   if (!command.roi.empty()) offline.parameters.roi = parseRoi(command.roi);
   if (!offline.parameters.roi)
     throw std::invalid_argument("no ROI is given, expected --roi x,y,width,height in px, or --select");
+  if (command.late_masks)
+    offline.instruments = readInstrumentMaskOptions(*command.late_masks, offline.parameters.external_mask.max_age);
   return run([&](const OfflineProgress& progress, const OfflineReport& report) {
     return trackOffline(offline, progress, report);
   });

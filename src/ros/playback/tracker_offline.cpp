@@ -23,7 +23,12 @@ TrackerParameters withAnyGap(TrackerParameters parameters) {
 
 class RegionOffline : public OfflineTracker {
  public:
-  explicit RegionOffline(const OfflineOptions& options) : options_(options), session_(withAnyGap(options.parameters)) {}
+  explicit RegionOffline(const OfflineOptions& options) : options_(options), session_(withAnyGap(options.parameters)) {
+    if (!options.instruments) return;
+    instruments_.emplace(*options.instruments);
+    session_.setMaskSource(
+        [this](const cv::Mat& image, const ros::Time& stamp) { return instruments_->of(image, stamp); });
+  }
 
   void setCameraInfo(const sensor_msgs::CameraInfo& info) override { session_.setCameraInfo(info); }
 
@@ -76,6 +81,7 @@ class RegionOffline : public OfflineTracker {
   }
 
   const OfflineOptions& options_;
+  std::optional<InstrumentMasks> instruments_;
   TrackerSession session_;
   std::unique_ptr<RecordedResults> recorded_;
   std::optional<CsvOutput> csv_;

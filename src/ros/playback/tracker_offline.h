@@ -3,10 +3,12 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "ros/playback/image_source.h"
+#include "ros/playback/instrument_masks.h"
 #include "ros/tracker/tracker_parameters.h"
 
 namespace laparoscope_servo {
@@ -15,7 +17,9 @@ struct OfflineOptions {
   std::vector<std::string> inputs;  // see image_source.h
   SourceOptions source;
   TrackerParameters parameters;  // of the region tracker; must have a ROI
-  std::string camera_info;       // file, see readCameraInfo; empty: camera_info of the bag
+  // The region tracker is told what instruments cover, which are found in the same images; empty: it is not.
+  std::optional<InstrumentMaskOptions> instruments;
+  std::string camera_info;  // file, see readCameraInfo; empty: camera_info of the bag
   // Called before each image; true ends the run as at the end of the input; empty: never.
   std::function<bool()> stopped;
   // Files to write; empty: none. Each gets its name when it is complete, and is not kept if an error occurs.

@@ -2,6 +2,8 @@
 
 #include <diagnostic_msgs/DiagnosticStatus.h>
 
+#include <sstream>
+
 namespace laparoscope_servo {
 
 namespace {
@@ -38,12 +40,25 @@ void TrackerDiagnostics::processed(double now, const Processed& processed, bool 
     if (processed.result.motion_used) ++window_.motion_used;
     if (!processed.motion_error.empty()) motion_error_ = processed.motion_error;
   }
+  ++window_.images;
+  if (!processed.external_mask.mask.empty()) {
+    ++window_.mask_given;
+    if (processed.external_mask.age > 0.0) ++window_.mask_predicted;
+    mask_age_ = processed.external_mask.age;
+    mask_grown_ = processed.external_mask.grown;
+    mask_share_ = processed.mask_share;
+  }
   selection_failed_ = !processed.selection_error.empty();
   has_camera_ = processed.camera.has_value();
   camera_error_ = processed.camera_error;
   has_colour_ = processed.image.channels() == 3;
   ignores_distortion_ = ignores_distortion;
   rectifies_ = processed.lens != nullptr;
+}
+
+void TrackerDiagnostics::maskRefused(double now, const std::string& why) {
+  mask_refusal_ = why;
+  mask_refused_at_ = now;
 }
 
 void TrackerDiagnostics::recallRefused(const std::string& why) {
@@ -65,6 +80,9 @@ void TrackerDiagnostics::summarise(double now, diagnostic_updater::DiagnosticSta
       status.mergeSummary(DiagnosticStatus::WARN, "no homography in normalised coordinates: " + camera_error_);
   }
   feed_.warnOfPublishers(status);
+  constexpr double kMemory = 5.0;  // s
+  if (now - mask_refused_at_ <= kMemory)
+    status.mergeSummary(DiagnosticStatus::WARN, "external mask refused: " + mask_refusal_);
 }
 
 std::string TrackerDiagnostics::colourGate() const {
@@ -78,6 +96,19 @@ std::string TrackerDiagnostics::robotMotion() const {
                            std::to_string(window_.motion_wanted) + " images, used for " +
                            std::to_string(window_.motion_used);
   return window_.motion_given < window_.motion_wanted ? text + "; last missing: " + motion_error_ : text;
+}
+
+std::string TrackerDiagnostics::externalMask() const {
+  if (!with_external_mask_) return "not asked for";
+  std::ostringstream text;
+  text.precision(3);
+  text << "used for " << window_.mask_given << " of " << window_.images << " images, of these "
+       << window_.mask_predicted << " as predicted";
+  if (window_.mask_given > 0) {
+    text << "; the last one was " << mask_age_ << " s old, grown by " << mask_grown_ << " px, and covers "
+         << mask_share_ << " of the region";
+  }
+  return text.str();
 }
 
 void TrackerDiagnostics::fill(double now, diagnostic_updater::DiagnosticStatusWrapper& status) {
@@ -98,6 +129,7 @@ void TrackerDiagnostics::fill(double now, diagnostic_updater::DiagnosticStatusWr
   status.add("recall", recall());
   status.add("colour gate", colourGate());
   status.add("robot motion", robotMotion());
+  status.add("external mask", externalMask());
   window_ = Window();
 }
 

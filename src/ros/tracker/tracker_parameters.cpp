@@ -38,6 +38,14 @@ void describe(Table& table, RobotMotionConfig& config) {
   table.number("depth", config.depth, {0.005, 1}, "m", "of the tissue in front of the camera");
 }
 
+void describe(Table& table, MaskInputConfig& config) {
+  table.flag("enabled", config.enabled, "masks on ~external_mask are used; in track_bag by --instruments");
+  table.text("owner", config.owner, "whose masks are accepted; empty: those of the first that publishes")
+      .accepting("the name of a node, e.g. instrument or /manager, or nothing", isNodeOrNothing);
+  table.number("max_age", config.max_age, {0, 1}, "s",
+               "while the mask of an image is not there, an earlier one is used as predicted, up to this age; 0: none");
+}
+
 bool isRoiOrNothing(const std::string& text) {
   try {
     if (!text.empty()) parseRoi(text);
@@ -101,6 +109,8 @@ void describe(Table& table, TrackerParameters& parameters) {
   table.group("input", "which images are accepted", [&] { describe(table, parameters.input); });
   table.group("robot_motion", "in the nodelet: the ego-motion prior, by the camera's motion in tf",
               [&] { describe(table, parameters.robot_motion); });
+  table.group("external_mask", "in the nodelet: what another node knows to cover the tissue, as instruments",
+              [&] { describe(table, parameters.external_mask); });
   table.group("views", "of the nodelet: stored and recalled under a name", [&] { describe(table, parameters.views); });
   table.group("tracking", "", [&] { describe(table, parameters.tracking); });
 }

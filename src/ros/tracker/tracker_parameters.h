@@ -14,6 +14,7 @@
 #include "laparoscope_servo/tracking/view_config.h"
 #include "ros/tracker/camera_info.h"
 #include "ros/tracker/image_conversion.h"
+#include "ros/tracker/mask_input.h"
 #include "ros/tracker/robot_motion.h"
 
 namespace laparoscope_servo {
@@ -26,6 +27,7 @@ struct TrackerParameters {
   bool rectified_images = false;             // images are rectified; P of camera_info applies
   bool rectify = false;                      // the tracker rectifies raw images
   RobotMotionConfig robot_motion;
+  MaskInputConfig external_mask;
   tracking::ViewConfig views;
   double select_timeout = 5.0;  // s, longest time that a service waits for an image
 

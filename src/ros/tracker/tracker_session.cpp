@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <sstream>
 #include <stdexcept>
 
@@ -76,6 +77,10 @@ void TrackerSession::complete(Processed& processed, const std::optional<geometry
   if (processed.result.selected_now) {
     reference_stamp_ = stamp;
     reference_ = Reference{processed.image.clone(), processed.result.roi, stamp};
+  }
+  if (tracker_.hasRoi()) {
+    const geometry::Quadrilateral corners = geometry::apply(found.g, found.roi.corners());
+    processed.mask_share = tracking::coveredShare(processed.external_mask.mask, onSensor(corners));
   }
   processed.reference_stamp = reference_stamp_;
   intrinsics_.update(processed.image.size(), new_reference || !tracker_.hasRoi());
@@ -154,11 +159,13 @@ tracking::TrackResult TrackerSession::track(Processed& processed, const std::opt
                                             bool& new_reference) {
   const bool from_parameters = !request && start_roi_pending_ && recall_.due() == nullptr;
   updateLens(processed.image.size());
+  if (mask_source_) processed.external_mask = mask_source_(processed.image, processed.header.stamp);
+  const cv::Mat& mask = processed.external_mask.mask;
   if (!lens_error_.empty()) {
     if (request || from_parameters) processed.selection_error = lens_error_;
   } else if (request || from_parameters) {
     try {
-      const auto result = tracker_.select(processed.image, intake_.time(), request ? *request : *parameters_.roi);
+      const auto result = tracker_.select(processed.image, intake_.time(), request ? *request : *parameters_.roi, mask);
       start_roi_pending_ = start_roi_refused_ = false;
       recall_.end("a region was selected");
       ++epoch_;
@@ -168,6 +175,7 @@ tracking::TrackResult TrackerSession::track(Processed& processed, const std::opt
       // The parameters' ROI stays pending: the first images of a camera may be black.
       processed.selection_error = error.what();
       const geometry::Rectangle& wanted = request ? *request : *parameters_.roi;
+      processed.selection_error += maskText(mask, wanted);
       if (request || !start_roi_refused_)
         processed.selection_error += proposalText(regionThatWouldDo(tracker_, processed.image, wanted));
       if (from_parameters) start_roi_refused_ = true;
@@ -175,12 +183,19 @@ tracking::TrackResult TrackerSession::track(Processed& processed, const std::opt
   }
   const bool had_roi = tracker_.hasRoi();
   if (takeDueView(intake_.time())) new_reference = true;
-  tracking::TrackResult result = tracker_.track(processed.image, intake_.time(), motionBefore(processed));
+  tracking::TrackResult result = tracker_.track(processed.image, intake_.time(), motionBefore(processed), mask);
   if (!lens_error_.empty() && !had_roi) result.reason = lens_error_;
   if (!processed.selection_error.empty() && result.state == tracking::State::kIdle) {
     result.reason = "the ROI could not be selected: " + processed.selection_error;
   }
   return result;
+}
+
+// How much of a region that was refused is covered; empty: nothing.
+std::string TrackerSession::maskText(const cv::Mat& mask, const geometry::Rectangle& roi) const {
+  const double share = tracking::coveredShare(mask, onSensor(roi.corners()));
+  if (share == 0.0) return "";
+  return "; the external mask covers " + std::to_string(std::lround(100.0 * share)) + " % of it";
 }
 
 cv::Mat TrackerSession::occlusionMask() const {

@@ -18,6 +18,7 @@
 #include "laparoscope_servo/geometry/homography.h"
 #include "laparoscope_servo/image/repeat_watch.h"
 #include "laparoscope_servo/tracking/corner_path.h"
+#include "laparoscope_servo/tracking/external_masks.h"
 #include "laparoscope_servo/tracking/frozen_feed.h"
 #include "laparoscope_servo/tracking/region_tracker.h"
 #include "ros/tracker/camera_info.h"
@@ -32,6 +33,9 @@ namespace laparoscope_servo {
 using CameraMotion = std::function<std::optional<Eigen::Isometry3d>(const std::string& frame, const ros::Time& from,
                                                                     const ros::Time& to, std::string& why)>;
 
+// What is known to cover the tissue in an image; the mask is empty where nothing is known.
+using MaskSource = std::function<tracking::ExternalMask(const cv::Mat& image, const ros::Time& stamp)>;
+
 // The result for one image.
 struct Processed {
   std_msgs::Header header;  // header of the image
@@ -43,6 +47,8 @@ struct Processed {
   std::shared_ptr<const image::Lens> lens;        // lens of the image; null: none
   bool motion_wanted = false;                     // the camera's motion was requested
   std::string motion_error;                       // why it was not available
+  tracking::ExternalMask external_mask;           // as it was used; its pixels last until the next image
+  double mask_share = 0.0;                        // 0 to 1, of the region: covered by it
   std::string selection_error;                    // why a requested ROI was not selected in this image; else empty
   std::string recall = "none";                    // recall of a stored view, see ViewRecall::text
   image::Repeats repeats;                         // repeats of the picture
@@ -66,6 +72,9 @@ class TrackerSession {
 
   // Called at most once per image, while a ROI is tracked or searched.
   void setCameraMotion(const CameraMotion& motion) { camera_motion_ = motion; }
+
+  // Called once for each image that is processed.
+  void setMaskSource(const MaskSource& source) { mask_source_ = source; }
 
   // Processes the next image; `request` is a ROI to select in it. Throws ImageError or std::invalid_argument if the
   // image cannot be used, or does not continue the sequence (see ImageGate); the session is then unchanged. The message
@@ -118,6 +127,7 @@ class TrackerSession {
   bool takeDueView(double time);
   void updateLens(const cv::Size& size);
   std::optional<Eigen::Matrix3d> motionBefore(Processed& processed);
+  std::string maskText(const cv::Mat& mask, const geometry::Rectangle& roi) const;
   void complete(Processed& processed, const std::optional<geometry::Rectangle>& request);
 
   TrackerParameters parameters_;
@@ -144,6 +154,7 @@ class TrackerSession {
   cv::Size image_size_;
   ros::Time reference_stamp_;
   CameraMotion camera_motion_;
+  MaskSource mask_source_;
   std::optional<ros::Time> believed_stamp_;  // stamp of the last new picture in state TRACKING
   double believed_time_ = 0.0;               // s, tracker's time of the last image in state TRACKING
   double believed_angle_ = 0.0;              // rad, angle of the region in that image

@@ -57,6 +57,11 @@ TEST(LaunchFiles, CartAndDemoStartWhatTheySay) {
   EXPECT_NE(outputOf("roslaunch --nodes laparoscope_servo cart.launch port:=/dev/ttyX screen:=tv").find("tv"),
             std::string::npos);
   EXPECT_EQ(nodesOf("calibrate.launch port:=/dev/ttyX file:=/x.yaml"), Nodes{"/aesop"});
+  Nodes with_instruments = cart;
+  with_instruments.insert("/instrument");
+  EXPECT_EQ(nodesOf("cart.launch port:=/dev/ttyX screen:=none instruments:=true"), with_instruments);
+  EXPECT_EQ(nodesOf("cart.launch port:=/dev/ttyX screen:=none instruments:=false"), cart);
+  EXPECT_EQ(nodesOf("tracker.launch instruments:=true manager:=m"), (Nodes{"/tracker", "/instrument"}));
   EXPECT_EQ(nodesOf("tracker.launch"), Nodes{"/tracker"});
   EXPECT_EQ(nodesOf("joystick.launch"), Nodes{"/joystick"});
   EXPECT_EQ(nodesOf("joystick.launch name:=pedal device:=/dev/input/js1"), Nodes{"/pedal"});

@@ -216,6 +216,41 @@ TEST(TrackerDiagnosticsTest, CountsHowOftenTheRobotsMotionWasThere) {
   EXPECT_EQ(value(off, "robot motion"), "not asked for");
 }
 
+TEST(TrackerDiagnosticsTest, SaysHowOftenAnExternalMaskWasUsedAndWhatItCovers) {
+  TrackerDiagnostics diagnostics(tracking::TrackerConfig(), false, true);
+  Processed own = processed(State::kTracking), predicted = processed(State::kTracking);
+  own.external_mask = {cv::Mat::zeros(4, 4, CV_8UC1), 0.0, 0.0};
+  predicted.external_mask = {cv::Mat::zeros(4, 4, CV_8UC1), 0.04, 6.0};
+  predicted.mask_share = 0.25;
+  for (const Processed& each : {own, processed(State::kTracking), predicted}) diagnostics.processed(1.0, each, false);
+  DiagnosticStatusWrapper status;
+  diagnostics.fill(1.5, status);
+  EXPECT_EQ(value(status, "external mask"),
+            "used for 2 of 3 images, of these 1 as predicted; the last one was 0.04 s old, grown by 6 px, and covers "
+            "0.25 of the region");
+  EXPECT_EQ(status.level, DiagnosticStatus::OK);
+  DiagnosticStatusWrapper later;
+  diagnostics.fill(2.5, later);
+  EXPECT_EQ(value(later, "external mask"), "used for 0 of 0 images, of these 0 as predicted");
+  DiagnosticStatusWrapper off;
+  TrackerDiagnostics(tracking::TrackerConfig()).fill(1.0, off);
+  EXPECT_EQ(value(off, "external mask"), "not asked for");
+}
+
+TEST(TrackerDiagnosticsTest, WarnsForAWhileOfAMaskThatWasRefused) {
+  TrackerDiagnostics diagnostics(tracking::TrackerConfig(), false, true);
+  diagnostics.processed(1.0, processed(State::kTracking), false);
+  diagnostics.maskRefused(1.0, "encoding 'bgr8', expected mono8");
+  DiagnosticStatusWrapper status;
+  diagnostics.fill(1.5, status);
+  EXPECT_EQ(status.level, DiagnosticStatus::WARN);
+  EXPECT_NE(status.message.find("external mask refused: encoding 'bgr8'"), std::string::npos) << status.message;
+  diagnostics.processed(9.0, processed(State::kTracking), false);
+  DiagnosticStatusWrapper later;
+  diagnostics.fill(9.5, later);
+  EXPECT_EQ(later.level, DiagnosticStatus::OK);
+}
+
 TEST(TrackerDiagnosticsTest, SaysWhoTakesTheLensOut) {
   TrackerDiagnostics diagnostics{tracking::TrackerConfig()};
   Processed rectified = processed(State::kTracking);

@@ -75,6 +75,18 @@ TEST(TrackerParametersTest, NameWhatIsWrongWithTheRobotsMotion) {
     EXPECT_TRUE(mentions(errors, field)) << field;
 }
 
+TEST(TrackerParametersTest, NameWhatIsWrongWithTheExternalMask) {
+  XmlRpc::XmlRpcValue tree;
+  tree["external_mask"]["enabled"] = true;
+  tree["external_mask"]["owner"] = "~instrument";
+  tree["external_mask"]["max_age"] = -0.1;
+  tree["external_mask"]["max_ag"] = 0.1;
+  const std::vector<std::string> errors = errorsOf(tree);
+  EXPECT_EQ(errors.size(), 3u) << errorReport(errors);
+  for (const char* field : {"external_mask/owner", "external_mask/max_age", "external_mask/max_ag "})
+    EXPECT_TRUE(mentions(errors, field)) << field << errorReport(errors);
+}
+
 TEST(TrackerParametersTest, NameWhatIsWrongWithTheViews) {
   XmlRpc::XmlRpcValue tree;
   tree["views"]["capacity"] = 0;
