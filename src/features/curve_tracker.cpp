@@ -32,9 +32,7 @@ CurveTrackerBase::CurveTrackerBase(const EdgeConfig& config)
 }
 
 void CurveTrackerBase::checkSelection(const cv::Mat& image, double stamp) const {
-  if (image.empty()) throw std::invalid_argument("image of 0 x 0 px, expected pixels");
-  image::checkType(image);
-  if (!std::isfinite(stamp)) throw std::invalid_argument("stamp is not finite, expected seconds");
+  image::checkImage(image, stamp);
 }
 
 void CurveTrackerBase::refuse(const EdgeReport& report) {
@@ -46,9 +44,7 @@ void CurveTrackerBase::refuse(const EdgeReport& report) {
 }
 
 bool CurveTrackerBase::accepts(const cv::Mat& image, double stamp) {
-  if (image.empty()) throw std::invalid_argument("image of 0 x 0 px, expected pixels");
-  image::checkType(image);
-  if (!std::isfinite(stamp)) throw std::invalid_argument("stamp is not finite, expected seconds");
+  image::checkImage(image, stamp);
   if (keeper_.state() == State::kIdle) return false;
   if (image.size() != size_ || image.type() != type_) {
     keeper_.reset(Reason::kImageChanged);

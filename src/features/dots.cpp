@@ -44,12 +44,6 @@ struct Dot {
   Reason reason = Reason::kNone;  // of the present image
 };
 
-void checkImage(const cv::Mat& image, double stamp) {
-  if (image.empty()) throw std::invalid_argument("image of 0 x 0 px, expected pixels");
-  image::checkType(image);
-  if (!std::isfinite(stamp)) throw std::invalid_argument("stamp is not finite, expected seconds");
-}
-
 bool near(double a, double b) {
   return std::abs(a - b) < kReturnShare * std::max(a, b) + kReturnLevels;
 }
@@ -84,7 +78,7 @@ class DotTracker::Implementation {
   explicit Implementation(const DotsConfig& config) : config_(checked(config)), finder_(config) {}
 
   const DotsResult& select(const cv::Mat& image, double stamp, const std::vector<Eigen::Vector2d>& points) {
-    checkImage(image, stamp);
+    image::checkImage(image, stamp);
     if (points.empty()) throw std::invalid_argument("0 dots, expected at least 1");
     std::vector<Dot> dots;
     for (const Eigen::Vector2d& point : points) {
@@ -115,7 +109,7 @@ class DotTracker::Implementation {
   }
 
   const DotsResult& track(const cv::Mat& image, double stamp, const std::optional<Eigen::Matrix3d>& motion) {
-    checkImage(image, stamp);
+    image::checkImage(image, stamp);
     result_.selected_now = false;
     if (!dots_.empty()) {
       if (image.size() != size_ || image.type() != type_) {

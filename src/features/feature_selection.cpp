@@ -11,6 +11,7 @@ namespace {
 constexpr double kLeastRange = 1.0;  // px
 constexpr double kMostRange = 100.0;
 constexpr int kAnyNumber = -1;
+constexpr int kMostCorners = 500;
 
 // Of the parameters, see FeatureKind.
 int parametersOf(FeatureKind kind) {
@@ -38,7 +39,8 @@ std::string listed(const std::vector<FeatureKind>& kinds) {
 
 class Judge {
  public:
-  explicit Judge(const SelectedFeature& feature) : feature_(feature) {}
+  Judge(const SelectedFeature& feature, bool takes_corners_and_pictures)
+      : feature_(feature), takes_corners_and_pictures_(takes_corners_and_pictures) {}
 
   template <class Value>
   void refuse(const std::string& what, const Value& value, const std::string& expected) {
@@ -59,6 +61,7 @@ class Judge {
       refuse("range", feature_.range, "1 to 100 px");
     number();
     shape();
+    corners();
     const int wanted = parametersOf(feature_.kind);
     const Eigen::Index given = feature_.desired.size();
     if (given > 0 && wanted != kAnyNumber && given != wanted) {
@@ -80,7 +83,11 @@ class Judge {
   void number() {
     const std::size_t given = feature_.points.size();
     const FeatureKind kind = feature_.kind;
-    if (kind == FeatureKind::kPoint && given != 1) refuse("number of points", given, "1: where it is");
+    if (kind == FeatureKind::kPoint && feature_.corners && given > 0) {
+      refuse("number of points", given, "0 beside corners");
+    } else if (kind == FeatureKind::kPoint && !feature_.corners && given != 1) {
+      refuse("number of points", given, "1: where it is");
+    }
     if (kind == FeatureKind::kLine && given != 2) refuse("number of points", given, "2: the line's ends");
     const std::size_t least = feature_.closed ? 4 : 3;
     if (kind == FeatureKind::kSpline && given < least) {
@@ -110,17 +117,33 @@ class Judge {
     finite("extent of the arc", feature_.arc->extent);
   }
 
+  void corners() {
+    const bool is_point = feature_.kind == FeatureKind::kPoint;
+    if (!feature_.picture.empty() && !(is_point && takes_corners_and_pictures_))
+      refuse("stored picture", std::to_string(feature_.picture.cols) + " x " + std::to_string(feature_.picture.rows),
+             "none: only the tracker of points takes one");
+    if (!feature_.corners) return;
+    if (!(is_point && takes_corners_and_pictures_))
+      refuse("number of corners", feature_.corners->count, "none: only the tracker of points chooses some");
+    if (feature_.corners->count < 1 || feature_.corners->count > kMostCorners)
+      refuse("number of corners", feature_.corners->count, "1 to " + std::to_string(kMostCorners));
+    if (feature_.desired.size() > 0)
+      refuse("number of desired values", feature_.desired.size(), "0 beside corners: nobody knows them one by one");
+  }
+
   const SelectedFeature& feature_;
+  bool takes_corners_and_pictures_;
   std::vector<std::string> errors_;
 };
 
 }  // namespace
 
-std::vector<std::string> validate(const FeatureSelection& selection, const std::vector<FeatureKind>& kinds) {
+std::vector<std::string> validate(const FeatureSelection& selection, const std::vector<FeatureKind>& kinds,
+                                  bool takes_corners_and_pictures) {
   std::vector<std::string> errors;
   for (std::size_t k = 0; k < selection.size(); ++k) {
     const SelectedFeature& feature = selection[k];
-    Judge judge(feature);
+    Judge judge(feature, takes_corners_and_pictures);
     if (feature.id.empty()) {
       errors.push_back("feature " + std::to_string(k + 1) + " has no id, expected a name");
     } else if (std::any_of(selection.begin(), selection.begin() + static_cast<std::ptrdiff_t>(k),

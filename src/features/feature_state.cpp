@@ -52,6 +52,8 @@ const char* reasonText(Reason reason) {
       return "nothing near there looks like it: covered, gone, or merged with something";
     case Reason::kAmbiguous:
       return "the image shows it in two poses that cannot be told apart";
+    case Reason::kCovered:
+      return "covered: too little of it looks as it did when it was selected";
   }
   return "";
 }

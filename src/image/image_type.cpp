@@ -1,5 +1,6 @@
 #include "laparoscope_servo/image/image_type.h"
 
+#include <cmath>
 #include <stdexcept>
 #include <string>
 
@@ -9,6 +10,12 @@ void checkType(const cv::Mat& image) {
   if (image.type() == CV_8UC1 || image.type() == CV_8UC3) return;
   throw std::invalid_argument("image of OpenCV type " + std::to_string(image.type()) +
                               ", expected 8 bit with one channel or three");
+}
+
+void checkImage(const cv::Mat& image, double stamp) {
+  if (image.empty()) throw std::invalid_argument("image of 0 x 0 px, expected pixels");
+  checkType(image);
+  if (!std::isfinite(stamp)) throw std::invalid_argument("stamp is not finite, expected seconds");
 }
 
 }  // namespace laparoscope_servo::image

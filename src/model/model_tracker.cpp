@@ -26,12 +26,6 @@ const ModelConfig& checked(const ModelConfig& config) {
   return config;
 }
 
-void checkImage(const cv::Mat& image, double stamp) {
-  if (image.empty()) throw std::invalid_argument("image of 0 x 0 px, expected pixels");
-  image::checkType(image);
-  if (!std::isfinite(stamp)) throw std::invalid_argument("stamp is not finite, expected seconds");
-}
-
 bool isRigid(const Eigen::Isometry3d& pose) {
   return pose.matrix().allFinite() &&
          (pose.linear() * pose.linear().transpose() - Eigen::Matrix3d::Identity()).norm() < 1e-6 &&
@@ -55,7 +49,7 @@ class ModelTracker::Implementation {
   }
 
   void select(const cv::Mat& image, double stamp, const Eigen::Isometry3d& pose) {
-    checkImage(image, stamp);
+    image::checkImage(image, stamp);
     if (!isRigid(pose)) throw std::invalid_argument("the pose is not rigid, expected a rotation and a finite position");
     Outline found(model_, camera_, image.size(), pose);
     if (!found.isSound()) {
@@ -76,7 +70,7 @@ class ModelTracker::Implementation {
 
   void track(const cv::Mat& image, double stamp, const std::optional<Eigen::Isometry3d>& motion) {
     result_.selected_now = false;
-    checkImage(image, stamp);
+    image::checkImage(image, stamp);
     if (!accepts(image, stamp)) return idle();
     const bool tracking = keeper_.state() == State::kTracking;
     expect(tracking, stamp, motion);

@@ -28,6 +28,7 @@ enum class Reason {
   kTaken,
   kNotSeen,
   kAmbiguous,
+  kCovered,
 };
 
 const char* stateName(State state);

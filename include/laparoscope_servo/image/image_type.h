@@ -8,4 +8,7 @@ namespace laparoscope_servo::image {
 // Throws std::invalid_argument, naming the type, for any other type.
 void checkType(const cv::Mat& image);
 
+// Of an image with its stamp, s: also where it is empty, or the stamp is not finite.
+void checkImage(const cv::Mat& image, double stamp);
+
 }  // namespace laparoscope_servo::image

@@ -2,51 +2,33 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/calib3d.hpp>
-#include <opencv2/core/version.hpp>
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
+#include "laparoscope_servo/features/point_matching.h"
 #include "laparoscope_servo/geometry/sl3.h"
 #include "tracking/search/search_budget.h"
-#include "tracking/views/point_features.h"
 
 namespace laparoscope_servo::tracking {
 
 namespace {
 
-constexpr double kInlier = 4.0;   // px, of the coarse image
-constexpr int kManyInliers = 30;  // from here on a fit of eight parameters is better than one of four
-constexpr int kMaxTrials = 1000;
+constexpr double kInlier = 4.0;      // px, of the coarse image
 constexpr int kOverlap = 16;         // px of the coarse image, by which strips overlap
 constexpr double kStripShare = 0.5;  // share of the budget that a strip may cost
-
-#if CV_VERSION_MAJOR * 10000 + CV_VERSION_MINOR * 100 + CV_VERSION_REVISION >= 40501
-constexpr int kRobustMethod = cv::USAC_MAGSAC;
-#else
-constexpr int kRobustMethod = cv::RANSAC;
-#endif
 
 double costOfPoints(double pixels, int count) {
   return pixels * nominal_cost::kPixelDetected + count * nominal_cost::kPointDescribed;
 }
 
-Eigen::Matrix3d toEigen(const cv::Mat& m) {
-  Eigen::Matrix3d result = Eigen::Matrix3d::Identity();
-  for (int r = 0; r < m.rows; ++r) {
-    for (int c = 0; c < 3; ++c) result(r, c) = m.at<double>(r, c);
-  }
-  return result;
-}
-
 // Appends the points of `more` for which `keep` returns a place, at that place.
 template <typename Keep>
-void append(const DescribedPoints& more, const Keep& keep, DescribedPoints& features) {
+void append(const features::DescribedPoints& more, const Keep& keep, features::DescribedPoints& all) {
   for (std::size_t k = 0; k < more.points.size(); ++k) {
     const std::optional<cv::Point2f> place = keep(more.points[k]);
     if (!place) continue;
-    features.points.push_back(*place);
-    features.descriptors.push_back(more.descriptors.row(static_cast<int>(k)));
+    all.points.push_back(*place);
+    all.descriptors.push_back(more.descriptors.row(static_cast<int>(k)));
   }
 }
 
@@ -79,7 +61,7 @@ void FeatureSearch::restart() {
 
 void FeatureSearch::begin(const CoarseImage& image, const image::ChannelWeights& weights, const Keyframes& keyframes) {
   found_.clear();
-  seen_ = DescribedPoints();
+  seen_ = features::DescribedPoints();
   weights_ = weights;
   asked_.clear();
   strip_ = strips_ = 0;
@@ -130,7 +112,8 @@ void FeatureSearch::drawStrip() {
                         cv::Rect(cv::Point(0, 0), coarse_.grey.size());
   cv::Mat1b wanted = cv::Mat1b::zeros(seen.size());
   coarse_.usable(own).copyTo(wanted(own - seen.tl()));
-  const DescribedPoints drawn = drawPoints(coarse_.grey(seen), wanted, config_.max_features / strips_);
+  const features::DescribedPoints drawn =
+      features::drawPoints(coarse_.grey(seen), wanted, config_.max_features / strips_);
   append(
       drawn, [&](const cv::Point2f& p) { return rectified(lens_.get(), coarse_.inImage(p + cv::Point2f(seen.tl()))); },
       seen_);
@@ -154,7 +137,7 @@ void FeatureSearch::describe(Keyframe& keyframe, const geometry::Rectangle& roi)
   mask = (mask == 0) & small.usable;
   const cv::Point2f first(keyframe.first);
   append(
-      drawPoints(small.grey, mask, config_.max_features / 2),
+      features::drawPoints(small.grey, mask, config_.max_features / 2),
       [&](const cv::Point2f& p) { return rectified(lens_.get(), small.inImage(p) + first); }, keyframe.features);
 }
 
@@ -172,49 +155,19 @@ std::vector<FeatureCandidate> FeatureSearch::find(const cv::Mat& image, const im
   return found();
 }
 
-// Matches each point of the keyframe to its nearest and second nearest of the image, and the other way round.
 void FeatureSearch::match(const Keyframe& keyframe, const geometry::Rectangle& roi) {
-  const int count = static_cast<int>(keyframe.features.points.size());
-  if (count < config_.min_inliers) return;
-  const cv::Mat1f distance = descriptorDistances(keyframe.features, seen_);
-  std::vector<int> back(distance.cols, -1);
-  for (int j = 0; j < distance.rows; ++j) {
-    const float* row = distance[j];
-    for (int i = 0; i < distance.cols; ++i) {
-      if (back[i] < 0 || row[i] < distance(back[i], i)) back[i] = j;
-    }
-  }
+  if (static_cast<int>(keyframe.features.points.size()) < config_.min_inliers) return;
   std::vector<cv::Point2f> from, to;
-  for (int j = 0; j < distance.rows; ++j) {
-    const float* row = distance[j];
-    const int nearest = static_cast<int>(std::min_element(row, row + distance.cols) - row);
-    if (back[nearest] != j) continue;
-    const double farthest = row[nearest] / config_.max_ratio;
-    const auto rival = [&](const float& other) { return &other != row + nearest && !(farthest < other); };
-    if (std::any_of(row, row + distance.cols, rival)) continue;
-    from.push_back(keyframe.features.points[j]);
-    to.push_back(seen_.points[nearest]);
+  for (const auto& [known, seen] : features::matchPoints(keyframe.features, seen_, config_.max_ratio)) {
+    from.push_back(keyframe.features.points[static_cast<std::size_t>(known)]);
+    to.push_back(seen_.points[static_cast<std::size_t>(seen)]);
   }
-  fit(from, to, keyframe.g, roi);
-}
-
-// With few matches a fit of eight parameters is unstable, so only four are fitted; the alignment corrects the tilt.
-void FeatureSearch::fit(const std::vector<cv::Point2f>& from, const std::vector<cv::Point2f>& to,
-                        const Eigen::Matrix3d& keyframe_g, const geometry::Rectangle& roi) {
-  if (static_cast<int>(from.size()) < config_.min_inliers) return;
-  const auto offer = [&](const cv::Mat& motion, const cv::Mat& agree, int at_least) {
-    if (motion.empty() || agree.empty()) return;
-    const int inliers = cv::countNonZero(agree);
-    const Eigen::Matrix3d g = toEigen(motion) * keyframe_g;
-    if (inliers >= at_least && plausible(g, roi)) found_.push_back({geometry::normaliseDeterminant(g), inliers});
-  };
-  cv::Mat agree;
-  const double inlier = kInlier * coarse_.scale;
-  const cv::Mat similarity = cv::estimateAffinePartial2D(from, to, agree, cv::RANSAC, inlier, kMaxTrials, 0.99);
-  offer(similarity, agree, config_.min_inliers);
-  if (static_cast<int>(from.size()) < kManyInliers) return;
-  const cv::Mat homography = cv::findHomography(from, to, kRobustMethod, inlier, agree, kMaxTrials, 0.99);
-  offer(homography, agree, kManyInliers);
+  // Of few matches a similarity only; the alignment corrects the tilt.
+  for (const features::AgreedMotion& agreed :
+       features::agreedMotions(from, to, kInlier * coarse_.scale, config_.min_inliers)) {
+    const Eigen::Matrix3d g = agreed.motion * keyframe.g;
+    if (plausible(g, roi)) found_.push_back({geometry::normaliseDeterminant(g), agreed.inliers});
+  }
 }
 
 bool FeatureSearch::plausible(const Eigen::Matrix3d& g, const geometry::Rectangle& roi) const {

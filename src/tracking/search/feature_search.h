@@ -7,6 +7,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "laparoscope_servo/features/described_points.h"
 #include "laparoscope_servo/image/lens.h"
 #include "laparoscope_servo/image/pyramid.h"
 #include "laparoscope_servo/tracking/tracker_config.h"
@@ -53,8 +54,6 @@ class FeatureSearch {
   void drawStrip();
   void describe(Keyframe& keyframe, const geometry::Rectangle& roi);
   void match(const Keyframe& keyframe, const geometry::Rectangle& roi);
-  void fit(const std::vector<cv::Point2f>& from, const std::vector<cv::Point2f>& to, const Eigen::Matrix3d& keyframe_g,
-           const geometry::Rectangle& roi);
   bool plausible(const Eigen::Matrix3d& g, const geometry::Rectangle& roi) const;
 
   SearchConfig config_;
@@ -68,7 +67,7 @@ class FeatureSearch {
   image::ChannelWeights weights_ = image::kLuma;
   int strip_ = 0, strips_ = 0;
   std::vector<int> asked_;  // indices of the keyframes still to match, the next one last
-  DescribedPoints seen_;
+  features::DescribedPoints seen_;
   std::vector<FeatureCandidate> found_;
 };
 

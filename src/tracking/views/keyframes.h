@@ -8,9 +8,9 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "laparoscope_servo/features/described_points.h"
 #include "laparoscope_servo/geometry/homography.h"
 #include "laparoscope_servo/image/lens.h"
-#include "tracking/views/point_features.h"
 
 namespace laparoscope_servo::tracking {
 
@@ -25,7 +25,7 @@ struct Keyframe {
   // true: the features are computed. A search computes them when it first needs them, so that tracking only pays for
   // the copy
   bool described = false;
-  DescribedPoints features;
+  features::DescribedPoints features;
 };
 
 // Difference of two homographies at the ROI's centre: 1 for a factor of 1.3 in length in some direction, or a turn of

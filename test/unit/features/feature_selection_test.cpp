@@ -40,6 +40,13 @@ void expectError(const SelectedFeature& feature, const std::string& error) {
   EXPECT_EQ(errors.front(), error);
 }
 
+// Of the tracker of points.
+void expectPointError(const SelectedFeature& feature, const std::string& error) {
+  const std::vector<std::string> errors = validate({feature}, kAll, true);
+  ASSERT_EQ(errors.size(), 1u) << error;
+  EXPECT_EQ(errors.front(), error);
+}
+
 TEST(FeatureSelection, takesWhatIsWhole) {
   SelectedFeature arc = ellipse();
   arc.id = "arc";
@@ -92,6 +99,23 @@ TEST(FeatureSelection, refusesEachNumberByNameValueAndExpectation) {
   expectError(feature, "a: number of points = 0, expected 1: where it is");
   feature.points = {{1.0, std::numeric_limits<double>::quiet_NaN()}};
   expectError(feature, "a: point = [1, nan], expected two finite numbers, px");
+  feature = point("a");
+  feature.corners = CornerSelection{{}, 10};
+  expectPointError(feature, "a: number of points = 1, expected 0 beside corners");
+  feature.points.clear();
+  expectError(feature, "a: number of corners = 10, expected none: only the tracker of points chooses some");
+  feature.corners->count = 0;
+  expectPointError(feature, "a: number of corners = 0, expected 1 to 500");
+  feature.corners->count = 10;
+  feature.desired = Eigen::Vector2d(1.0, 2.0);
+  expectPointError(feature, "a: number of desired values = 2, expected 0 beside corners: nobody knows them one by one");
+  feature = point("a");
+  feature.picture = cv::Mat(20, 30, CV_8UC1);
+  expectError(feature, "a: stored picture = 30 x 20, expected none: only the tracker of points takes one");
+  EXPECT_TRUE(validate({feature}, kAll, true).empty());
+  feature = line();
+  feature.picture = cv::Mat(20, 30, CV_8UC1);
+  expectPointError(feature, "shaft: stored picture = 30 x 20, expected none: only the tracker of points takes one");
   feature = line();
   feature.points.pop_back();
   expectError(feature, "shaft: number of points = 1, expected 2: the line's ends");

@@ -12,6 +12,7 @@
 #include "laparoscope_servo/features/edge_feature_tracker.h"
 #include "laparoscope_servo/features/ellipse.h"
 #include "laparoscope_servo/features/line.h"
+#include "laparoscope_servo/features/point_feature_tracker.h"
 #include "support/synthetic_edges.h"
 
 namespace laparoscope_servo::features {
@@ -46,6 +47,16 @@ FeatureSelection dots() {
   return selection;
 }
 
+// Two places on the outline of the small disc, whose windows hold it in part.
+FeatureSelection points() {
+  FeatureSelection selection(2);
+  selection[0].id = "middle";
+  selection[0].points = {kSmall};
+  selection[1].id = "beside";
+  selection[1].points = {kSmall + Eigen::Vector2d(6.0, -4.0)};
+  return selection;
+}
+
 FeatureSelection edges() {
   FeatureSelection selection(2);
   selection[0].id = "border";
@@ -65,6 +76,7 @@ struct Case {
 
 std::vector<Case> cases() {
   return {{"dots", dots(), [] { return std::make_unique<DotFeatureTracker>(); }},
+          {"points", points(), [] { return std::make_unique<PointFeatureTracker>(); }},
           {"edges", edges(), [] { return std::make_unique<EdgeFeatureTracker>(); }}};
 }
 

@@ -10,9 +10,11 @@
 #include "laparoscope_servo/features/edge_feature_tracker.h"
 #include "laparoscope_servo/features/ellipse.h"
 #include "laparoscope_servo/features/line.h"
+#include "laparoscope_servo/features/point_feature_tracker.h"
 #include "laparoscope_servo/features/spline.h"
 #include "support/allocation_counter.h"
 #include "support/synthetic_edges.h"
+#include "support/synthetic_tissue.h"
 
 namespace laparoscope_servo::features {
 namespace {
@@ -105,6 +107,36 @@ TEST(FeaturesAllocation, thereIsNoneBehindTheInterface) {
   dots.select(images()[0], 0.0, dot, {});
   ByTheInterface behind_dots{dots, {}};
   expectNoAllocations(behind_dots);
+}
+
+// Also while some are searched for; not when hardly any is seen, and the first view is matched as a whole.
+TEST(FeaturesAllocation, thereIsNoneForPoints) {
+#ifndef COUNTS_ALLOCATIONS
+  GTEST_SKIP() << "allocations can be counted with glibc's own allocator only";
+#endif
+  std::vector<cv::Mat> sequence;
+  const cv::Mat scene = test::tissue({320, 240}, 4);
+  for (int k = 0; k < kImages; ++k) {
+    Eigen::Matrix3d g = Eigen::Matrix3d::Identity();
+    g(0, 2) = 1.5 * k;
+    sequence.push_back(test::view(scene, g, 1.0, 0.0, 1.0, static_cast<unsigned>(k)));
+    if (k >= 4 && k < kCovered) sequence.back().colRange(0, 150).setTo(cv::Scalar::all(70));
+  }
+  FeatureSelection selection(1);
+  selection[0].id = "tissue";
+  selection[0].corners = CornerSelection{{}, 30};
+  PointFeatureTracker tracker;
+  ASSERT_GT(tracker.select(sequence[0], 0.0, selection, {}).features.size(), 20u);
+  int searched = 0;
+  for (int k = 1; k < kImages; ++k) {
+    allocations = 0;
+    counting = true;
+    const TrackedFeatures& told = tracker.track(sequence[static_cast<std::size_t>(k)], 0.04 * k, {});
+    counting = false;
+    EXPECT_EQ(allocations, 0) << "image " << k;
+    for (const TrackedFeature& feature : told.features) searched += feature.state == State::kSearching ? 1 : 0;
+  }
+  EXPECT_GT(searched, 20);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -19,6 +20,15 @@ TEST(CheckType, TakesGreyAndColourOfEightBitAndNamesAnother) {
           << error.what();
     }
   }
+}
+
+TEST(CheckImage, AnImageHasPixelsAndAStamp) {
+  const cv::Mat image(4, 4, CV_8UC3);
+  EXPECT_NO_THROW(checkImage(image, -3.5));
+  EXPECT_THROW(checkImage(cv::Mat(), 1.0), std::invalid_argument);
+  EXPECT_THROW(checkImage(cv::Mat(4, 4, CV_16UC1), 1.0), std::invalid_argument);
+  EXPECT_THROW(checkImage(image, std::numeric_limits<double>::quiet_NaN()), std::invalid_argument);
+  EXPECT_THROW(checkImage(image, std::numeric_limits<double>::infinity()), std::invalid_argument);
 }
 
 }  // namespace

@@ -1,20 +1,20 @@
-#include "tracking/views/point_features.h"
+#include "laparoscope_servo/features/described_points.h"
 
 #include <gtest/gtest.h>
 
 #include "support/synthetic_tissue.h"
 
-namespace laparoscope_servo::tracking {
+namespace laparoscope_servo::features {
 namespace {
 
-class PointFeaturesTest : public ::testing::Test {
+class DescribedPointsTest : public ::testing::Test {
  protected:
   cv::Mat1b grey_;
   cv::Mat1b all_ = cv::Mat1b(160, 200, static_cast<uchar>(255));
   void SetUp() override { cv::cvtColor(test::tissue(cv::Size(200, 160), 5), grey_, cv::COLOR_BGR2GRAY); }
 };
 
-TEST_F(PointFeaturesTest, GivesAboutAsManyAsAreAskedForEachWithADescriptor) {
+TEST_F(DescribedPointsTest, GivesAboutAsManyAsAreAskedForEachWithADescriptor) {
   const DescribedPoints drawn = drawPoints(grey_, all_, 100);
   EXPECT_GE(drawn.points.size(), 60u);
   EXPECT_LE(drawn.points.size(), 110u);
@@ -22,7 +22,7 @@ TEST_F(PointFeaturesTest, GivesAboutAsManyAsAreAskedForEachWithADescriptor) {
   EXPECT_LE(drawPoints(grey_, all_, 20).points.size(), 25u);
 }
 
-TEST_F(PointFeaturesTest, OnlyWhereTheMaskIs) {
+TEST_F(DescribedPointsTest, OnlyWhereTheMaskIs) {
   cv::Mat1b half = all_.clone();
   half.colRange(0, 100).setTo(0);
   const DescribedPoints drawn = drawPoints(grey_, half, 200);
@@ -30,7 +30,7 @@ TEST_F(PointFeaturesTest, OnlyWhereTheMaskIs) {
   for (const cv::Point2f& point : drawn.points) EXPECT_GE(point.x, 99.0f);
 }
 
-TEST_F(PointFeaturesTest, AThirdOfTheUsualContrastGivesPointsThatAreTheSame) {
+TEST_F(DescribedPointsTest, AThirdOfTheUsualContrastGivesPointsThatAreTheSame) {
   cv::Mat1b dim;
   grey_.convertTo(dim, -1, 0.33, 60.0);
   const DescribedPoints bright = drawPoints(grey_, all_, 100);
@@ -46,10 +46,10 @@ TEST_F(PointFeaturesTest, AThirdOfTheUsualContrastGivesPointsThatAreTheSame) {
   EXPECT_GE(same, distance.rows / 2);
 }
 
-TEST_F(PointFeaturesTest, NothingInWhatIsSmoothOrTiny) {
+TEST_F(DescribedPointsTest, NothingInWhatIsSmoothOrTiny) {
   EXPECT_TRUE(drawPoints(cv::Mat1b(160, 200, static_cast<uchar>(80)), all_, 100).points.empty());
   EXPECT_TRUE(drawPoints(cv::Mat1b(8, 200), cv::Mat1b(8, 200), 100).points.empty());
 }
 
 }  // namespace
-}  // namespace laparoscope_servo::tracking
+}  // namespace laparoscope_servo::features

@@ -8,7 +8,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-namespace laparoscope_servo::tracking {
+namespace laparoscope_servo::features {
 
 // Points; row k of `descriptors` belongs to point k.
 struct DescribedPoints {
@@ -22,4 +22,4 @@ DescribedPoints drawPoints(const cv::Mat1b& grey, const cv::Mat1b& mask, int cou
 // Distances of the descriptors of `a` (rows) and `b` (columns). Neither may be empty.
 cv::Mat1f descriptorDistances(const DescribedPoints& a, const DescribedPoints& b);
 
-}  // namespace laparoscope_servo::tracking
+}  // namespace laparoscope_servo::features

@@ -1,11 +1,11 @@
-#include "tracking/views/point_features.h"
+#include "laparoscope_servo/features/described_points.h"
 
 #include <algorithm>
 #include <opencv2/core/version.hpp>
 #include <opencv2/features2d.hpp>
 #include <vector>
 
-namespace laparoscope_servo::tracking {
+namespace laparoscope_servo::features {
 
 namespace {
 
@@ -49,13 +49,13 @@ cv::Mat1f descriptorDistances(const DescribedPoints& a, const DescribedPoints& b
 }
 
 DescribedPoints drawPoints(const cv::Mat1b& grey, const cv::Mat1b& mask, int count) {
-  DescribedPoints features;
-  if (std::min(grey.cols, grey.rows) < kLeastSide) return features;
+  DescribedPoints drawn;
+  if (std::min(grey.cols, grey.rows) < kLeastSide) return drawn;
   std::vector<cv::KeyPoint> points;
-  detect(grey, mask, count, points, features.descriptors);
-  features.points.reserve(points.size());
-  for (const cv::KeyPoint& point : points) features.points.push_back(point.pt);
-  return features;
+  detect(grey, mask, count, points, drawn.descriptors);
+  drawn.points.reserve(points.size());
+  for (const cv::KeyPoint& point : points) drawn.points.push_back(point.pt);
+  return drawn;
 }
 
-}  // namespace laparoscope_servo::tracking
+}  // namespace laparoscope_servo::features
