@@ -1,5 +1,6 @@
 #include "laparoscope_servo/image/image_type.h"
 
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -9,6 +10,14 @@ void checkType(const cv::Mat& image) {
   if (image.type() == CV_8UC1 || image.type() == CV_8UC3) return;
   throw std::invalid_argument("image of OpenCV type " + std::to_string(image.type()) +
                               ", expected 8 bit with one channel or three");
+}
+
+void checkMask(const cv::Mat& mask, const cv::Mat& image) {
+  if (mask.empty() || (mask.type() == CV_8UC1 && mask.size() == image.size())) return;
+  std::ostringstream text;
+  text << "external mask of " << mask.cols << " x " << mask.rows << " px and OpenCV type " << mask.type()
+       << ", expected the image's size, " << image.cols << " x " << image.rows << " px, and type " << CV_8UC1;
+  throw std::invalid_argument(text.str());
 }
 
 }  // namespace laparoscope_servo::image

@@ -28,6 +28,10 @@ enum class Reason {
   kTaken,
   kNotSeen,
   kAmbiguous,
+  kFirstImage,
+  kNothingUsable,
+  kNoTexture,
+  kNothingDominates,
 };
 
 const char* stateName(State state);

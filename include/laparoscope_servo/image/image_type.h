@@ -8,4 +8,7 @@ namespace laparoscope_servo::image {
 // Throws std::invalid_argument, naming the type, for any other type.
 void checkType(const cv::Mat& image);
 
+// Throws std::invalid_argument for a mask that is not empty and not CV_8UC1 of the image's size.
+void checkMask(const cv::Mat& mask, const cv::Mat& image);
+
 }  // namespace laparoscope_servo::image
