@@ -89,6 +89,8 @@ class Judge {
       refuse("number of points", given, "1: where it is");
     }
     if (kind == FeatureKind::kLine && given != 2) refuse("number of points", given, "2: the line's ends");
+    if (kind == FeatureKind::kMotion && given != 0 && given != 2)
+      refuse("number of points", given, "0, or 2: opposite corners of a region");
     const std::size_t least = feature_.closed ? 4 : 3;
     if (kind == FeatureKind::kSpline && given < least) {
       refuse("number of points", given, std::to_string(least) + " or more on the spline");

@@ -54,6 +54,14 @@ const char* reasonText(Reason reason) {
       return "the image shows it in two poses that cannot be told apart";
     case Reason::kCovered:
       return "covered: too little of it looks as it did when it was selected";
+    case Reason::kFirstImage:
+      return "motion is told from the second image on";
+    case Reason::kNothingUsable:
+      return "nearly all of it is highlight, dark, or masked";
+    case Reason::kNoTexture:
+      return "too little texture to tell how it moves";
+    case Reason::kNothingDominates:
+      return "no motion dominates: too little of the texture moves as one";
   }
   return "";
 }

@@ -74,7 +74,8 @@ void FeatureNodelet::publish(const ProcessedFeatures& processed) {
   if (mask_publisher_ && mask_publisher_.getNumSubscribers() > 0)
     mask_publisher_.publish(imageMessage(processed.header, session_->mask()));
   if (overlay_publisher_.getNumSubscribers() > 0) {
-    overlay_publisher_.publish(imageMessage(processed.header, drawFeatures(processed.image, processed.result)));
+    overlay_publisher_.publish(
+        imageMessage(processed.header, drawFeatures(processed.image, processed.result, session_->mask())));
   }
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "laparoscope_servo/geometry/sl3.h"
+#include "laparoscope_servo/image/image_type.h"
 #include "laparoscope_servo/parameters/table.h"
 #include "laparoscope_servo/validation/error_report.h"
 #include "tracking/align/quality.h"
@@ -108,7 +109,7 @@ void RegionTracker::Implementation::setLens(const std::optional<image::Lens>& le
 double RegionTracker::Implementation::check(const cv::Mat& image, const geometry::Rectangle& wanted,
                                             RegionAligner& aligner, const cv::Mat& mask) const {
   checkImage(image);
-  checkMask(mask, image);
+  image::checkMask(mask, image);
   aligner.setMask(mask);
   aligner.setReference(image, checkedRoi(image, wanted, config_.min_roi_side, lens_.get()));
   return checkedCornerError(aligner, config_.min_texture);
@@ -182,7 +183,7 @@ const TrackResult& RegionTracker::Implementation::track(const cv::Mat& image, do
                                                         const std::optional<Eigen::Matrix3d>& motion,
                                                         const cv::Mat& mask) {
   checkImage(image);
-  checkMask(mask, image);
+  image::checkMask(mask, image);
   if (state_ == State::kIdle) {
     const TrackResult& result = idle(stamp, reset_reason_.empty() ? "no region of interest selected" : reset_reason_);
     reset_reason_.clear();

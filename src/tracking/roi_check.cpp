@@ -47,14 +47,6 @@ void checkImage(const cv::Mat& image) {
   image::checkType(image);
 }
 
-void checkMask(const cv::Mat& mask, const cv::Mat& image) {
-  if (mask.empty() || (mask.type() == CV_8UC1 && mask.size() == image.size())) return;
-  std::ostringstream text;
-  text << "external mask of " << mask.cols << " x " << mask.rows << " px and OpenCV type " << mask.type()
-       << ", expected the image's size, " << image.cols << " x " << image.rows << " px, and type " << CV_8UC1;
-  throw std::invalid_argument(text.str());
-}
-
 geometry::Rectangle checkedRoi(const cv::Mat& image, const geometry::Rectangle& roi, int min_side,
                                const image::Lens* lens) {
   const std::string name = text(roi);

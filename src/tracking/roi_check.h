@@ -12,9 +12,6 @@ namespace laparoscope_servo::tracking {
 // Throws std::invalid_argument for an image that is empty, or of another type than CV_8UC1 and CV_8UC3.
 void checkImage(const cv::Mat& image);
 
-// Throws std::invalid_argument for a mask that is not empty and not CV_8UC1 of the image's size.
-void checkMask(const cv::Mat& mask, const cv::Mat& image);
-
 // The ROI in whole pixels. Throws std::invalid_argument when a side is below `min_side` [px], or a part of it is not in
 // the image. With a lens (null: none) the image is raw, and the ROI in rectified pixels.
 geometry::Rectangle checkedRoi(const cv::Mat& image, const geometry::Rectangle& roi, int min_side,

@@ -34,7 +34,8 @@ struct SelectedFeature {
   std::string id;  // not empty, and no other's
   FeatureKind kind = FeatureKind::kPoint;
   // px. A point: the point, or none and `corners`. A line: its two ends. An ellipse: five or more points on it, or none
-  // and `ellipse`. A spline: points on it, in order, 3 or more.
+  // and `ellipse`. A spline: points on it, in order, 3 or more. A motion: two opposite corners of a region, or none for
+  // all of the image.
   std::vector<Eigen::Vector2d> points;
   std::optional<EllipseSelection> ellipse;
   std::optional<ArcSelection> arc;

@@ -29,6 +29,10 @@ enum class Reason {
   kNotSeen,
   kAmbiguous,
   kCovered,
+  kFirstImage,
+  kNothingUsable,
+  kNoTexture,
+  kNothingDominates,
 };
 
 const char* stateName(State state);

@@ -21,6 +21,9 @@ struct FeaturePrior {
   std::optional<Eigen::Matrix3d> motion;
   // Of this image, without distortion; trackers in pixels do not need it.
   std::optional<geometry::PinholeCamera> camera;
+  // CV_8UC1 of the image's size: what is not 0 lies in front of the tissue. Empty: nothing is known. Used by trackers
+  // of motion.
+  cv::Mat mask;
 };
 
 class FeatureTracker {
@@ -43,8 +46,10 @@ class FeatureTracker {
   // Of the last call.
   virtual const TrackedFeatures& features() const = 0;
 
-  // Nothing is selected: it looks for its features itself.
+  // Nothing has to be selected: it looks for its features itself.
   virtual bool findsByItself() const { return false; }
+  // Something can be selected.
+  virtual bool takesSelection() const { return !findsByItself(); }
 
   // Whether mask() tells something. CV_8UC1 of the last image's size: 255 where something lies in front of the tissue,
   // else 0; empty before the first image.

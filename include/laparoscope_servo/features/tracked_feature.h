@@ -17,7 +17,7 @@ enum class FeatureKind {
   kEllipse = 2,  // K1 to K5: x^2 + K1 y^2 + 2 K2 x y + 2 K3 x + 2 K4 y + K5 = 0, x and y in px
   kSpline = 3,   // x, y of each control point: px
   kPose = 4,     // x, y, z m, rotation vector rad: takes the object's coordinates to the camera's
-  kMotion = 5,   // of a model of motion between two images, as its tracker says
+  kMotion = 5,   // a0 to a1, a5 or a7 of eq. (8), from the last image to this one: see motion/motion_feature_tracker.h
 };
 
 // "point", "line", ..., as people write it.

@@ -11,4 +11,7 @@ void checkType(const cv::Mat& image);
 // Of an image with its stamp, s: also where it is empty, or the stamp is not finite.
 void checkImage(const cv::Mat& image, double stamp);
 
+// Throws std::invalid_argument for a mask that is not empty and not CV_8UC1 of the image's size.
+void checkMask(const cv::Mat& mask, const cv::Mat& image);
+
 }  // namespace laparoscope_servo::image

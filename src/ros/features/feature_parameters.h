@@ -11,6 +11,7 @@
 #include "laparoscope_servo/features/edge_config.h"
 #include "laparoscope_servo/features/feature_selection.h"
 #include "laparoscope_servo/model/instruments.h"
+#include "laparoscope_servo/motion/motion_config.h"
 #include "laparoscope_servo/parameters/table.h"
 #include "laparoscope_servo/tracking/input_config.h"
 #include "ros/common/parameters.h"
@@ -36,6 +37,7 @@ struct FeatureParameters {
 using DotsParameters = FeatureParameters<features::DotsConfig>;
 using EdgesParameters = FeatureParameters<features::EdgeConfig>;
 using InstrumentParameters = FeatureParameters<model::InstrumentConfig>;
+using MotionParameters = FeatureParameters<motion::MotionConfig>;
 
 void describe(parameters::Table& table, FeatureInput& input);
 std::vector<std::string> validate(const FeatureInput& input);

@@ -53,7 +53,7 @@ FeatureSession::FeatureSession(const FeatureInput& input, std::unique_ptr<featur
       feed_(input.input) {
   validation::throwErrors("input", validate(input));
   if (input.selection.empty()) return;
-  if (tracker_->findsByItself())
+  if (!tracker_->takesSelection())
     throw std::invalid_argument("selection = " + input.selection + ", expected none: nothing is to be selected");
   from_file_ = readSelection(input.selection);
   file_pending_ = true;

@@ -54,6 +54,7 @@ class FeatureSession {
 
   // See features::FeatureTracker.
   bool findsByItself() const { return tracker_->findsByItself(); }
+  bool takesSelection() const { return tracker_->takesSelection(); }
   bool givesMask() const { return tracker_->givesMask(); }
   cv::Mat mask() const { return tracker_->mask(); }
 

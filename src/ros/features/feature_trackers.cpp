@@ -5,6 +5,7 @@
 #include "laparoscope_servo/features/dot_feature_tracker.h"
 #include "laparoscope_servo/features/edge_feature_tracker.h"
 #include "laparoscope_servo/model/instrument_feature_tracker.h"
+#include "laparoscope_servo/motion/motion_feature_tracker.h"
 
 namespace laparoscope_servo {
 
@@ -28,7 +29,8 @@ const struct {
   Maker maker;
 } kTrackers[] = {{"dots", make<features::DotFeatureTracker, features::DotsConfig>},
                  {"edges", make<features::EdgeFeatureTracker, features::EdgeConfig>},
-                 {"instrument", make<model::InstrumentFeatureTracker, model::InstrumentConfig>}};
+                 {"instrument", make<model::InstrumentFeatureTracker, model::InstrumentConfig>},
+                 {"motion", make<motion::MotionFeatureTracker, motion::MotionConfig>}};
 
 }  // namespace
 

@@ -16,9 +16,9 @@ namespace {
 using features::FeatureKind;
 using features::SelectedFeature;
 
-constexpr std::array<FeatureKind, 4> kWrittenKinds = {FeatureKind::kPoint, FeatureKind::kLine, FeatureKind::kEllipse,
-                                                      FeatureKind::kSpline};
-constexpr char kKeys[] = "id, one of point, line, ellipse, spline, and arc, closed, range, desired";
+constexpr std::array<FeatureKind, 5> kWrittenKinds = {FeatureKind::kPoint, FeatureKind::kLine, FeatureKind::kEllipse,
+                                                      FeatureKind::kSpline, FeatureKind::kMotion};
+constexpr char kKeys[] = "id, one of point, line, ellipse, spline, motion, and arc, closed, range, desired";
 
 // Reads one feature, and keeps what is wrong with it.
 class Reader {
@@ -101,7 +101,8 @@ class Reader {
         readPoints(shape, features::kindName(kind));
       }
     }
-    if (shapes != 1) refuse(node_, "its " + std::to_string(shapes) + " shapes", "one of point, line, ellipse, spline");
+    if (shapes != 1)
+      refuse(node_, "its " + std::to_string(shapes) + " shapes", "one of point, line, ellipse, spline, motion");
   }
 
   void readOther(const std::string& key, const YAML::Node& value) {

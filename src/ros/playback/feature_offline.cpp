@@ -33,7 +33,7 @@ FeatureSession sessionOf(const FeatureOfflineOptions& options) {
 class FeatureOffline : public OfflineTracker {
  public:
   explicit FeatureOffline(const FeatureOfflineOptions& options) : options_(options), session_(sessionOf(options)) {
-    if (session_.findsByItself() == options.selection.empty()) return;
+    if (options.selection.empty() ? session_.findsByItself() : session_.takesSelection()) return;
     throw std::invalid_argument(session_.findsByItself()
                                     ? "a selection is given, expected none: " + options.tracker + " finds it by itself"
                                     : "no selection is given, expected --select FILE.yaml with the features");
@@ -51,7 +51,7 @@ class FeatureOffline : public OfflineTracker {
   }
 
   void take(const SourceImage& image, bool first, OfflineSummary& summary) override {
-    const bool selects = first && !session_.findsByItself();
+    const bool selects = first && !options_.selection.empty();
     const ProcessedFeatures processed =
         processImage(session_, image, selects ? std::make_optional(options_.selection) : std::nullopt);
     if (selects && !processed.selected_now) throw std::invalid_argument(processed.selection_error);
@@ -60,7 +60,7 @@ class FeatureOffline : public OfflineTracker {
     if (csv_) csv_->write([&](std::ostream& stream) { writeFeatureCsvRows(stream, image.frame, processed); });
     bag_->write(image.record_time, "/" + options_.tracker + "/features",
                 featuresMessage(processed.header, processed.result));
-    if (overlay_->isWanted()) overlay_->write(drawFeatures(processed.image, processed.result));
+    if (overlay_->isWanted()) overlay_->write(drawFeatures(processed.image, processed.result, session_.mask()));
   }
 
   void keep() override {

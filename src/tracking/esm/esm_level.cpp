@@ -29,6 +29,11 @@ std::vector<int> split(int size, int unit, int least) {
   return begins;
 }
 
+void copyTo(image::Patch& patch, const cv::Mat1f& pixels) {
+  for (int j = 0; j < patch.height(); ++j) std::copy_n(pixels.ptr<float>(j), patch.width(), patch.row(j));
+  patch.extrapolate();
+}
+
 LAPAROSCOPE_SERVO_CLONES
 void leastOfThree(const float* __restrict a, const float* __restrict b, const float* __restrict c, int count,
                   float* __restrict least) {
@@ -84,17 +89,23 @@ EsmLevel::EsmLevel(const image::RegionPyramid& reference, const geometry::Rectan
   planes.resize(reference.channels());
   for (int c = 0; c < reference.channels(); ++c) {
     EsmPlane& plane = planes[c];
-    const cv::Size level_size(width, height);
-    const cv::Mat1f pixels = lens != nullptr ? image::rectify(reference.level(l, c), image_T_patch, *lens,
-                                                              {reference.origin(), scale}, level_size)
-                                             : reference.level(l, c)(cv::Rect(begin, level_size));
     plane.value.resize(width, height);
-    for (int j = 0; j < height; ++j) std::copy_n(pixels.ptr<float>(j), width, plane.value.row(j));
-    plane.value.extrapolate();
+    if (lens != nullptr) {
+      copyTo(plane.value, image::rectify(reference.level(l, c), image_T_patch, *lens, {reference.origin(), scale},
+                                         cv::Size(width, height)));
+    }
     plane.warped.resize(width, height);
     plane.bias.assign(light_columns * (light_row_begin.size() - 1), 0.0);
     plane.mean = plane.before = plane.bias;
   }
+  if (lens == nullptr) take(reference, l);
+}
+
+void EsmLevel::take(const image::RegionPyramid& reference, int l) {
+  const int size = reference.scale(l);
+  const cv::Rect box((static_cast<int>(image_T_patch(0, 2)) - reference.origin().x) / size,
+                     (static_cast<int>(image_T_patch(1, 2)) - reference.origin().y) / size, width, height);
+  for (int c = 0; c < reference.channels(); ++c) copyTo(planes[c].value, reference.level(l, c)(box));
 }
 
 void EsmLevel::centreLight() {

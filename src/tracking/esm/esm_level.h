@@ -35,6 +35,9 @@ struct EsmLevel {
   EsmLevel(const image::RegionPyramid& reference, const geometry::Rectangle& roi, int l,
            const image::Lens* lens = nullptr);
 
+  // Takes level `l` of another pyramid of the same kind, at the same place. Not with a lens. Does not allocate.
+  void take(const image::RegionPyramid& reference, int l);
+
   // Fills in the blocks' means, which are 0 otherwise.
   void centreLight();
 

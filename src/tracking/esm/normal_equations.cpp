@@ -156,6 +156,7 @@ void LevelEquations::sum(const EsmLevel& level, const geometry::Rectangle& roi, 
   const Eigen::Matrix3d unit_T_patch = templateFromPixels(roi) * level.image_T_patch;
   equations_.reset(light, 0.5 * halfSize(roi) / level.scale);
   blocks_.clear();
+  next_cell_ = 0;
   for (const EsmPlane& plane : level.planes) {
     input.image = &plane.warped;
     input.reference = &plane.value;
@@ -177,11 +178,14 @@ void LevelEquations::sumLightBlockRow(const EsmLevel& level, const Eigen::Matrix
     strip_bias_[strip] = static_cast<float>(plane.biasOf(block, input.gain));
   }
   const int per_strip = level.cells_per_strip;
-  cells_.resize(static_cast<std::size_t>(cell_rows) * strips * per_strip);
+  const std::size_t first_cell = next_cell_;
+  next_cell_ += static_cast<std::size_t>(cell_rows) * strips * per_strip;
+  cells_.resize(std::max(cells_.size(), next_cell_));
+  CellSums* const cells = cells_.data() + first_cell;
   for (int k = 0; k < cell_rows; ++k) {
     const int row = begin + k * level.cell_rows;
     sumCells(input, row, std::min(level.cell_rows, end - row), per_strip, strip_bias_.data(),
-             cells_.data() + k * strips * per_strip);
+             cells + k * strips * per_strip);
   }
   const int cell_columns = image::Patch::kStrip / per_strip;
   for (int strip = 0; strip < strips; ++strip) {
@@ -193,7 +197,7 @@ void LevelEquations::sumLightBlockRow(const EsmLevel& level, const Eigen::Matrix
         const int row = begin + k * level.cell_rows;
         const int rows = std::min(level.cell_rows, end - row);
         const double v = unit_T_patch(1, 2) + unit_T_patch(1, 1) * (row + 0.5 * (rows - 1));
-        equations_.addCell(cells_[k * strips * per_strip + cell], u, v);
+        equations_.addCell(cells[k * strips * per_strip + cell], u, v);
       }
     }
     if (strip + 1 < strips && level.light_column_of_strip[strip + 1] == level.light_column_of_strip[strip]) continue;

@@ -110,6 +110,9 @@ class LevelEquations {
   Matrix10d matrix() const { return equations_.matrix(); }
   const Vector10d& vector() const { return equations_.vector(); }
   const std::vector<LightBlockSums>& blocks() const { return blocks_; }  // plane by plane, row by row
+  // Plane by plane, row by row, as many in a row as the patch has strips times cells_per_strip; those beyond the patch
+  // are empty. Their gradients are those of sumCells().
+  const std::vector<CellSums>& cells() const { return cells_; }
 
  private:
   void sumLightBlockRow(const EsmLevel& level, const Eigen::Matrix3d& unit_T_patch, const CellInput& input,
@@ -118,7 +121,8 @@ class LevelEquations {
   NormalEquations equations_;
   std::vector<LightBlockSums> blocks_;
   std::vector<float> strip_bias_;
-  std::vector<CellSums> cells_;  // cells of a row of blocks: cell rows times strips
+  std::vector<CellSums> cells_;
+  std::size_t next_cell_ = 0;  // of the next row of blocks
 };
 
 // Solves symmetric equations whose unknowns have different units (grey levels, normalised coordinates): the matrix is

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "laparoscope_servo/robust/scale.h"
 
@@ -15,6 +16,17 @@ constexpr int kRun = 4;            // px side by side, which share a cache line
 // bins per grey level of the histogram of residuals, which ends at 128 grey levels
 constexpr double kBinsPerLevel = 8.0;
 constexpr int kBins = 1024;
+
+// By the median of the first `count` magnitudes.
+double scaleOf(const std::vector<int>& histogram, int count) {
+  if (count == 0) return kMinSigma;
+  // The median lies in the bin that reaches half of the samples, linearly interpolated within the bin.
+  double below = 0.0;
+  int bin = 0;
+  while (below + histogram[bin] < 0.5 * count) below += histogram[bin++];
+  const double median = (bin + (0.5 * count - below) / histogram[bin]) / kBinsPerLevel;
+  return std::max(kMinSigma, robust::kMadToSigma * median);
+}
 
 }  // namespace
 
@@ -68,13 +80,24 @@ double ResidualScale::of(const EsmLevel& level, double gain) {
       }
     }
   }
-  if (count == 0) return kMinSigma;
-  // The median lies in the bin that reaches half of the samples, linearly interpolated within the bin.
-  double below = 0.0;
-  int bin = 0;
-  while (below + histogram_[bin] < 0.5 * count) below += histogram_[bin++];
-  const double median = (bin + (0.5 * count - below) / histogram_[bin]) / kBinsPerLevel;
-  return std::max(kMinSigma, robust::kMadToSigma * median);
+  count_ = count;
+  return scaleOf(histogram_, count);
+}
+
+double ResidualScale::ofKept(double sigma) const {
+  const int bins = std::min(static_cast<int>(robust::kTukey * sigma * kBinsPerLevel), kBins);
+  return scaleOf(histogram_, std::accumulate(histogram_.begin(), histogram_.begin() + bins, 0));
+}
+
+double ResidualScale::cost(double sigma) const {
+  double sum = 0.0;
+  for (int bin = 0; bin < kBins; ++bin) {
+    if (histogram_[bin] == 0) continue;
+    const double t = (bin + 0.5) / kBinsPerLevel / (robust::kTukey * sigma);
+    const double left = std::max(0.0, 1.0 - t * t);
+    sum += histogram_[bin] * (1.0 - left * left * left);  // the integral of Tukey's psi, scaled to end at 1
+  }
+  return count_ > 0 ? sum / count_ : 1.0;
 }
 
 }  // namespace laparoscope_servo::tracking

@@ -60,6 +60,17 @@ TEST(FeatureSelection, takesWhatIsWhole) {
   EXPECT_TRUE(validate({}, kAll).empty());
 }
 
+TEST(FeatureSelection, aMotionHasARegionOrNone) {
+  SelectedFeature motion = line();
+  motion.kind = FeatureKind::kMotion;
+  EXPECT_TRUE(validate({motion}, {FeatureKind::kMotion}).empty());
+  motion.points.clear();
+  EXPECT_TRUE(validate({motion}, {FeatureKind::kMotion}).empty());
+  motion.points = {{1.0, 2.0}};
+  EXPECT_EQ(validate({motion}, {FeatureKind::kMotion}).front(),
+            "shaft: number of points = 1, expected 0, or 2: opposite corners of a region");
+}
+
 TEST(FeatureSelection, whatIsToldBeginsWithIdsKindsAndDesiredValues) {
   SelectedFeature point, pose;
   point.id = "dot";

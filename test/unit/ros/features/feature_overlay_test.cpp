@@ -57,5 +57,23 @@ TEST(FeatureOverlay, DrawsACentreAndNothingThatIsNowhere) {
   }
 }
 
+// A shift of 4 px to the right: arrows of 20 px. Half of the image does not follow.
+TEST(FeatureOverlay, DrawsAFieldOverWhatDoesNotFollow) {
+  const cv::Mat image(240, 400, CV_8UC1, cv::Scalar(90));
+  features::TrackedFeatures tracked = lineIn(State::kTracking);
+  tracked.features[0].kind = features::FeatureKind::kMotion;
+  tracked.features[0].parameters = Eigen::Vector2d(4.0, 0.0);
+  cv::Mat mask = cv::Mat::zeros(240, 400, CV_8UC1);
+  mask.colRange(200, 400).setTo(255);
+  const cv::Mat drawn = drawFeatures(image, tracked, mask);
+  const double first = 0.5 * 400.0 / 12.0;
+  const int row = static_cast<int>(std::lround(first + 400.0 / 12.0 * 2.0));
+  EXPECT_TRUE(isLike(drawn.at<cv::Vec3b>(row, static_cast<int>(first) + 10), kRed));
+  EXPECT_EQ(drawn.at<cv::Vec3b>(60, 60), kGrey);
+  EXPECT_EQ(drawn.at<cv::Vec3b>(100, 390), cv::Vec3b(173, 45, 45));
+  tracked.features[0].kind = features::FeatureKind::kLine;
+  EXPECT_EQ(drawFeatures(image, tracked, mask).at<cv::Vec3b>(100, 390), kGrey);
+}
+
 }  // namespace
 }  // namespace laparoscope_servo

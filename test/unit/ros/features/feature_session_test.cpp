@@ -184,6 +184,21 @@ TEST(FeatureSession, TakesNoFileForATrackerThatFindsByItself) {
   }
 }
 
+// Motion is told without a selection, and of a region where one is selected.
+TEST(FeatureSession, TakesAFileForATrackerThatNeedsNone) {
+  const test_support::TemporaryFolder folder;
+  FeatureInput input;
+  std::vector<std::string> errors;
+  auto tracker = makeFeatureTracker("motion", {}, "", input, errors);
+  ASSERT_TRUE(tracker->findsByItself());
+  input.selection = folder.file("features.yaml");
+  std::ofstream(input.selection) << "- {id: liver, motion: [[60, 40], [260, 200]]}\n";
+  FeatureSession session(input, std::move(tracker));
+  const ProcessedFeatures first = session.process(*imageAt(featureScene(0.0, 1), 1000.0));
+  EXPECT_TRUE(first.selected_now) << first.selection_error;
+  EXPECT_EQ(session.process(*imageAt(featureScene(1.0, 2), 1000.04)).result.features.at(0).id, "liver");
+}
+
 INSTANTIATE_TEST_SUITE_P(All, FeatureSessionTest, testing::Values("dots", "edges"));
 
 }  // namespace

@@ -30,8 +30,13 @@ TEST(SelectionText, ReadsEveryShape) {
 - {id: trocar, ellipse: [[1, 2], [3, 4], [5, 6], [7, 8], [9, 10]]}
 - {id: left dot, point: [80, 60], desired: [160, 120]}
 - {id: outline, spline: [[20, 30], [60, 40], [70, 80], [50, 90]], closed: true}
+- {id: view, motion: []}
+- {id: liver, motion: [[60, 40], [260, 200]]}
 )");
-  ASSERT_EQ(selection.size(), 5u);
+  ASSERT_EQ(selection.size(), 7u);
+  EXPECT_EQ(selection[5].kind, FeatureKind::kMotion);
+  EXPECT_TRUE(selection[5].points.empty());
+  EXPECT_EQ(selection[6].points.size(), 2u);
   EXPECT_EQ(selection[0].id, "shaft");
   EXPECT_EQ(selection[0].kind, FeatureKind::kLine);
   EXPECT_EQ(selection[0].points[1], Eigen::Vector2d(300.0, 80.5));

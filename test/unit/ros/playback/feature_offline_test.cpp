@@ -13,6 +13,7 @@
 
 #include "ros/features/selection_text.h"
 #include "support/feature_scene.h"
+#include "support/synthetic_motion.h"
 #include "support/temporary_folder.h"
 
 namespace laparoscope_servo {
@@ -124,6 +125,25 @@ TEST_P(FeatureOfflineTest, TakesParametersFromAFile) {
 TEST_P(FeatureOfflineTest, DoesNotOverwriteItsInput) {
   options_.common.csv = in_.path();
   EXPECT_THROW(run(), std::invalid_argument);
+}
+
+// The motion of drawn tissue; nothing is selected.
+TEST(FeatureOffline, TellsMotionWithoutASelection) {
+  const test_support::TemporaryFolder in, out;
+  const motion::MotionField field = test::usualMotion();
+  for (int k = 0; k < 3; ++k) cv::imwrite(in.file(std::to_string(k) + ".png"), test::movingTissue(k, field));
+  FeatureOfflineOptions options;
+  options.common.inputs = {in.path()};
+  options.common.csv = out.file("out.csv");
+  options.tracker = "motion";
+  const OfflineSummary summary = trackFeaturesOffline(
+      options, [](const OfflineSummary&, std::size_t) {}, [](std::size_t, const std::string&) {});
+  EXPECT_EQ(summary.by_state[0], 1u);
+  EXPECT_EQ(summary.by_state[1], 2u);
+  std::ifstream file(options.common.csv);
+  std::string line;
+  for (int k = 0; k < 4; ++k) std::getline(file, line);
+  EXPECT_NE(line.find("\"motion\",motion,1,"), std::string::npos) << line;
 }
 
 INSTANTIATE_TEST_SUITE_P(All, FeatureOfflineTest, testing::Values("dots", "edges"));

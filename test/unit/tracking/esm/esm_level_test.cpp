@@ -34,6 +34,21 @@ TEST(EsmLevelTest, ShowsTheReferenceWhereItSays) {
   }
 }
 
+TEST(EsmLevelTest, TakesAnotherReferenceAsIfItWereMadeOfIt) {
+  image::RegionPyramid other;
+  other.build(test::tissue(cv::Size(200, 160), 9), cv::Rect(11, 7, 170, 140), 4, image::kLuma);
+  for (int l = 0; l < 3; ++l) {
+    EsmLevel level(pyramid(), kRoi, l);
+    level.take(other, l);
+    const EsmLevel made(other, kRoi, l);
+    for (int j = -1; j <= level.height; ++j) {
+      for (int i = -1; i <= level.width; ++i) {
+        ASSERT_EQ(level.planes[0].value(j, i), made.planes[0].value(j, i)) << "level " << l << " at " << i << ", " << j;
+      }
+    }
+  }
+}
+
 TEST(EsmLevelTest, IsEmptyWhereItWouldBeTooSmall) {
   EXPECT_TRUE(EsmLevel(pyramid(), kRoi, 3).planes.empty());
 }  // 60 / 8 px

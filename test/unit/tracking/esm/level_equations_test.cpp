@@ -101,6 +101,26 @@ TEST_F(LevelEquationsTest, BlocksTogetherAreTheWhole) {
   EXPECT_NEAR(weight, cv::sum(level_.weight.view())[0], 1e-3);
 }
 
+// In the order of the picture, whatever the blocks.
+TEST_F(LevelEquationsTest, KeepsTheCells) {
+  LevelEquations equations;
+  equations.sum(level_, kRoi, Light::kGlobal, kGain, 0.0);
+  const int columns = level_.weight.strips() * level_.cells_per_strip;
+  const int width = image::Patch::kStrip / level_.cells_per_strip;
+  const int rows = (level_.height + level_.cell_rows - 1) / level_.cell_rows;
+  ASSERT_GE(static_cast<int>(equations.cells().size()), rows * columns);
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      float weight = 0.0f;
+      for (int j = row * level_.cell_rows; j < std::min((row + 1) * level_.cell_rows, level_.height); ++j) {
+        for (int i = column * width; i < std::min((column + 1) * width, level_.width); ++i)
+          weight += level_.weight(j, i);
+      }
+      ASSERT_EQ(equations.cells()[static_cast<std::size_t>(row * columns + column)].w, weight) << row << ", " << column;
+    }
+  }
+}
+
 TEST_F(LevelEquationsTest, EachBlockHasItsOwnBias) {
   LevelEquations equations;
   level_.planes[0].bias[1] += 4.0;

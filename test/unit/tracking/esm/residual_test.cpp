@@ -95,6 +95,35 @@ TEST_P(ResidualTest, TheScaleIsNeverBelowQuantisation) {
   EXPECT_EQ(scale.of(level_, gain_), 1.0);
 }
 
+// A quarter of the pixels lies far off: the median of all is too large by a third, that of those kept is not.
+TEST_P(ResidualTest, TheScaleOfWhatIsKeptLeavesOutTheRest) {
+  EsmPlane& plane = level_.planes[0];
+  warp(plane, 12.0, 4.0);
+  plane.warped.view()(cv::Rect(0, 0, 30, 100)) += 60.0f / static_cast<float>(gain_);
+  ResidualScale scale;
+  double sigma = scale.of(level_, gain_);
+  EXPECT_GT(sigma, 4.8);
+  for (int k = 0; k < 4; ++k) sigma = scale.ofKept(sigma);
+  EXPECT_NEAR(sigma, 4.0, 0.4);
+  EXPECT_EQ(scale.ofKept(1e-6), 1.0) << "none is kept";
+}
+
+TEST_P(ResidualTest, TheCostIsTukeysMeanRho) {
+  EsmPlane& plane = level_.planes[0];
+  warp(plane, 12.0, 1e-3);
+  ResidualScale scale;
+  scale.of(level_, gain_);
+  EXPECT_LT(scale.cost(2.0), 0.01);
+  EXPECT_GT(scale.count(), 500);
+  plane.warped.view()(cv::Rect(0, 0, 60, 100)) += 60.0f / static_cast<float>(gain_);
+  scale.of(level_, gain_);
+  EXPECT_NEAR(scale.cost(2.0), 0.5, 0.05) << "half of them cost 1";
+  level_.weight.view().setTo(0.0f);
+  scale.of(level_, gain_);
+  EXPECT_EQ(scale.count(), 0);
+  EXPECT_EQ(scale.cost(2.0), 1.0);
+}
+
 INSTANTIATE_TEST_SUITE_P(Gains, ResidualTest, ::testing::Values(1.0, 0.7, 1.4));
 
 }  // namespace

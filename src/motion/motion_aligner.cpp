@@ -1,0 +1,299 @@
+#include "motion/motion_aligner.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "laparoscope_servo/image/warp.h"
+#include "laparoscope_servo/robust/scale.h"
+#include "motion/square_weights.h"
+
+namespace laparoscope_servo::motion {
+
+namespace {
+
+using tracking::EsmLevel;
+using tracking::Matrix10d;
+using tracking::Vector10d;
+
+constexpr int kLeastSide = 48;  // px of the coarsest level: enough for a quadratic motion
+constexpr int kCoarseIterations = 8;
+constexpr int kShifts = 2;            // the first of them
+constexpr int kIterations = 6;        // at most, on each further level
+constexpr double kContraction = 0.2;  // of steps, before it has been measured
+constexpr double kSlowest = 0.9;
+constexpr double kCoarseAccuracy = 0.1;  // px of the level
+constexpr double kAccuracy = 0.01;       // px of the finest level
+constexpr double kApart = 0.5;           // px of the coarsest level, by which starts differ
+constexpr double kBetter = 0.98;         // of the cost that the expected motion has: another start has to have less
+constexpr double kFarther = 0.1;         // px of the level, by which the expected motion differs from the one found
+constexpr int kTrims = 3;
+constexpr int kMostJudged = 100000;   // px of a level: on one of 320 x 240 two motions that differ can be told apart
+constexpr double kAsExpected = 1.15;  // of the expected scale: no more is left than there was
+constexpr double kMayGrow = 1.3;      // of the expected scale
+constexpr double kLeastBound = 2.5;   // grey levels: a scale up to this is never bounded
+constexpr double kSingular = 1e-9;
+// Px of the finest level, which bilinear sampling errs by where the whole image has one shift between pixels, however
+// little noise there is: bench_motion, constant motion, has 0.011 of an image of 640 x 480, 0.017 of a halved one.
+constexpr double kInterpolation = 0.015;
+constexpr double kDark = 0.5, kBright = 2.0;  // bounds of the gain between two images
+
+// Unknowns that are not estimated get a row of the identity, and 0.
+void restrictTo(Matrix10d& a, Vector10d& b, int motion, bool gain, bool offset) {
+  const auto fix = [&](int k) {
+    a.row(k).setZero();
+    a.col(k).setZero();
+    a(k, k) = 1.0;
+    b[k] = 0.0;
+  };
+  for (int k = motion; k < 8; ++k) fix(k);
+  if (!gain) fix(8);
+  if (!offset) fix(9);
+}
+
+tracking::Light lightOf(const MotionConfig& config) {
+  return config.light ? tracking::Light::kGlobal : tracking::Light::kConstant;
+}
+
+int levelsFor(const cv::Size& finest) {
+  int levels = 1;
+  for (int side = std::min(finest.width, finest.height) / 2; side >= kLeastSide && levels < MotionAligner::kMostLevels;
+       side /= 2) {
+    ++levels;
+  }
+  return levels;
+}
+
+}  // namespace
+
+int finestScale(const cv::Size& size, int max_pixels) {
+  int scale = 1;
+  while (static_cast<double>(size.width) * size.height / (scale * scale) > max_pixels) scale *= 2;
+  return scale;
+}
+
+void MotionImage::take(const cv::Mat& image, const cv::Mat& mask, const MotionConfig& config) {
+  const int finest = finestScale(image.size(), config.max_pixels);
+  const int levels = levelsFor(image.size() / finest);
+  pyramid.build(image, cv::Rect(0, 0, image.cols, image.rows), levels, image::kLuma, finest);
+  usable.look(image, mask, config.saturation, config.darkness);
+}
+
+void MotionAligner::setReference(const MotionImage& image) {
+  const cv::Size size = image.pyramid.region().size();
+  const bool known = static_cast<int>(levels_.size()) == image.pyramid.levels() && frame_.width == size.width &&
+                     frame_.height == size.height;
+  if (known) {
+    for (int l = 0; l < levels(); ++l) levels_[static_cast<std::size_t>(l)].take(image.pyramid, l);
+    return;
+  }
+  frame_ = {0.0, 0.0, static_cast<double>(size.width), static_cast<double>(size.height)};
+  steps_ = geometry::Sl3Steps(tracking::templateFromPixels(frame_));
+  levels_.clear();
+  for (int l = 0; l < image.pyramid.levels(); ++l) levels_.emplace_back(image.pyramid, frame_, l);
+  all_usable_ = false;
+}
+
+JointUse MotionAligner::setUsable(const MotionImage& reference, const MotionImage& current, const Eigen::Matrix3d& g,
+                                  const geometry::Quadrilateral* region) {
+  const JointUse use = jointlyUsable(reference.usable, current.usable, g, region, joint_);
+  const bool all = reference.usable.all() && current.usable.all() && region == nullptr;
+  if (all && all_usable_) return use;
+  for (EsmLevel& level : levels_) setWeights(joint_, reference.usable.side(), level);
+  all_usable_ = all;
+  return use;
+}
+
+void MotionAligner::warp(const MotionImage& current, int l, const Alignment& at) {
+  EsmLevel& level = levels_[static_cast<std::size_t>(l)];
+  tracking::EsmPlane& plane = level.planes[0];
+  level.all_valid =
+      image::warpBilinear(current.pyramid.level(l), current.pyramid.levelFromImage(l) * at.g * level.image_T_patch,
+                          plane.warped, level.valid);
+  plane.warped.extrapolate();
+  if (!level.all_valid) level.useValid();
+  std::fill(plane.bias.begin(), plane.bias.end(), at.offset);
+}
+
+// By the median of all residuals, then of those that it keeps; bounded by what is expected.
+double MotionAligner::scaleOf(int l, const tracking::ResidualScale& scale, double found) const {
+  for (int k = 0; k < kTrims; ++k) found = scale.ofKept(found);
+  const double expected = expected_[static_cast<std::size_t>(l)];
+  return expected > 0.0 ? std::min(found, std::max(kLeastBound, kMayGrow * expected)) : found;
+}
+
+bool MotionAligner::step(const MotionImage& current, int l, const Unknowns& unknowns, tracking::ResidualScale& scale,
+                         Alignment& at) {
+  warp(current, l, at);
+  const EsmLevel& level = levels_[static_cast<std::size_t>(l)];
+  at.sigma = scaleOf(l, scale, scale.of(level, at.gain));
+  equations_.sum(level, frame_, lightOf(config_), at.gain, robust::kTukey * at.sigma);
+  ++at.iterations;
+  Matrix10d a = equations_.matrix();
+  Vector10d b = equations_.vector();
+  restrictTo(a, b, unknowns.motion, unknowns.gain, unknowns.offset);
+  const tracking::Factors<10> factors(a);
+  at.determined = factors.conditioning() > kSingular;
+  if (!at.determined) return false;
+  const Vector10d x = -factors.solve(b);
+  const Eigen::Matrix3d before = at.g;
+  at.g = steps_.plus(at.g, x.head<8>());
+  at.g /= std::cbrt(at.g.determinant());
+  at.gain = std::clamp(at.gain + x[8], kDark, kBright);
+  at.offset += x[9];
+  at.last_step = geometry::cornerDistance(before, at.g, frame_);
+  at.determined = at.g.allFinite() && std::isfinite(at.last_step);
+  return at.determined;
+}
+
+// What lies beyond the image counts as what does not fit. `most`: residuals that any start has in the image.
+double MotionAligner::costOf(std::size_t start, double sigma, int most) const {
+  const tracking::ResidualScale& residuals = residuals_[start];
+  return 1.0 - residuals.count() * (1.0 - residuals.cost(sigma)) / std::max(1, most);
+}
+
+// From each start a few steps on the coarsest level, the first ones shifts, and all without the gain: between pixels
+// that do not correspond it would be too small. The start with the least cost goes on, at one scale for all.
+Alignment MotionAligner::bestStart(const MotionImage& current, const std::vector<Eigen::Matrix3d>& starts) {
+  const int l = levels() - 1;
+  const EsmLevel& level = levels_[static_cast<std::size_t>(l)];
+  std::array<Alignment, kMostStarts> found;
+  std::array<Eigen::Matrix3d, kMostStarts> begun;
+  int count = 0;
+  double sigma = std::numeric_limits<double>::infinity();
+  const auto start = [&](const Eigen::Matrix3d& g) {
+    if (count == kMostStarts) return;
+    for (int k = 0; k < count; ++k) {
+      if (geometry::cornerDistance(begun[static_cast<std::size_t>(k)], g, frame_) < kApart * level.scale) return;
+    }
+    begun[static_cast<std::size_t>(count)] = g;
+    Alignment& at = found[static_cast<std::size_t>(count)];
+    tracking::ResidualScale& residuals = residuals_[static_cast<std::size_t>(count)];
+    at.g = g;
+    for (int k = 0; k < kCoarseIterations; ++k) {
+      const int motion = k < kShifts ? parametersOf(Model::kConstant) : parametersOf(config_.model);
+      if (!step(current, l, {motion, false, config_.light}, residuals, at)) break;
+      if (k >= kShifts && at.last_step < kCoarseAccuracy * level.scale) break;
+    }
+    if (!at.determined) return;
+    sigma = std::min(sigma, at.sigma);
+    ++count;
+  };
+  for (const Eigen::Matrix3d& g : starts) start(g);
+  Eigen::Matrix3d voted = Eigen::Matrix3d::Identity();
+  voted.topRightCorner<2, 1>() = level.scale * votes_.find(level, current.pyramid.level(l));
+  start(voted);
+  if (count == 0) return {};
+  int most = 0;
+  for (int k = 0; k < count; ++k) most = std::max(most, residuals_[static_cast<std::size_t>(k)].count());
+  int best = 0;
+  for (int k = 1; k < count; ++k) {
+    if (costOf(static_cast<std::size_t>(k), sigma, most) <
+        (best == 0 ? kBetter : 1.0) * costOf(static_cast<std::size_t>(best), sigma, most))
+      best = k;
+  }
+  scales_[static_cast<std::size_t>(l)] = found[static_cast<std::size_t>(best)].sigma;
+  return found[static_cast<std::size_t>(best)];
+}
+
+// Two motions that are near each other look alike on coarse levels, and a fit to all pixels ends between them. So where
+// more is left than is expected, the motion that was found has to compete with the expected one, and each with what the
+// votes of the cells make of it.
+void MotionAligner::judgeAgain(const MotionImage& current, int l, const Eigen::Matrix3d& predicted, Alignment& at) {
+  const EsmLevel& level = levels_[static_cast<std::size_t>(l)];
+  const double expected = expected_[static_cast<std::size_t>(l)];
+  const Eigen::Matrix<double, 8, 8> t = fieldFromSl3(tracking::halfSize(frame_));
+  std::array<Eigen::Matrix3d, kMostStarts> candidates;
+  std::size_t count = 0;
+  double least = std::numeric_limits<double>::infinity();
+  int most = 0;
+  const auto look = [&](const Eigen::Matrix3d& g) {
+    Alignment there = at;
+    there.g = g;
+    warp(current, l, there);
+    tracking::ResidualScale& residuals = residuals_[count];
+    const double sigma = scaleOf(l, residuals, residuals.of(level, at.gain));
+    least = std::min(least, sigma);
+    most = std::max(most, residuals.count());
+    candidates[count++] = g;
+    return sigma;
+  };
+  for (const Eigen::Matrix3d& base : {at.g, predicted}) {
+    if (count > 0 && geometry::cornerDistance(base, at.g, frame_) < kFarther * level.scale) break;
+    const double sigma = look(base);
+    if (expected > 0.0 && sigma < kAsExpected * expected) {
+      at.g = base;
+      return;
+    }
+    equations_.sum(level, frame_, lightOf(config_), at.gain, 0.0);
+    const double noise = std::min(sigma, std::max(kLeastBound, expected));
+    const auto left = cell_votes_.fit(level, equations_.cells(), noise, config_.model);
+    if (left) look(steps_.plus(base, t.inverse() * *left));
+  }
+  std::size_t best = 0;
+  for (std::size_t k = 1; k < count; ++k) {
+    if (costOf(k, least, most) < costOf(best, least, most)) best = k;
+  }
+  at.g = candidates[best];
+}
+
+// Until the way that is still to go, by how the steps shrink, is short.
+void MotionAligner::refine(const MotionImage& current, int l, Alignment& at) {
+  const double scale = levels_[static_cast<std::size_t>(l)].scale;
+  const double accuracy = scale * (l == 0 ? kAccuracy : kCoarseAccuracy);
+  double contraction = kContraction;
+  for (int k = 0; k < kIterations; ++k) {
+    const double before = at.last_step;
+    if (!step(current, l, all(), residuals_[0], at)) return;
+    if (k > 0) contraction = std::min(at.last_step / std::max(before, 1e-9), kSlowest);
+    if (at.last_step * contraction / (1.0 - contraction) < accuracy) break;
+  }
+  scales_[static_cast<std::size_t>(l)] = at.sigma;
+}
+
+Alignment MotionAligner::align(const MotionImage& current, const std::vector<Eigen::Matrix3d>& starts,
+                               const Scales& expected) {
+  expected_ = expected;
+  scales_.fill(0.0);
+  Alignment at = bestStart(current, starts);
+  for (int l = levels() - (levels() > 1 ? 2 : 1); l >= 0 && at.determined; --l) {
+    if (levels_[static_cast<std::size_t>(l)].width * levels_[static_cast<std::size_t>(l)].height < kMostJudged) {
+      judgeAgain(current, l, starts.front(), at);
+    }
+    refine(current, l, at);
+  }
+  return at;
+}
+
+void MotionAligner::sum(int l, const Alignment& at, bool robust) {
+  const double scale = scales_[static_cast<std::size_t>(l)];
+  equations_.sum(level(l), frame_, lightOf(config_), at.gain, robust ? robust::kTukey * scale : 0.0);
+}
+
+// A^-1 B A^-1 with A = J'WJ and B the sum of the blocks' (J'Wr)(J'Wr)'.
+std::optional<tracking::Matrix8d> MotionAligner::covariance() const {
+  Matrix10d a = equations_.matrix();
+  Vector10d b = equations_.vector();
+  restrictTo(a, b, parametersOf(config_.model), config_.light, config_.light);
+  const tracking::Factors<10> factors(a);
+  if (!(factors.conditioning() > kSingular)) return std::nullopt;
+  const int unknowns = parametersOf(config_.model);
+  Matrix10d scores = Matrix10d::Zero();
+  int count = 0;
+  for (const tracking::LightBlockSums& block : equations_.blocks()) {
+    if (!(block.weight > 0.0)) continue;
+    Vector10d score = block.score;
+    score.segment(unknowns, 8 - unknowns).setZero();
+    if (!config_.light) score.tail<2>().setZero();
+    scores += score * score.transpose();
+    ++count;
+  }
+  const double freedom = std::max(1.0, count - unknowns - 2.0) / std::max(1, count);
+  const Matrix10d inverse = factors.solve(Matrix10d::Identity());
+  const tracking::Matrix8d x = (inverse * scores * inverse).topLeftCorner<8, 8>() / freedom;
+  const tracking::Matrix8d t = fieldFromSl3(tracking::halfSize(frame_));
+  tracking::Matrix8d covariance = t * x * t.transpose();
+  covariance.diagonal().head<2>().array() += std::pow(kInterpolation * level(0).scale, 2);
+  return covariance;
+}
+
+}  // namespace laparoscope_servo::motion

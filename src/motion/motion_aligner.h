@@ -1,0 +1,112 @@
+// Estimates the dominant motion from one image to another: eq. (9) of Marchand and Chaumette (2004),
+//   minimise over the motion, gain a and offset b:  sum rho(a I(G x, t + 1) + b - I(x, t))
+// with Tukey's rho, from coarse to fine, by the residuals, weights, sums and steps of ESM (tracking/esm/esm.h): the
+// directions of sl(3) are the velocities of eq. (8), so a model with fewer parameters is a part of ESM's equations.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <limits>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <vector>
+
+#include "laparoscope_servo/geometry/sl3.h"
+#include "laparoscope_servo/image/pyramid.h"
+#include "laparoscope_servo/motion/motion_config.h"
+#include "motion/cell_votes.h"
+#include "motion/shift_votes.h"
+#include "motion/usable_pixels.h"
+#include "tracking/esm/esm_level.h"
+#include "tracking/esm/normal_equations.h"
+#include "tracking/esm/residual.h"
+
+namespace laparoscope_servo::motion {
+
+// What the estimator needs of an image.
+struct MotionImage {
+  image::RegionPyramid pyramid;  // of the whole image
+  UsablePixels usable;
+
+  // Throws std::invalid_argument for an image of a type that it cannot use. Does not allocate for a further image of
+  // the same size and type.
+  void take(const cv::Mat& image, const cv::Mat& mask, const MotionConfig& config);
+};
+
+// px of the image per pixel of the finest level that is used.
+int finestScale(const cv::Size& size, int max_pixels);
+
+struct Alignment {
+  Eigen::Matrix3d g = Eigen::Matrix3d::Identity();  // pixels of the reference to those of the image, determinant 1
+  double gain = 1.0;                                // gain * image + offset = reference
+  double offset = 0.0;                              // grey levels
+  double sigma = 0.0;                               // grey levels, robust standard deviation of the finest residuals
+  int iterations = 0;
+  bool determined = false;  // false: what can be used of the images does not determine the motion
+  double last_step = std::numeric_limits<double>::infinity();  // px, of a corner
+};
+
+class MotionAligner {
+ public:
+  static constexpr int kMostLevels = 8;
+  static constexpr int kMostStarts = 4;
+  using Scales = std::array<double, kMostLevels>;
+
+  explicit MotionAligner(const MotionConfig& config) : config_(config) {}
+
+  // Allocates for the first image, and for one of another size.
+  void setReference(const MotionImage& image);
+
+  // Of the reference and of `current`, where `g` takes it, what can be used: for the following alignments.
+  JointUse setUsable(const MotionImage& reference, const MotionImage& current, const Eigen::Matrix3d& g,
+                     const geometry::Quadrilateral* region);
+
+  // `starts`: motions to start from, the expected one first; the one by the blocks' votes is added. `expected`: the
+  // residuals' scale at each level, by earlier images, 0 where it is not known; the scale is kept from exceeding it by
+  // much, so that what moves otherwise is not taken for noise.
+  Alignment align(const MotionImage& current, const std::vector<Eigen::Matrix3d>& starts, const Scales& expected);
+
+  // Of the last alignment.
+  const Scales& scales() const { return scales_; }  // found at each level
+  // The covariance of a0 to a7 about the image's centre (rows that the model does not have are 0), by the residuals of
+  // blocks of pixels, which err together, and by what sampling does to a shift. Empty when the equations do not
+  // determine them.
+  std::optional<tracking::Matrix8d> covariance() const;
+  const tracking::LevelEquations& equations() const { return equations_; }
+  // Warps level `l` of the image as it is aligned, into level(l).
+  void warp(const MotionImage& current, int l, const Alignment& at);
+  // Sums the equations of that level, with Tukey's weights at the scale found there, or without weights by residuals.
+  void sum(int l, const Alignment& at, bool robust);
+
+  int levels() const { return static_cast<int>(levels_.size()); }
+  const tracking::EsmLevel& level(int l) const { return levels_[static_cast<std::size_t>(l)]; }
+  const geometry::Rectangle& frame() const { return frame_; }  // the whole image
+
+ private:
+  double scaleOf(int l, const tracking::ResidualScale& scale, double found) const;
+  struct Unknowns {
+    int motion;  // the first so many of sl(3)
+    bool gain, offset;
+  };
+  Unknowns all() const { return {parametersOf(config_.model), config_.light, config_.light}; }
+  bool step(const MotionImage& current, int l, const Unknowns& unknowns, tracking::ResidualScale& scale, Alignment& at);
+  double costOf(std::size_t start, double sigma, int most) const;
+  void judgeAgain(const MotionImage& current, int l, const Eigen::Matrix3d& predicted, Alignment& at);
+  Alignment bestStart(const MotionImage& current, const std::vector<Eigen::Matrix3d>& starts);
+  void refine(const MotionImage& current, int l, Alignment& at);
+
+  MotionConfig config_;
+  geometry::Rectangle frame_;
+  geometry::Sl3Steps steps_;
+  std::vector<tracking::EsmLevel> levels_;
+  Squares joint_;
+  bool all_usable_ = false;  // the levels' weights are all 1
+  ShiftVotes votes_;
+  CellVotes cell_votes_;
+  std::array<tracking::ResidualScale, kMostStarts> residuals_;  // of the starts
+  tracking::LevelEquations equations_;
+  Scales expected_{};
+  Scales scales_{};
+};
+
+}  // namespace laparoscope_servo::motion

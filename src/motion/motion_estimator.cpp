@@ -1,0 +1,80 @@
+#include "motion/motion_estimator.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace laparoscope_servo::motion {
+
+namespace {
+
+using features::Reason;
+
+constexpr double kInView = 0.25;        // of the region's area, that has to be in the image
+constexpr double kLeastTexture = 0.02;  // of all cells, that have to have a say
+
+double errorAtCorners(const geometry::Quadrilateral& region, const Eigen::Vector2d& centre,
+                      const tracking::Matrix8d& covariance) {
+  double worst = 0.0;
+  for (const Eigen::Vector2d& corner : region) {
+    const auto j = fieldJacobian(corner - centre);
+    worst = std::max(worst, std::sqrt((j * covariance * j.transpose()).trace()));
+  }
+  return worst;
+}
+
+}  // namespace
+
+void MotionEstimator::setReference(const MotionImage& image) {
+  aligner_.setReference(image);
+}
+
+void MotionEstimator::forget() {
+  expected_.fill(0.0);
+  support_.clear();
+}
+
+Reason MotionEstimator::judge(const MotionImage& reference, const MotionImage& current,
+                              const std::vector<Eigen::Matrix3d>& starts, const geometry::Quadrilateral& region,
+                              bool whole) {
+  const JointUse use = aligner_.setUsable(reference, current, starts.front(), whole ? nullptr : &region);
+  found_.usable = use.usable;
+  if (!whole && !(use.within > kInView * geometry::signedArea(region))) return Reason::kOutside;
+  if (!(use.usable >= config_.min_usable)) return Reason::kNothingUsable;
+  found_.at = aligner_.align(current, starts, expected_);
+  if (!found_.at.determined) return Reason::kNoTexture;
+  const std::optional<tracking::Matrix8d> covariance = aligner_.covariance();
+  support_.judge(aligner_, current, found_.at);
+  found_.share = support_.share();
+  if (!covariance ||
+      support_.textured() < kLeastTexture * use.within / (aligner_.frame().width * aligner_.frame().height))
+    return Reason::kNoTexture;
+  if (!(found_.share >= config_.min_share)) return Reason::kNothingDominates;
+  found_.covariance = *covariance;
+  found_.expected_error = errorAtCorners(region, aligner_.frame().centre(), found_.covariance);
+  return found_.expected_error <= config_.max_error ? Reason::kNone : Reason::kUncertain;
+}
+
+// What follows is all that may scatter in the next image, too.
+void MotionEstimator::expectScales() {
+  expected_ = aligner_.scales();
+  const double found = expected_[static_cast<std::size_t>(support_.level())];
+  for (double& scale : expected_) scale *= support_.sigma() / std::max(found, 1e-9);
+}
+
+const MotionEstimate& MotionEstimator::estimate(const MotionImage& reference, const MotionImage& current,
+                                                const std::vector<Eigen::Matrix3d>& starts,
+                                                const geometry::Quadrilateral& region, bool whole) {
+  found_ = MotionEstimate();
+  const bool knew = expected_.front() > 0.0;
+  found_.why = judge(reference, current, starts, region, whole);
+  if (found_.why == Reason::kNone) expectScales();
+  if (found_.why == Reason::kNone && !knew) {
+    // Once more from there, now that the scale of what follows is known.
+    again_.assign(1, found_.at.g);
+    found_.why = judge(reference, current, again_, region, whole);
+  }
+  if (found_.why != Reason::kNone) forget();
+  return found_;
+}
+
+}  // namespace laparoscope_servo::motion

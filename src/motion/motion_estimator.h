@@ -1,0 +1,49 @@
+// The motion from one image to another, with the reason why it is not believed.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "laparoscope_servo/features/feature_state.h"
+#include "motion/motion_aligner.h"
+#include "motion/motion_support.h"
+
+namespace laparoscope_servo::motion {
+
+struct MotionEstimate {
+  features::Reason why = features::Reason::kNone;  // kNone: it is believed, and all of the rest is known
+  Alignment at;
+  tracking::Matrix8d covariance = tracking::Matrix8d::Zero();       // see MotionAligner::covariance()
+  double usable = 0.0;                                              // see JointUse
+  double share = 0.0;                                               // see MotionSupport
+  double expected_error = std::numeric_limits<double>::infinity();  // px, at the worst corner of the region
+};
+
+class MotionEstimator {
+ public:
+  explicit MotionEstimator(const MotionConfig& config) : config_(config), aligner_(config) { again_.reserve(1); }
+
+  void setReference(const MotionImage& image);
+  // `region`: px of the reference image; `whole`: it is all of the image. `starts`: the expected motion first.
+  const MotionEstimate& estimate(const MotionImage& reference, const MotionImage& current,
+                                 const std::vector<Eigen::Matrix3d>& starts, const geometry::Quadrilateral& region,
+                                 bool whole);
+  // Nothing is known of the scale of residuals, nor of what follows.
+  void forget();
+
+  const MotionSupport& support() const { return support_; }
+
+ private:
+  features::Reason judge(const MotionImage& reference, const MotionImage& current,
+                         const std::vector<Eigen::Matrix3d>& starts, const geometry::Quadrilateral& region, bool whole);
+  void expectScales();
+
+  MotionConfig config_;
+  MotionAligner aligner_;
+  MotionSupport support_;
+  MotionAligner::Scales expected_{};
+  std::vector<Eigen::Matrix3d> again_;
+  MotionEstimate found_;
+};
+
+}  // namespace laparoscope_servo::motion

@@ -1,0 +1,93 @@
+#include "laparoscope_servo/motion/motion_model.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+
+namespace laparoscope_servo::motion {
+
+namespace {
+
+// px: a unit with which the eight parameters of usual motions are of similar size.
+double unitFor(const Eigen::Vector2d& centre) {
+  return std::max(1.0, centre.cwiseAbs().maxCoeff());
+}
+
+geometry::Sl3Steps stepsAbout(const Eigen::Vector2d& centre, double unit) {
+  Eigen::Matrix3d n;
+  n << 1.0 / unit, 0.0, -centre.x() / unit,  //
+      0.0, 1.0 / unit, -centre.y() / unit,   //
+      0.0, 0.0, 1.0;
+  return geometry::Sl3Steps(n);
+}
+
+}  // namespace
+
+int parametersOf(Model model) {
+  constexpr std::array<int, 3> kCounts = {2, 6, 8};
+  return kCounts[static_cast<std::size_t>(model)];
+}
+
+Eigen::Matrix<double, 2, 8> fieldJacobian(const Eigen::Vector2d& p) {
+  const double x = p.x(), y = p.y();
+  Eigen::Matrix<double, 2, 8> j;
+  j << 1, 0, x, y, 0, 0, x * x, x * y,  // eq. (8)
+      0, 1, 0, 0, x, y, x * y, y * y;
+  return j;
+}
+
+Eigen::Vector2d MotionField::at(const Eigen::Vector2d& pixel) const {
+  return fieldJacobian(pixel - centre) * a;
+}
+
+MotionField scaled(const MotionField& field, double factor) {
+  MotionField result = field;
+  result.a.head<2>() *= factor;
+  result.a.tail<2>() /= factor;
+  result.centre *= factor;
+  return result;
+}
+
+// geometry::sl3Hat(x) moves (u, v) by (x1 + x3 v + (x5 - x6) u - x7 u^2 - x8 u v,
+//                                      x2 + x4 u - (x5 + 2 x6) v - x7 u v - x8 v^2).
+Eigen::Matrix<double, 8, 8> fieldFromSl3(double unit) {
+  Eigen::Matrix<double, 8, 8> t = Eigen::Matrix<double, 8, 8>::Zero();
+  t(0, 0) = t(1, 1) = unit;
+  t(2, 4) = 1.0;
+  t(2, 5) = -1.0;
+  t(3, 2) = 1.0;
+  t(4, 3) = 1.0;
+  t(5, 4) = -1.0;
+  t(5, 5) = -2.0;
+  t(6, 6) = t(7, 7) = -1.0 / unit;
+  return t;
+}
+
+Eigen::Matrix3d homographyOf(const MotionField& field) {
+  const double unit = unitFor(field.centre);
+  const geometry::Vector8d x = fieldFromSl3(unit).inverse() * field.a;
+  return stepsAbout(field.centre, unit).plus(Eigen::Matrix3d::Identity(), x);
+}
+
+MotionField fieldOf(const Eigen::Matrix3d& g, const Eigen::Vector2d& centre) {
+  const double unit = unitFor(centre);
+  MotionField field;
+  field.centre = centre;
+  field.a = fieldFromSl3(unit) * stepsAbout(centre, unit).minus(g, Eigen::Matrix3d::Identity());
+  return field;
+}
+
+geometry::Vector8d planeMotion(const Eigen::Vector3d& v, const Eigen::Vector3d& w, double depth, double g1, double g2) {
+  geometry::Vector8d a;
+  a << -v.x() / depth - w.y(),       // a0
+      -v.y() / depth + w.x(),        // a1
+      (g1 * v.x() + v.z()) / depth,  // a2
+      g2 * v.x() / depth + w.z(),    // a3
+      g1 * v.y() / depth - w.z(),    // a4
+      (g2 * v.y() + v.z()) / depth,  // a5
+      -g1 * v.z() / depth - w.y(),   // a6
+      -g2 * v.z() / depth + w.x();   // a7
+  return a;
+}
+
+}  // namespace laparoscope_servo::motion

@@ -1,0 +1,55 @@
+// The dominant motion from each image to the next: what DominantMotion is made of.
+#pragma once
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <vector>
+
+#include "laparoscope_servo/motion/dominant_motion.h"
+#include "motion/motion_estimator.h"
+
+namespace laparoscope_servo::motion {
+
+class MotionSequence {
+ public:
+  explicit MotionSequence(const MotionConfig& config);
+
+  // As those of DominantMotion.
+  const MotionResult& begin(const cv::Mat& image, double stamp, const std::optional<geometry::Rectangle>& region,
+                            const cv::Mat& mask);
+  const MotionResult& track(const cv::Mat& image, double stamp, const std::optional<Eigen::Matrix3d>& motion,
+                            const cv::Mat& mask);
+  void reset(features::Reason reason);
+
+  const MotionResult& result() const { return result_; }
+  const MotionSupport& support() const { return estimator_.support(); }
+  const MotionImage& last() const { return last_; }  // the image of the last call
+  // The last pair of images was, whatever has still to be confirmed; and the covariance of its motion.
+  bool believed() const { return believed_; }
+  const tracking::Matrix8d& covariance() const { return covariance_; }
+
+ private:
+  void start(const cv::Mat& image, double stamp, const std::optional<geometry::Rectangle>& region, const cv::Mat& mask,
+             features::Reason reason);
+  Eigen::Matrix3d predicted(double interval) const;
+  features::Reason estimate(const std::optional<Eigen::Matrix3d>& motion);
+
+  MotionConfig config_;
+  features::StateKeeper keeper_;
+  MotionEstimator estimator_;
+  MotionImage last_, current_;
+  bool has_last_ = false;
+  cv::Size size_;
+  int type_ = 0;
+  double last_stamp_ = 0.0;
+  bool has_region_ = false;
+  geometry::Quadrilateral region_{};                          // in the last image
+  geometry::Vector8d velocity_ = geometry::Vector8d::Zero();  // by s, of the last image that was believed
+  bool believed_ = false;
+  tracking::Matrix8d covariance_ = tracking::Matrix8d::Zero();
+  std::vector<Eigen::Matrix3d> starts_;
+  MotionResult result_;
+};
+
+}  // namespace laparoscope_servo::motion

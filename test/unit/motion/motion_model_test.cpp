@@ -1,0 +1,151 @@
+#include "laparoscope_servo/motion/motion_model.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <random>
+
+namespace laparoscope_servo::motion {
+namespace {
+
+MotionField randomField(std::mt19937& random, double size = 1.0) {
+  std::normal_distribution<double> normal(0.0, size);
+  MotionField field;
+  field.centre = Eigen::Vector2d(319.5, 239.5);
+  field.a << 5.0 * normal(random), 5.0 * normal(random), 0.02 * normal(random), 0.02 * normal(random),
+      0.02 * normal(random), 0.02 * normal(random), 3e-5 * normal(random), 3e-5 * normal(random);
+  return field;
+}
+
+TEST(MotionModel, CoefficientsAreThoseOfTheSurvey) {
+  MotionField field;
+  field.a << 1, 2, 3, 4, 5, 6, 7, 8;
+  field.centre = Eigen::Vector2d(10.0, 20.0);
+  // x = 2, y = 3: a0 + a2 x + a3 y + a6 x^2 + a7 x y, a1 + a4 x + a5 y + a6 x y + a7 y^2
+  EXPECT_EQ(field.at({12.0, 23.0}), Eigen::Vector2d(1 + 6 + 12 + 28 + 48, 2 + 10 + 18 + 42 + 72));
+}
+
+TEST(MotionModel, EachModelHasItsParameters) {
+  EXPECT_EQ(parametersOf(Model::kConstant), 2);
+  EXPECT_EQ(parametersOf(Model::kAffine), 6);
+  EXPECT_EQ(parametersOf(Model::kQuadratic), 8);
+}
+
+// Signs and coefficients: points of a plane before a camera that moves, by differences of their images.
+TEST(MotionModel, IsWhatAMovingCameraSeesOfAPlane) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  for (int k = 0; k < 50; ++k) {
+    const Eigen::Vector3d v(unit(random), unit(random), unit(random)), w(unit(random), unit(random), unit(random));
+    const double depth = 2.0 + unit(random), g1 = 0.5 * unit(random), g2 = 0.5 * unit(random);
+    MotionField field;
+    field.a = planeMotion(v, w, depth, g1, g2);
+    const Eigen::Vector2d image(0.5 * unit(random), 0.5 * unit(random));
+    const double z = depth / (1.0 - g1 * image.x() - g2 * image.y());
+    const Eigen::Vector3d point = z * image.homogeneous();
+    ASSERT_NEAR(point.z(), depth + g1 * point.x() + g2 * point.y(), 1e-12);
+    // A scene point moves with -v - w x X in the camera's frame.
+    constexpr double kStep = 1e-5;
+    const Eigen::Vector3d moved = kStep * (-v - w.cross(point));
+    const Eigen::Vector2d seen = ((point + moved).hnormalized() - (point - moved).hnormalized()) / (2.0 * kStep);
+    EXPECT_LT((seen - field.at(image)).norm(), 1e-8) << "camera " << k;
+  }
+}
+
+TEST(MotionModel, TheHomographyBeginsAsTheField) {
+  std::mt19937 random(5);
+  for (int k = 0; k < 20; ++k) {
+    MotionField field = randomField(random);
+    const Eigen::Vector2d p(600.0, 30.0), velocity = field.at(p);
+    constexpr double kStep = 1e-4;
+    field.a *= kStep;
+    const Eigen::Matrix3d forward = homographyOf(field);
+    field.a *= -1.0;
+    const Eigen::Matrix3d backward = homographyOf(field);
+    const Eigen::Vector2d seen = (geometry::apply(forward, p) - geometry::apply(backward, p)) / (2.0 * kStep);
+    EXPECT_LT((seen - velocity).norm(), 1e-5 * velocity.norm());
+  }
+}
+
+// Runge and Kutta's integration of eq. (8) over a unit of time.
+TEST(MotionModel, TheHomographyIsTheFlowOfTheField) {
+  std::mt19937 random(6);
+  for (int k = 0; k < 20; ++k) {
+    const MotionField field = randomField(random);
+    Eigen::Vector2d p(40.0, 450.0);
+    const Eigen::Vector2d expected = geometry::apply(homographyOf(field), p);
+    constexpr int kSteps = 100;
+    for (int i = 0; i < kSteps; ++i) {
+      const double h = 1.0 / kSteps;
+      const Eigen::Vector2d a = field.at(p), b = field.at(p + 0.5 * h * a), c = field.at(p + 0.5 * h * b);
+      const Eigen::Vector2d d = field.at(p + h * c);
+      p += h / 6.0 * (a + 2.0 * b + 2.0 * c + d);
+    }
+    EXPECT_LT((p - expected).norm(), 1e-7);
+  }
+}
+
+TEST(MotionModel, FieldAndHomographyAreInverse) {
+  std::mt19937 random(7);
+  for (int k = 0; k < 50; ++k) {
+    const MotionField field = randomField(random);
+    const Eigen::Matrix3d g = homographyOf(field);
+    EXPECT_NEAR(g.determinant(), 1.0, 1e-12);
+    const MotionField back = fieldOf(g, field.centre);
+    for (int i = 0; i < 8; ++i) EXPECT_NEAR(back.a[i], field.a[i], 1e-10 * (1.0 + std::abs(field.a[i]))) << "a" << i;
+  }
+}
+
+TEST(MotionModel, FewerParametersAreSubgroups) {
+  std::mt19937 random(8);
+  MotionField field = randomField(random);
+  field.a.tail<2>().setZero();
+  const Eigen::Matrix3d affine = homographyOf(field);
+  EXPECT_LT(affine.row(2).head<2>().norm(), 1e-15);
+  field.a.tail<6>().setZero();
+  const Eigen::Matrix3d shift = homographyOf(field);
+  EXPECT_LT((geometry::apply(shift, Eigen::Vector2d(7.0, 9.0)) - Eigen::Vector2d(7.0, 9.0) - field.a.head<2>()).norm(),
+            1e-12);
+}
+
+TEST(MotionModel, ScalesFromLevelToLevel) {
+  std::mt19937 random(9);
+  const MotionField coarse = randomField(random);
+  const MotionField fine = scaled(coarse, 2.0);
+  EXPECT_EQ(fine.a.head<2>(), (2.0 * coarse.a.head<2>()).eval());
+  EXPECT_EQ((fine.a.segment<4>(2)), (coarse.a.segment<4>(2)));
+  EXPECT_EQ(fine.a.tail<2>(), (0.5 * coarse.a.tail<2>()).eval());
+  const Eigen::Vector2d p(100.0, 30.0);
+  EXPECT_LT((fine.at(2.0 * p) - 2.0 * coarse.at(p)).norm(), 1e-12);
+}
+
+TEST(MotionModel, DirectionsOfSl3AreTheModels) {
+  const double unit = 320.0;
+  const Eigen::Vector2d p(120.0, -50.0);
+  for (int k = 0; k < 8; ++k) {
+    constexpr double kStep = 1e-6;
+    geometry::Vector8d x = geometry::Vector8d::Zero();
+    x[k] = kStep;
+    const Eigen::Vector2d seen = unit *
+                                 (geometry::apply(geometry::sl3Exp(x), Eigen::Vector2d(p / unit)) -
+                                  geometry::apply(geometry::sl3Exp(-x), Eigen::Vector2d(p / unit))) /
+                                 (2.0 * kStep);
+    const Eigen::Vector2d expected = fieldJacobian(p) * fieldFromSl3(unit).col(k);
+    EXPECT_LT((seen - expected).norm(), 1e-6) << "direction " << k + 1;
+  }
+}
+
+TEST(MotionModel, TheFieldsJacobianIsItsDerivative) {
+  std::mt19937 random(10);
+  MotionField field = randomField(random);
+  const Eigen::Vector2d p(500.0, 100.0);
+  const Eigen::Matrix<double, 2, 8> j = fieldJacobian(p - field.centre);
+  for (int k = 0; k < 8; ++k) {
+    MotionField more = field;
+    more.a[k] += 1.0;
+    EXPECT_LT((more.at(p) - field.at(p) - j.col(k)).norm(), 1e-9 * (1.0 + j.col(k).norm())) << "a" << k;
+  }
+}
+
+}  // namespace
+}  // namespace laparoscope_servo::motion
