@@ -67,6 +67,7 @@ SafetyFacts Controller::Implementation::facts(const ControllerInput& input) cons
   facts.pose = {input.depth.problem, input.depth.age, d2(input), input.depth.lateral_offset,
                 std::abs(d2_correction_.wanted())};
   facts.dead_man = input.dead_man;
+  if (engaged() && config_.effect.enabled) facts.effect = effectFacts();
   if (task_ == Task::kManual) {
     facts.tracker = nothingMissing();
     return facts;
@@ -74,7 +75,6 @@ SafetyFacts Controller::Implementation::facts(const ControllerInput& input) cons
   const TaskErrorInput& task = input.task_error;
   facts.tracker = {task.problem,          task.age,         task.image_age, task.valid, task.region,
                    task.visible_fraction, task.corner_error};
-  if (engaged() && config_.effect.enabled) facts.effect = effectFacts();
   if (!task.problem.empty() || !task.valid) return facts;
   facts.tracker.problem = implausible(task);
   if (facts.tracker.problem.empty() && repeats_.repeats()) {
@@ -86,6 +86,7 @@ SafetyFacts Controller::Implementation::facts(const ControllerInput& input) cons
 
 EffectFacts Controller::Implementation::effectFacts() const {
   if (!opposed_.words().empty()) return {Effect::kWrong, opposed_.words()};
+  if (task_ == Task::kManual) return {};  // what the picture shows does not count
   if (effect_.effect() == Effect::kAsCommanded && effect_.budget().spent() >= kUsedUp)
     return {Effect::kDoubted, "the picture has not yet shown what the motion of the scope does"};
   return {effect_.effect(), effect_.words()};
@@ -271,7 +272,7 @@ scope::Velocity Controller::Implementation::drive(const ControllerInput& input, 
     servo_.stop(input.time);
     return scope::Velocity();
   }
-  return servo_.drive(servoInput(input), input.manual.velocity);
+  return servo_.drive(servoInput(input), stick_.deflection(input.manual.velocity));
 }
 
 }  // namespace laparoscope_servo::servo

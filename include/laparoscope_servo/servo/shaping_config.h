@@ -25,7 +25,7 @@ struct RestConfig {
 // Detection of oscillations of the loop, see src/servo/shaping/oscillation_guard.h.
 struct OscillationConfig {
   bool enabled = true;
-  double half_period = 0.55;   // s: changes of sign further apart are no oscillation
+  double half_period = 0.95;   // s: changes of sign further apart are no oscillation
   int changes = 5;             // changes of sign in a row
   double centre = 0.003;       // normalised: least amplitude to each side
   double depth = 0.01;         // of log depth

@@ -48,6 +48,10 @@ class Arm {
   void brake();
   // Makes a motor ignore its commands: index 0 to 6; -1 for none.
   void jam(int joint) { jammed_ = joint; }
+  // The joints move by this factor of their commands, negative: the other way.
+  void setGain(double gain) { gain_ = gain; }
+  // Commands take effect so much [s] later than by the configuration, never before an earlier one.
+  void setLag(double lag) { lag_ = lag; }
   // Moves the scope by hand about the trocar, by pan, tilt, spin [rad] and insertion [m], evenly within `seconds`.
   // Returns why not, or an empty text.
   std::string hand(const scope::Velocity& displacement, double seconds, double now);
@@ -82,6 +86,8 @@ class Arm {
   scope::Velocity hand_;
   double hand_left_ = 0.0;
   int jammed_ = -1;
+  double gain_ = 1.0;
+  double lag_ = 0.0;  // s
   double moved_until_ = -std::numeric_limits<double>::infinity();
   double now_ = 0.0;
   bool started_ = false;

@@ -59,6 +59,12 @@ std::vector<EffectExplanation> effectExplanations() {
   all.push_back(arm("moved by an arm whose spin is reversed", {1.0, 1.0, -1.0, 1.0}));
   all.push_back(arm("moved by an arm whose insertion is reversed", {1.0, 1.0, 1.0, -1.0}));
   all.push_back(arm("frozen, or another camera's", Eigen::Vector4d::Zero()));
+  for (const double late : {0.3, 0.5, 0.8}) {
+    EffectExplanation old;
+    old.fault = "frozen, or older than its stamps say";
+    old.late = late;
+    all.push_back(old);
+  }
   return all;
 }
 

@@ -1,5 +1,6 @@
 #include "servo/safety/manual_stick.h"
 
+#include <cmath>
 #include <sstream>
 
 namespace laparoscope_servo::servo {
@@ -16,7 +17,7 @@ std::string ManualStick::update(const ManualInput& input, bool drives, double ti
     seen_at_rest_ = false;
     return problem;
   }
-  seen_at_rest_ = seen_at_rest_ || isAtRest(input.velocity);
+  seen_at_rest_ = seen_at_rest_ || deflection(input.velocity).vector().isZero(0.0);
   return seen_at_rest_ ? "" : "stands: release the stick once";
 }
 
@@ -26,16 +27,19 @@ std::string ManualStick::unusable(const ManualInput& input, double time) const {
     text << "stands: no manual command for " << config_.max_manual_age << " s";
   } else if (!input.velocity.vector().allFinite()) {
     text << "stands: the manual command is not finite";
-  } else if (!input.velocity.vector().isZero(0.0) && !(time - since_ <= config_.max_manual_repeat)) {
+  } else if (!deflection(input.velocity).vector().isZero(0.0) && !(time - since_ <= config_.max_manual_repeat)) {
     text << "stands: the manual command is the same to the last digit for " << config_.max_manual_repeat
          << " s, as of a pad out of reach; move the stick, and release it once";
   }
   return text.str();
 }
 
-bool ManualStick::isAtRest(const scope::Velocity& velocity) const {
-  const Eigen::Array4d bound = config_.manual_neutral * full_.vector().array();
-  return (velocity.vector().cwiseAbs().array() <= bound).all();
+scope::Velocity ManualStick::deflection(const scope::Velocity& velocity) const {
+  Eigen::Vector4d deflected = velocity.vector();
+  for (int k = 0; k < 4; ++k) {
+    if (std::abs(deflected[k]) <= config_.manual_neutral * full_.vector()[k]) deflected[k] = 0.0;
+  }
+  return scope::Velocity::fromVector(deflected);
 }
 
 }  // namespace laparoscope_servo::servo

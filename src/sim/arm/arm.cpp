@@ -51,7 +51,8 @@ Arm::Arm(const aesop::Kinematics& kinematics, const ArmConfig& config) : kinemat
 
 void Arm::command(const std::array<double, kDrivenJoints>& speed, double now) {
   step(now);
-  pending_.push_back({now + config_.delay, speed});
+  const double last = pending_.empty() ? now : pending_.back().at;
+  pending_.push_back({std::max(last, now + config_.delay + lag_), speed});
 }
 
 void Arm::brake() {
@@ -111,7 +112,7 @@ JointVector Arm::drivenVelocity(double dt) const {
     if (joint == jammed_) continue;
     const double dead = config_.dead_zone[joint];
     const double threshold = qdot_[joint] == 0.0 ? config_.breakaway * dead : dead;
-    const double wanted = std::abs(target_[k]) > threshold ? target_[k] : 0.0;
+    const double wanted = std::abs(target_[k]) > threshold ? gain_ * target_[k] : 0.0;
     const double share = config_.time_constant > 0.0 ? 1.0 - std::exp(-dt / config_.time_constant) : 1.0;
     const double next = qdot_[joint] + share * (wanted - qdot_[joint]);
     const bool rests = wanted == 0.0 && std::abs(next) <= std::max(dead, kAtRest);  // held by friction

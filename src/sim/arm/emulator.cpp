@@ -129,6 +129,16 @@ void Emulator::jam(int joint, double now) {
   arm_.jam(joint);
 }
 
+void Emulator::setGain(double gain, double now) {
+  step(now);
+  arm_.setGain(gain);
+}
+
+void Emulator::setLag(double lag, double now) {
+  step(now);
+  arm_.setLag(lag);
+}
+
 void Emulator::lie(Lie lie, double now) {
   step(now);
   liar_.begin(lie, status(now));

@@ -13,7 +13,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kLongest = 1e6;  // s, latest time of a schedule
 
-enum class Takes { kNothing, kProbability, kDelay, kPerhapsSeconds, kMask, kJoint, kLie };
+enum class Takes { kNothing, kProbability, kDelay, kPerhapsSeconds, kMask, kJoint, kFactor, kLie };
 
 struct Kind {
   const char* name;
@@ -35,6 +35,8 @@ constexpr Kind kKinds[] = {
     {"bits", Takes::kMask, false, true, "cause of a robot fault, until 0"},
     {"joint", Takes::kJoint, false, true, "the motor of a joint trips: it stands, and that is a robot fault"},
     {"stalled", Takes::kJoint, false, true, "a joint stands, and the controller does not notice"},
+    {"gain", Takes::kFactor, false, true, "the joints move by this factor of their commands"},
+    {"lag", Takes::kDelay, false, true, "commands take effect later"},
     {"lie", Takes::kLie, false, true, "statuses that are not true"},
     {"none", Takes::kNothing, false, false, "a good line, a good arm, true statuses; a robot fault waits for the host"},
 };
@@ -65,6 +67,8 @@ std::string expected(Takes takes) {
       return "a whole number from 0 to 65535";
     case Takes::kJoint:
       return "a joint's number, 1 to 7, or 0 for none";
+    case Takes::kFactor:
+      return "a factor from -10 to 10";
     case Takes::kLie:
       return "one of " + lieNames() + " none";
   }
@@ -88,6 +92,8 @@ bool accepts(Takes takes, const std::string& text) {
       return whole && value >= 0.0 && value <= 65535.0;
     case Takes::kJoint:
       return whole && value >= 0.0 && value <= aesop::kJoints;
+    case Takes::kFactor:
+      return value >= -10.0 && value <= 10.0;
     default:
       return false;
   }
@@ -178,6 +184,8 @@ void Faults::set(const Fault& fault, double now) {
   if (fault.name == "bits") emulator_.setFaultCause(static_cast<std::uint16_t>(value), now);
   if (fault.name == "joint" || fault.name == "stalled") emulator_.jam(static_cast<int>(value) - 1, now);
   if (fault.name == "joint") emulator_.setFaultCause(value > 0.0 ? aesop::kFaultMotor : 0, now);
+  if (fault.name == "gain") emulator_.setGain(value, now);
+  if (fault.name == "lag") emulator_.setLag(value, now);
   if (fault.name == "lie") emulator_.lie(*lieNamed(fault.value), now);
   if (fault.name == "none") clear(now);
 }
@@ -186,6 +194,7 @@ void Faults::undo(const Fault& fault, double now) {
   Fault end = fault;
   end.value = "0";
   if (fault.name == "lie") end.value = "none";
+  if (fault.name == "gain") end.value = "1";
   if (fault.name == "hangup") end.name = "return";
   if (fault.name != "stall") return set(end, now);
   if (fault.way != "to_host") wire_.to_controller.faults.stalled_until = now;
@@ -197,6 +206,8 @@ void Faults::clear(double now) {
   if (wire_.isCut(now)) wire_.cut(now);
   emulator_.setFaultCause(0, now);
   emulator_.jam(-1, now);
+  emulator_.setGain(1.0, now);
+  emulator_.setLag(0.0, now);
   emulator_.lie(Lie::kNone, now);
 }
 

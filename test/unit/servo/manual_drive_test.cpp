@@ -132,6 +132,17 @@ TEST(ManualDrive, SilenceIsStandstillWithoutAHold) {
   }
 }
 
+TEST(ManualDrive, AStickThatTremblesAboutItsRestIsStandstill) {
+  Driving driving;
+  for (int k = 0; k < 300; ++k) {
+    ControllerInput trembling = released(0.0);
+    trembling.manual.velocity = {0.0012 + 1e-5 * (k % 7), 0.0, -0.0019, 0.0003};
+    const bool stands = isZero(driving.step(trembling));
+    ASSERT_TRUE(stands || k < 50) << k;
+  }
+  EXPECT_GT(driving.step(driven(0.0)).command.pan, 0.0);
+}
+
 TEST(ManualDrive, WhatIsNotFiniteIsStandstill) {
   for (const double bad : {kNan, kInfinity, -kInfinity}) {
     for (int axis = 0; axis < 4; ++axis) {
@@ -183,6 +194,15 @@ TEST(ManualDrive, TheSafetyStatesAreTheSame) {
   expect([](ControllerInput& i) { i.depth.d2 = 0.3; }, ControllerState::kHold);
   expect([](ControllerInput& i) { i.depth.lateral_offset = 0.03; }, ControllerState::kFault);
   expect([](ControllerInput& i) { i.clock_jump = "ROS time jumped back"; }, ControllerState::kFault);
+}
+
+TEST(ManualDrive, AnArmThatGoesTheOtherWayIsAFault) {
+  Driving driving;
+  ControllerInput input = driven(0.0);
+  input.robot_report = {true, 0.0, {-0.05, 0.0, 0.0, 0.0}};
+  for (int k = 0; k < 20; ++k) driving.step(input);  // 1.1 degrees
+  EXPECT_EQ(driving.last.state, ControllerState::kFault);
+  EXPECT_NE(driving.last.reason.find("pan goes against what it is told"), std::string::npos) << driving.last.reason;
 }
 
 TEST(ManualDrive, AnotherTaskStartsFromRest) {

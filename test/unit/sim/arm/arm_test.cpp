@@ -43,6 +43,31 @@ TEST(Arm, nothingHappensBeforeTheDelay) {
   EXPECT_GT(a.position()[0], before[0]);
 }
 
+TEST(Arm, aGainMultipliesTheSpeedAndALagAddsToTheDelay) {
+  Arm a = arm();
+  a.setGain(-2.0);
+  a.setLag(0.3);
+  a.command({0.01, 0.0, 0.0, 0.0}, 0.0);
+  a.step(0.455);
+  EXPECT_EQ(a.position()[0], 0.25);
+  a.step(1.0);
+  EXPECT_NEAR(a.velocity()[0], -0.02, 1e-6);
+  a.setGain(1.0);
+  a.step(1.5);
+  EXPECT_NEAR(a.velocity()[0], 0.01, 1e-6);
+}
+
+TEST(Arm, aLagThatEndsKeepsTheOrderOfCommands) {
+  Arm a = arm();
+  a.setLag(0.3);
+  a.command({0.01, 0.0, 0.0, 0.0}, 0.0);
+  a.setLag(0.0);
+  a.command({}, 0.1);
+  a.step(2.0);
+  EXPECT_TRUE(a.velocity().isZero(0.0));
+  EXPECT_EQ(a.position()[0], 0.25) << "stopped in the moment in which it would have begun";
+}
+
 TEST(Arm, jointsReachTheirSpeedAndStopLate) {
   Arm a = arm();
   a.command({0.01, 0.0, 0.0, 0.1}, 0.0);

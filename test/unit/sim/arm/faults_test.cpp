@@ -26,7 +26,7 @@ class FaultsTest : public ::testing::Test {
 TEST_F(FaultsTest, eachBeginsAndEndsByItself) {
   const Fault all[] = {fault("drop", "0.1"),  fault("corrupt", "0.1"), fault("double", "0.1"), fault("delay", "0.1"),
                        fault("stall"),        fault("hangup"),         fault("bits", "1"),     fault("joint", "2"),
-                       fault("stalled", "2"), fault("lie", "frozen")};
+                       fault("stalled", "2"), fault("gain", "2"),      fault("lag", "0.1"),    fault("lie", "frozen")};
   for (const Fault& one : all) EXPECT_EQ(faults_.begin(lasting(one, 1.0), 0.0), "") << one.name;
   const WireFaults& line = wire_.to_host.faults;
   EXPECT_EQ(line.drop + line.corrupt + line.duplicate + line.delay, 0.4);
@@ -74,6 +74,8 @@ TEST_F(FaultsTest, whatCannotBeIsRefusedByName) {
   EXPECT_NE(problem(fault("drop", "nan")).find("'nan'"), std::string::npos);
   EXPECT_NE(problem(fault("lie", "white")).find("echo_frozen"), std::string::npos);
   EXPECT_NE(problem(fault("drop", "0.1", "up")).find("'up'"), std::string::npos);
+  EXPECT_NE(problem(fault("gain", "11")).find("factor"), std::string::npos);
+  EXPECT_NE(problem(fault("lag", "-1")).find("10 s"), std::string::npos);
   EXPECT_NE(problem(fault("bits", "1", "to_host")), "");
   EXPECT_NE(problem(fault("reboot", "1")), "");
   EXPECT_NE(problem(lasting(fault("reboot"), 1.0)), "");
