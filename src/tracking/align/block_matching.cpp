@@ -11,9 +11,7 @@ namespace laparoscope_servo::tracking {
 
 namespace {
 
-// px of the level, the ROI's larger side: blocks are a tenth of it or more. Half as fine, a block of a region with two
-// surfaces in it holds both of them.
-constexpr int kLargest = 240;
+constexpr int kLargest = 160;   // px of the level, the ROI's larger side: a finer level adds no information
 constexpr int kEnough = 12;     // blocks with unique texture, a third of all; with fewer a coarser level is tried
 constexpr int kAround = 7;      // px, half the window of the local mean and deviation
 constexpr float kFloor = 1.5f;  // grey levels: a smaller deviation is noise

@@ -37,9 +37,9 @@ constexpr double kGainChangeRate = 0.5;  // 1/s
 constexpr int kEnoughBlocks = 6;
 constexpr double kRecognised = 0.3;
 constexpr double kNear = 3.0;  // px, limit of the median distance of the blocks
-// If the blocks that recognise it are spread less than blocks all over one half of it would be, its corners are
-// extrapolated by more than is seen: then the corner error counts, with another limit, from which on it is wrong.
-constexpr double kSpread = 0.5;
+// If the blocks that recognise it are spread less than blocks all over a third of it would be, its corners are
+// extrapolated by twice what is seen or more: then the corner error counts, with a limit from which on it is wrong.
+constexpr double kSpread = 1.0 / 3.0;
 constexpr double kWrong = 5.0;      // px
 constexpr int kTelling = 8;         // blocks; with fewer that have unique texture, block matching is inconclusive
 constexpr int kVisibleTelling = 6;  // kTelling for blocks that are not covered

@@ -189,19 +189,6 @@ TEST_F(BlockMatchingTest, OnSmoothTissueBlocksAreLargerAndTellMore) {
   EXPECT_EQ(matching_.level(), 0) << "where the fine level tells enough";
 }
 
-// A block of a region that holds two surfaces should hold one of them only.
-TEST(BlockMatchingOfLargerRegions, BlocksAreSmallAgainstTheRegion) {
-  const cv::Mat scene = test::tissue(cv::Size(700, 500), 23);
-  for (const double side : {60.0, 120.0, 200.0, 240.0, 400.0, 480.0}) {
-    image::RegionPyramid pyramid;
-    pyramid.build(scene, cv::Rect(cv::Point(0, 0), scene.size()), 3, image::kLuma);
-    BlockMatching matching;
-    matching.setReference(pyramid, {100, 10, side, 0.8 * side});
-    EXPECT_LE(matching.side(), std::max(24.0, 0.2 * side)) << side;
-    EXPECT_GE(matching.blocks(), 30) << side;
-  }
-}
-
 TEST_F(BlockMatchingTest, ACoarserLevelFindsWhatIsTooFarForTheFineOne) {
   BlockMatching coarse;
   coarse.setReference(pyramid(scene_), kRoi, matching_.level() + 1);

@@ -239,7 +239,7 @@ TEST(Doubt, PiecesInOnePlaceDoNotMakeUpForUncertainCorners) {
   e.blocks = {10, 10, 0.3};
   e.blocks.spread = 0.3;
   EXPECT_NE(doubt(e, QualityConfig()).find("corner error"), std::string::npos);
-  e.blocks.spread = 0.6;
+  e.blocks.spread = 0.4;
   EXPECT_EQ(doubt(e, QualityConfig()), "");
   e.blocks.spread = 0.3;
   e.esm.corner_error = 4.5;  // less than an error that is wrong
