@@ -31,6 +31,7 @@ const TrackedFeatures& EdgeFeatureTracker::select(const cv::Mat& image, double s
   }
   curves_ = std::move(curves);
   begin(told_, selection);
+  for (TrackedFeature& told : told_.features) told.sites.reserve(static_cast<std::size_t>(config_.max_sites));
   tell();
   return told_;
 }

@@ -85,6 +85,7 @@ class TrackedCurveOf : public TrackedCurve {
     told.expected_error = result.expected_error;
     tellCurve(result.curve, tracker_.covariance(), told);
     if (told.state != State::kTracking) setUnknown(told.covariance, told.parameters.size());
+    tellSites(tracker_.findings(), told.sites);
   }
 
  private:

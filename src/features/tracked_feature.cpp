@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "laparoscope_servo/features/curve.h"
+
 namespace laparoscope_servo::features {
 
 const char* kindName(FeatureKind kind) {
@@ -25,6 +27,13 @@ const char* kindName(FeatureKind kind) {
 void setUnknown(Eigen::MatrixXd& covariance, Eigen::Index count) {
   covariance.setZero(count, count);
   covariance.diagonal().setConstant(std::numeric_limits<double>::infinity());
+}
+
+void tellSites(const std::vector<SiteFinding>& findings, std::vector<TrackedSite>& sites) {
+  sites.clear();
+  for (const SiteFinding& finding : findings) {
+    if (finding.inside && !finding.probe) sites.push_back({finding.point, finding.weight});
+  }
 }
 
 void summarise(TrackedFeatures& all, std::string_view why_none) {

@@ -48,6 +48,7 @@ const features::TrackedFeatures& ModelFeatureTracker::select(const cv::Mat& imag
     told.parameters.setZero(kParameters);
     told.covariance.setZero(kParameters, kParameters);
     told.outline.reserve(static_cast<std::size_t>(config_.edges.max_sites));
+    told.sites.reserve(static_cast<std::size_t>(config_.edges.max_sites));
   }
   tell();
   return told_;
@@ -94,6 +95,7 @@ void ModelFeatureTracker::tell() {
     const std::vector<features::SiteFinding>& findings = trackers_[k].findings();
     told.outline.clear();
     for (const features::SiteFinding& finding : findings) told.outline.push_back(finding.point);
+    features::tellSites(findings, told.sites);
   }
   if (!trackers_.empty()) features::summarise(told_, "");
 }

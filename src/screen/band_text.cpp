@@ -1,7 +1,9 @@
 #include "screen/band_text.h"
 
 #include <laparoscope_servo/Homography.h>
+#include <laparoscope_servo/TrackedFeatures.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -65,6 +67,25 @@ void explainRecording(BandText& band, const std::string& playback) {
   }
 }
 
+// Of the feature that is known worst.
+std::string expectedError(const FeatureResult& result) {
+  double worst = 0.0;
+  for (const FeatureFact& feature : result.features) worst = std::max(worst, feature.expected_error);
+  if (!(std::isfinite(worst) && worst > 0.0)) return "";
+  char text[64];
+  std::snprintf(text, sizeof text, ", to %.2g px or better", worst);
+  return text;
+}
+
+// The feature that the reason begins with, and a colon; empty when it begins with none.
+std::string concernedId(const FeatureResult& result) {
+  for (const FeatureFact& feature : result.features) {
+    const std::string beginning = feature.id + ": ";
+    if (result.reason.compare(0, beginning.size(), beginning) == 0) return beginning;
+  }
+  return "";
+}
+
 }  // namespace
 
 BandText trackerBand(const Facts& facts, double now) {
@@ -87,6 +108,38 @@ BandText trackerBand(const Facts& facts, double now) {
   if (const std::string beside = besideRecorded(facts); !beside.empty())
     band.cure += (band.cure.empty() ? "" : " ") + beside;
   if (!tracker.view.empty()) band.cure += (band.cure.empty() ? "" : " ") + ("View: " + tracker.view + ".");
+  return band;
+}
+
+BandText featureBand(const Facts& facts, const FeatureTrackerFacts& tracker, double now) {
+  BandText band = absence(facts, "tracker " + tracker.name, tracker.connected, tracker.heard_at, kTrackerSilence, now);
+  if (band.word == "SILENT") {
+    band.sentence = "It has said nothing for " + std::to_string(std::lround(now - tracker.heard_at)) + " s.";
+    band.cure = "Does the camera send? If so, look at the tracker's terminal.";
+  }
+  if (!band.word.empty()) return band;
+  const FeatureResult& result = *tracker.newest;
+  explainTo(band, Speaker::kFeatures, result.reason);
+  band.word = "?";
+  band.level = Level::kBad;
+  const auto seen = std::count_if(result.features.begin(), result.features.end(), [](const FeatureFact& feature) {
+    return feature.state == TrackedFeatures::TRACKING;
+  });
+  const std::string count = std::to_string(seen) + " of " + std::to_string(result.features.size());
+  if (result.state == TrackedFeatures::IDLE) {
+    band.word = "IDLE";
+    band.level = Level::kResting;
+  } else if (result.state == TrackedFeatures::TRACKING) {
+    band.word = "TRACKING " + count;
+    band.level = Level::kGood;
+    band.sentence = "All are seen" + expectedError(result) + ".";
+    band.cure.clear();
+  } else if (result.state == TrackedFeatures::SEARCHING || result.state == TrackedFeatures::LOST) {
+    const bool lost = result.state == TrackedFeatures::LOST;
+    band.word = (lost ? "LOST " : "SEARCHING ") + count;
+    band.level = lost ? Level::kBad : Level::kWaiting;
+    band.sentence = concernedId(result) + band.sentence;
+  }
   return band;
 }
 

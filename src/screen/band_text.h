@@ -1,4 +1,5 @@
-// Texts of the three bands of tracker, controller and robot, from the facts and the table of reasons.
+// Texts of the three bands of tracker, controller and robot, and of the line of each tracker of features, from the
+// facts and the table of reasons.
 #pragma once
 
 #include <string>
@@ -26,5 +27,6 @@ struct BandText {
 BandText trackerBand(const Facts& facts, double now);
 BandText controllerBand(const Facts& facts, double now);
 BandText robotBand(const Facts& facts, double now);
+BandText featureBand(const Facts& facts, const FeatureTrackerFacts& tracker, double now);
 
 }  // namespace laparoscope_servo::screen

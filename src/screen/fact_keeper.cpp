@@ -5,6 +5,7 @@
 #include <cstring>
 #include <limits>
 
+#include "screen/features/feature_result.h"
 #include "screen/preview_image.h"
 
 namespace laparoscope_servo::screen {
@@ -102,6 +103,19 @@ void FactKeeper::match() {
   facts_.result = at(results_, facts_.picture.stamp);
   facts_.areas = at(areas_, facts_.picture.stamp);
   facts_.recorded = at(recorded_, facts_.picture.stamp);
+  features_.match(facts_.picture.stamp);
+}
+
+bool FactKeeper::take(const std::string& tracker, const TrackedFeatures& message, double now) {
+  const std::shared_ptr<const FeatureResult> result = featureResult(message);
+  const std::lock_guard<std::mutex> lock(mutex_);
+  features_.take(tracker, result, now);
+  return result->stamp == facts_.picture.stamp;
+}
+
+void FactKeeper::setFeatureTrackers(const std::vector<std::pair<std::string, bool>>& connected) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  for (const auto& [tracker, is_connected] : connected) features_.setConnected(tracker, is_connected);
 }
 
 void FactKeeper::take(const TrackerState& state, double now) {
@@ -158,7 +172,9 @@ std::vector<MinuteHistory::Step> FactKeeper::minute(double now) const {
 
 Facts FactKeeper::facts() const {
   const std::lock_guard<std::mutex> lock(mutex_);
-  return facts_;
+  Facts facts = facts_;
+  facts.features = features_.facts();
+  return facts;
 }
 
 }  // namespace laparoscope_servo::screen

@@ -5,15 +5,19 @@
 #include <laparoscope_servo/ControllerState.h>
 #include <laparoscope_servo/Homography.h>
 #include <laparoscope_servo/OperatingState.h>
+#include <laparoscope_servo/TrackedFeatures.h>
 #include <laparoscope_servo/TrackerState.h>
 #include <sensor_msgs/Image.h>
 
 #include <deque>
 #include <functional>
 #include <mutex>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "screen/facts.h"
+#include "screen/features/feature_keeper.h"
 #include "screen/minute_history.h"
 
 namespace laparoscope_servo::screen {
@@ -31,6 +35,9 @@ class FactKeeper {
   void take(const ControllerState& state);
   void takeCommand(double now);
   void take(const OperatingState& state, double now);
+  // Returns true if they are of the picture's own image. `tracker`: name of the node.
+  bool take(const std::string& tracker, const TrackedFeatures& features, double now);
+  void setFeatureTrackers(const std::vector<std::pair<std::string, bool>>& connected);
   void take(const Answer& answer);
   void change(const std::function<void(Facts&)>& change);
 
@@ -46,6 +53,7 @@ class FactKeeper {
   std::deque<Result> results_;
   std::deque<Result> recorded_;
   std::deque<Areas> areas_;
+  FeatureKeeper features_;
 };
 
 }  // namespace laparoscope_servo::screen

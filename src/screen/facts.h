@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "screen/features/feature_facts.h"
+
 namespace laparoscope_servo::screen {
 
 constexpr double kNever = -1.0;
@@ -145,6 +147,7 @@ struct Facts {
   std::optional<Frozen> frozen;
   std::shared_ptr<const std::vector<StoredView>> views;          // null: not known
   std::shared_ptr<const std::vector<LiveParameter>> parameters;  // null: not known
+  std::vector<FeatureTrackerFacts> features;                     // by name
   double max_image_age = kNever;  // s, above which the controller stops; negative: not known
 };
 

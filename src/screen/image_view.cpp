@@ -5,6 +5,7 @@
 #include <QPainter>
 #include <algorithm>
 
+#include "screen/features/feature_painter.h"
 #include "screen/overlay_painter.h"
 #include "screen/region_painter.h"
 
@@ -33,6 +34,14 @@ void drawWords(QPainter& painter, const QRectF& area, const QString& words, cons
   painter.drawText(box.adjusted(0, 68, 0, -4), Qt::AlignCenter, detail);
 }
 
+// As far as they are drawn.
+bool sameFeatures(const std::vector<FeatureTrackerFacts>& a, const std::vector<FeatureTrackerFacts>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const FeatureTrackerFacts& x, const FeatureTrackerFacts& y) {
+                      return x.name == y.name && x.drawn == y.drawn;
+                    });
+}
+
 }  // namespace
 
 ImageView::ImageView(const Region& drawn, const Region& changed, QWidget* parent)
@@ -47,6 +56,7 @@ ImageView::ImageView(const Region& drawn, const Region& changed, QWidget* parent
 void ImageView::show(const Facts& facts, double now) {
   const PictureWords words = pictureWords(facts.picture, now, facts.playback.connected ? facts.playback.state : "");
   const bool same =
+      facts.master == facts_.master && sameFeatures(facts.features, facts_.features) &&
       facts.picture.arrived_at == facts_.picture.arrived_at && facts.result.has_value() == facts_.result.has_value() &&
       facts.areas.has_value() == facts_.areas.has_value() &&
       facts.recorded.has_value() == facts_.recorded.has_value() &&
@@ -60,6 +70,11 @@ void ImageView::show(const Facts& facts, double now) {
   words_ = words;
   now_ = now;
   if (!same) update();
+}
+
+void ImageView::drawFeatures(bool draw) {
+  draws_features_ = draw;
+  update();
 }
 
 void ImageView::cancelDrag() {
@@ -149,7 +164,9 @@ void ImageView::paintEvent(QPaintEvent*) {
   } else {
     if (box.isValid()) drawPicture(painter, area);
     if (words_.live) drawOverlay(painter, facts_, box);
+    if (words_.live && draws_features_) screen::drawFeatures(painter, facts_, box);
     if (facts_.master) drawLegend(painter, rect(), facts_.recorded.has_value());
+    if (facts_.master && draws_features_ && !facts_.features.empty()) drawFeatureLegend(painter, rect());
   }
   if (const std::optional<QRect> pixels = shown()) {
     const std::int64_t stamp = facts_.frozen ? facts_.frozen->stamp : 0;

@@ -20,6 +20,8 @@ class ImageView : public QWidget {
   ImageView(const Region& drawn, const Region& changed, QWidget* parent);
 
   void show(const Facts& facts, double now);
+  // Whether the features of other trackers are drawn, with their legend.
+  void drawFeatures(bool draw);
   void cancelDrag();
   // What was drawn stays, to be moved, until Return gives it.
   void keepDrafts() { keeps_drafts_ = true; }
@@ -51,6 +53,7 @@ class ImageView : public QWidget {
   RegionDrag drag_;
   std::optional<QRect> draft_;  // region moved by keys, not sent yet
   bool keeps_drafts_ = false;
+  bool draws_features_ = true;
   QRect asked_;
 };
 

@@ -4,7 +4,6 @@
 #include <laparoscope_servo/PlaybackState.h>
 #include <laparoscope_servo/ScopeVelocity.h>
 #include <laparoscope_servo/SelectTask.h>
-#include <ros/console.h>
 #include <ros/init.h>
 #include <ros/master.h>
 #include <ros/param.h>
@@ -13,12 +12,12 @@
 #include <std_srvs/Trigger.h>
 
 #include <chrono>
-#include <exception>
 #include <limits>
 #include <optional>
 #include <utility>
 
 #include "ros/common/clocks.h"
+#include "screen/listen.h"
 
 namespace laparoscope_servo::screen {
 
@@ -36,19 +35,6 @@ double ageOf(const ros::Time& stamp) {
 
 double delayOf(const ros::Time& stamp) {
   return ros::Time::isSimTime() || stamp.isZero() ? std::numeric_limits<double>::quiet_NaN() : ageOf(stamp);
-}
-
-// Catches exceptions, so that no message can end the screen.
-template <class Message, class Take>
-ros::Subscriber listen(ros::NodeHandle& node, const std::string& topic, std::uint32_t queue, const Take& take) {
-  const auto callback = [take](const boost::shared_ptr<const Message>& message) {
-    try {
-      take(*message);
-    } catch (const std::exception& error) {
-      ROS_WARN_STREAM_THROTTLE(5.0, "a message cannot be shown: " << error.what());
-    }
-  };
-  return node.subscribe<Message>(topic, queue, callback, ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay());
 }
 
 // Velocities at the ends of the sliders; empty if the controller has none.
@@ -155,6 +141,10 @@ std::unique_ptr<RosLink::Connection> RosLink::connect() {
     });
     news_();
   });
+  made->features =
+      std::make_unique<FeatureLink>(node, [this](const std::string& tracker, const TrackedFeatures& message) {
+        if (keeper_.take(tracker, message, steadyNow())) news_();
+      });
   parameters_.connect(node);
   return made;
 }
@@ -172,6 +162,8 @@ void RosLink::look(Connection& connection) {
     facts.dead_man_wanted = dead_man;
     facts.playback.connected = playback;
   });
+  if (connection.turns % kMasterTurns == 0) connection.features->find();
+  keeper_.setFeatureTrackers(connection.features->connected());
   ++connection.turns;
   if (tracker && connection.turns % kViewTurns == 1) tracker_.listViews();
   if (!tracker) keeper_.change([](Facts& facts) { facts.views.reset(), facts.frozen.reset(); });

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "screen/fact_keeper.h"
+#include "screen/features/feature_link.h"
 #include "screen/held_control.h"
 #include "screen/hold_sender.h"
 #include "screen/parameter_link.h"
@@ -67,6 +68,7 @@ class RosLink {
     explicit Connection(const std::string& space) : node(space) {}
     ros::NodeHandle node;
     std::unique_ptr<HoldSender> sender;
+    std::unique_ptr<FeatureLink> features;
     ros::Publisher robot_stop, controller_stop;
     ros::Subscriber preview, homography, recorded, areas, tracker_state, controller_state, command, operating_state,
         playback;

@@ -32,10 +32,11 @@ const char* const kStyle = R"(
   QPushButton#stop { background: #c01818; color: white; border: 3px solid white; font-size: 40px; }
   QPushButton#stop:hover { background: #d02020; }
   QPushButton#stop:pressed { background: #ff3030; }
-  QLabel { color: white; font-size: 14px; }
+  QLabel, QCheckBox { color: white; font-size: 14px; }
+  QScrollArea, QWidget#features { background: #10131a; }
   QTabWidget::pane { border: 1px solid #40464f; }
   QTabBar { font-size: 14px; }
-  QTabBar::tab { background: #242a33; color: #c8d0dc; padding: 3px 11px; }
+  QTabBar::tab { background: #242a33; color: #c8d0dc; padding: 3px 7px; }
   QTabBar::tab:selected { background: #414a58; color: white; }
   QListWidget, QTableWidget, QLineEdit { background: #0c0e12; color: white; font-size: 13px;
                                          border: 1px solid #40464f; gridline-color: #2a3038; }
@@ -139,11 +140,13 @@ QWidget* ScreenWidget::makeTabs() {
   views_ = new ViewsPanel([this](const std::string& name) { link_->tracker().storeView(name); },
                           [this](const std::string& name) { link_->tracker().recallView(name); }, tabs);
   tabs->addTab(views_, "Views");
+  features_ = new FeaturesPanel([this](bool draw) { image_->drawFeatures(draw); }, tabs);
   tabs->addTab(minute_ = new MinutePanel(tabs), "Last minute");
   parameters_ = new ParameterPanel(
       [this](const LiveParameter& parameter, const std::string& text) { link_->parameters().set(parameter, text); },
       tabs);
   tabs->addTab(parameters_, "Parameters");
+  tabs->addTab(features_, "Features");  // the last one, since few have such trackers
   return tabs;
 }
 
@@ -158,6 +161,7 @@ void ScreenWidget::refresh() {
   playback_->show(facts.playback);
   drive_->show(facts);
   views_->show(facts);
+  features_->show(facts, now);
   parameters_->show(facts);
   showMinute(facts, now);
   showAnswer(facts.answer);

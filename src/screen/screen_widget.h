@@ -12,6 +12,7 @@
 
 #include "screen/dead_man_button.h"
 #include "screen/drive_panel.h"
+#include "screen/features/features_panel.h"
 #include "screen/image_view.h"
 #include "screen/minute_panel.h"
 #include "screen/parameter_panel.h"
@@ -53,6 +54,7 @@ class ScreenWidget : public QWidget {
   StateBand* robot_;
   QLabel* answer_;
   ViewsPanel* views_;
+  FeaturesPanel* features_;
   MinutePanel* minute_;
   ParameterPanel* parameters_;
   double minute_shown_at_ = kNever;

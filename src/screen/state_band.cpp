@@ -2,13 +2,16 @@
 
 #include <QPainter>
 
+#include "screen/level_symbol.h"
+
 namespace laparoscope_servo::screen {
 
 namespace {
 
-constexpr int kStripe = 44;    // px, with the symbol
-constexpr int kWordSize = 56;  // px, size of the font; its capitals are 41 px high
-constexpr int kWordTop = 14;   // px, from the top of the band to the word's line
+constexpr int kStripe = 44;       // px, with the symbol
+constexpr double kSymbol = 13.0;  // px, radius
+constexpr int kWordSize = 56;     // px, size of the font; its capitals are 41 px high
+constexpr int kWordTop = 14;      // px, from the top of the band to the word's line
 constexpr int kWordHeight = 56;
 constexpr int kTextSize = 13;  // px of the font
 constexpr int kLine = 16;      // px
@@ -16,52 +19,6 @@ constexpr int kLine = 16;      // px
 const QColor kBackground(0x16, 0x1a, 0x20);
 const QColor kText(0xff, 0xff, 0xff);
 const QColor kQuiet(0xb4, 0xbc, 0xc8);
-
-QColor colourOf(Level level) {
-  switch (level) {
-    case Level::kGood:
-      return {0x2e, 0xb8, 0x5c};
-    case Level::kWaiting:
-      return {0xf2, 0xa9, 0x1e};
-    case Level::kBad:
-      return {0xe5, 0x3a, 0x3a};
-    case Level::kResting:
-      return {0x5b, 0x8d, 0xd6};
-    case Level::kUnknown:
-      break;
-  }
-  return {0x7a, 0x80, 0x8a};
-}
-
-// Each level has its own form, for users who cannot distinguish the colours.
-void drawSymbol(QPainter& painter, Level level, const QPointF& centre) {
-  constexpr double r = 13.0;
-  painter.setPen(QPen(Qt::black, 2));
-  painter.setBrush(Qt::white);
-  switch (level) {
-    case Level::kGood:
-      painter.drawPolygon(
-          QPolygonF({centre + QPointF(-r * 0.8, -r), centre + QPointF(r, 0), centre + QPointF(-r * 0.8, r)}));
-      break;
-    case Level::kWaiting:
-      painter.drawRect(QRectF(centre + QPointF(-r * 0.8, -r), QSizeF(r * 0.6, 2 * r)));
-      painter.drawRect(QRectF(centre + QPointF(r * 0.2, -r), QSizeF(r * 0.6, 2 * r)));
-      break;
-    case Level::kBad:
-      painter.setPen(QPen(Qt::white, 6, Qt::SolidLine, Qt::RoundCap));
-      painter.drawLine(centre + QPointF(-r * 0.7, -r * 0.7), centre + QPointF(r * 0.7, r * 0.7));
-      painter.drawLine(centre + QPointF(-r * 0.7, r * 0.7), centre + QPointF(r * 0.7, -r * 0.7));
-      break;
-    case Level::kResting:
-      painter.drawRect(QRectF(centre + QPointF(-r * 0.85, -r * 0.85), QSizeF(1.7 * r, 1.7 * r)));
-      break;
-    case Level::kUnknown:
-      painter.setBrush(Qt::NoBrush);
-      painter.setPen(QPen(Qt::white, 4));
-      painter.drawEllipse(centre, r * 0.8, r * 0.8);
-      break;
-  }
-}
 
 }  // namespace
 
@@ -88,8 +45,8 @@ void StateBand::paintEvent(QPaintEvent*) {
   QPainter painter(this);
   painter.setRenderHint(QPainter::Antialiasing);
   painter.fillRect(rect(), kBackground);
-  painter.fillRect(QRect(0, 0, kStripe, height()), colourOf(text_.level));
-  drawSymbol(painter, text_.level, QPointF(kStripe / 2.0, kWordTop + kWordHeight / 2.0));
+  painter.fillRect(QRect(0, 0, kStripe, height()), levelColour(text_.level));
+  drawLevelSymbol(painter, text_.level, QPointF(kStripe / 2.0, kWordTop + kWordHeight / 2.0), kSymbol);
   painter.setBrush(Qt::NoBrush);
   painter.setPen(QPen(QColor(0x40, 0x46, 0x50), 1));
   painter.drawRect(rect().adjusted(0, 0, -1, -1));

@@ -10,6 +10,8 @@
 
 namespace laparoscope_servo::features {
 
+struct SiteFinding;
+
 // What the parameters of a feature are. Pixels: the centre of the first one is (0, 0), x to the right, y down.
 enum class FeatureKind {
   kPoint = 0,    // x, y: px
@@ -23,6 +25,12 @@ enum class FeatureKind {
 // "point", "line", ..., as people write it.
 const char* kindName(FeatureKind kind);
 
+// A place of a feature at which an edge was searched.
+struct TrackedSite {
+  Eigen::Vector2d point = Eigen::Vector2d::Zero();  // px
+  double weight = 0.0;                              // 0 (no edge, or astray) to 1: how far the fit believed it
+};
+
 struct TrackedFeature {
   std::string id;  // within its tracker, as it was selected
   FeatureKind kind = FeatureKind::kPoint;
@@ -35,6 +43,8 @@ struct TrackedFeature {
   double share = 0.0;                    // of its sites, or pixels, in the image that agree with it: 0 to 1
   double expected_error = 0.0;           // px, standard deviation at its worst place; infinite unless TRACKING
   std::vector<Eigen::Vector2d> outline;  // px, to be drawn point by point; one point: a centre. Empty: nothing to draw
+  double radius = 0.0;                   // m, of a POSE that is a cylinder about its z axis; 0: it is none
+  std::vector<TrackedSite> sites;        // of the last image; empty where no edges are searched
 };
 
 // All features of a tracker, in the order of their selection.
@@ -48,6 +58,9 @@ struct TrackedFeatures {
 
 // The covariance of `count` parameters of which nothing is known.
 void setUnknown(Eigen::MatrixXd& covariance, Eigen::Index count);
+
+// Of a fit to edges, those in the image that have a say; not those beyond the curve's end.
+void tellSites(const std::vector<SiteFinding>& findings, std::vector<TrackedSite>& sites);
 
 // Sets state and reason of all by those of each, or `why_none` when there is no feature.
 void summarise(TrackedFeatures& features, std::string_view why_none);

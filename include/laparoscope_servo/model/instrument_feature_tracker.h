@@ -36,6 +36,7 @@ class InstrumentFeatureTracker : public features::FeatureTracker {
   void addPose(const Instrument& instrument);
 
   InstrumentTracker tracker_;
+  double radius_;  // m
   features::TrackedFeatures told_;
 };
 

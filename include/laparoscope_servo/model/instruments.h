@@ -16,6 +16,7 @@
 
 #include "laparoscope_servo/features/edge_config.h"
 #include "laparoscope_servo/features/feature_state.h"
+#include "laparoscope_servo/features/tracked_feature.h"
 #include "laparoscope_servo/geometry/camera.h"
 #include "laparoscope_servo/model/cylinder_pose.h"
 
@@ -47,6 +48,7 @@ struct InstrumentEdge {
   Eigen::Vector2d begin = Eigen::Vector2d::Zero();       // px, where it is seen to begin, at the entry
   Eigen::Vector2d end = Eigen::Vector2d::Zero();         // px, towards the tip
   double expected_error = 0.0;                           // px, standard deviation along the normal, at its worst point
+  std::vector<features::TrackedSite> sites;              // of the fit to the image's edges; empty unless fine
 };
 
 struct Instrument {

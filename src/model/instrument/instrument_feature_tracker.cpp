@@ -19,7 +19,8 @@ constexpr char kNone[] = "no instrument is seen";
 
 }  // namespace
 
-InstrumentFeatureTracker::InstrumentFeatureTracker(const InstrumentConfig& config) : tracker_(config) {
+InstrumentFeatureTracker::InstrumentFeatureTracker(const InstrumentConfig& config)
+    : tracker_(config), radius_(config.radius) {
   features::summarise(told_, kNone);
 }
 
@@ -73,6 +74,7 @@ void InstrumentFeatureTracker::addEdge(const Instrument& instrument, std::size_t
   features::setUnknown(told.covariance, 2);
   told.share = edge.fine ? 1.0 : 0.0;
   told.outline = {edge.begin, edge.end};
+  told.sites = edge.sites;
   if (told.state != State::kTracking) return;
   told.covariance = edge.covariance;
   told.expected_error = edge.expected_error;
@@ -100,6 +102,7 @@ void InstrumentFeatureTracker::addPose(const Instrument& instrument) {
   told.parameters << pose.point, turn.angle() * turn.axis();
   features::setUnknown(told.covariance, 6);
   told.outline = {instrument.entry, instrument.tip};
+  told.radius = radius_;
   if (told.state != State::kTracking) return;
   told.covariance = pose.covariance;
   told.share = 1.0;

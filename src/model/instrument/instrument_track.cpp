@@ -197,7 +197,9 @@ void InstrumentTrack::tell(const GreyMap& map, const std::optional<geometry::Pin
     edge.theta = std::atan2(line.normal.y(), line.normal.x());
     edge.rho = line.normal.dot(toPixel(map, line.point));
     edge.expected_error = edgeError(map, k);
+    edge.sites.clear();
     if (edge.fine) {
+      features::tellSites(edges_[k].findings(), edge.sites);
       edge.covariance = edges_[k].result().curve.covariance(edges_[k].covariance());
     } else {
       // Of the middle across the line, and of its direction by both ends; rho is at the origin's foot.

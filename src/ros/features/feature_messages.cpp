@@ -42,6 +42,7 @@ TrackedFeature featureMessage(const features::TrackedFeature& feature) {
   message.desired = numbers(feature.desired);
   message.share = feature.share;
   message.expected_error = feature.expected_error;
+  message.radius = feature.radius;
   message.outline.reserve(2 * feature.outline.size());
   for (const Eigen::Vector2d& point : feature.outline) {
     message.outline.push_back(point.x());

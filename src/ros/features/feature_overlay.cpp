@@ -4,6 +4,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "laparoscope_servo/motion/motion_model.h"
@@ -18,8 +19,12 @@ using features::State;
 const cv::Scalar kRed(0, 0, 255);
 const cv::Scalar kYellow(0, 255, 255);
 constexpr double kMagnified = 5.0;  // arrows of a field of motion, from image to image
-constexpr int kShift = 4;           // OpenCV draws in 1/16 px
-constexpr double kFarAway = 1e5;    // px: further points are not drawn, since fixed-point coordinates would overflow
+const cv::Scalar kGreen(80, 255, 80);
+const cv::Scalar kWhite(255, 255, 255);
+const cv::Scalar kBlack(0, 0, 0);
+constexpr double kSiteSpacing = 9.0;  // px between sites that are drawn, for lines of 2 px: their largest dots just fit
+constexpr int kShift = 4;             // OpenCV draws in 1/16 px
+constexpr double kFarAway = 1e5;      // px: further points are not drawn, since fixed-point coordinates would overflow
 
 // Empty if a point cannot be drawn.
 std::vector<cv::Point> drawable(const std::vector<Eigen::Vector2d>& outline) {
@@ -54,6 +59,31 @@ void drawField(cv::Mat& canvas, const features::TrackedFeature& feature, int thi
   }
 }
 
+// A dot, larger the more the fit believed the site, a cross where it did not. Of sites closer together than can be seen
+// one is drawn.
+void drawSites(cv::Mat& canvas, const std::vector<features::TrackedSite>& sites, int thickness) {
+  const double unit = 0.5 * thickness;
+  const features::TrackedSite* last = nullptr;
+  for (const features::TrackedSite& site : sites) {
+    if (last != nullptr && (site.point - last->point).norm() < kSiteSpacing * unit) continue;
+    const std::vector<cv::Point> at = drawable({site.point});
+    if (at.empty()) continue;
+    last = &site;
+    const auto length = [unit](double px) { return static_cast<int>(std::lround(px * unit * (1 << kShift))); };
+    if (site.weight > 0.0) {
+      const int radius = length(1.2 + 2.3 * std::min(site.weight, 1.0));
+      cv::circle(canvas, at[0], radius + length(1.0), kBlack, cv::FILLED, cv::LINE_AA, kShift);
+      cv::circle(canvas, at[0], radius, kGreen, cv::FILLED, cv::LINE_AA, kShift);
+      continue;
+    }
+    const cv::Point arm(length(3.0), length(3.0)), other(arm.x, -arm.y);
+    for (const auto& [colour, width] : {std::pair(kBlack, thickness + 1), {kWhite, std::max(1, thickness / 2)}}) {
+      cv::line(canvas, at[0] - arm, at[0] + arm, colour, width, cv::LINE_AA, kShift);
+      cv::line(canvas, at[0] - other, at[0] + other, colour, width, cv::LINE_AA, kShift);
+    }
+  }
+}
+
 void drawFeature(cv::Mat& canvas, const features::TrackedFeature& feature, int thickness) {
   const std::vector<cv::Point> points = drawable(feature.outline);
   if (points.empty()) return;
@@ -65,6 +95,7 @@ void drawFeature(cv::Mat& canvas, const features::TrackedFeature& feature, int t
   } else {
     cv::polylines(canvas, points, false, colour, line, cv::LINE_AA, kShift);
   }
+  drawSites(canvas, feature.sites, thickness);
   // At its end, or where it is furthest to the right, where the text hides least of it.
   const cv::Point at =
       *std::max_element(points.begin(), points.end(), [](const cv::Point& a, const cv::Point& b) { return a.x < b.x; });

@@ -8,6 +8,7 @@
 namespace laparoscope_servo {
 
 const std::vector<ReasonRow>& trackerReasons();
+const std::vector<ReasonRow>& featureReasons();
 const std::vector<ReasonRow>& controllerReasons();
 const std::vector<ReasonRow>& robotReasons();
 

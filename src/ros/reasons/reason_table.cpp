@@ -27,6 +27,8 @@ const std::vector<ReasonRow>& reasonRows(Speaker speaker) {
   switch (speaker) {
     case Speaker::kTracker:
       return trackerReasons();
+    case Speaker::kFeatures:
+      return featureReasons();
     case Speaker::kController:
       return controllerReasons();
     case Speaker::kRobot:
@@ -59,6 +61,8 @@ const ReasonRow* explain(Speaker speaker, const std::string& reason) {
 std::string reasonPage() {
   std::string page;
   addTable("Of the tracker", Speaker::kTracker, page);
+  page += "\n";
+  addTable("Of the trackers of features", Speaker::kFeatures, page);
   page += "\n";
   addTable("Of the controller", Speaker::kController, page);
   page += "\n";

@@ -18,6 +18,7 @@
 #include "screen/overlay_painter.h"
 #include "screen/picture_words.h"
 #include "screen/space/region_texture.h"
+#include "screen/space/space_instruments.h"
 
 namespace laparoscope_servo::screen {
 
@@ -28,11 +29,6 @@ constexpr double kAskPeriod = 2.0;  // s between two looks for the controller's 
 constexpr double kDegrees = 180.0 / 3.14159265358979323846;
 const QColor kBoundFrame(0xff, 0xa0, 0x30);
 const QColor kPointFrame(0xff, 0xc0, 0x20);
-
-Ogre::ColourValue ogreColour(const QColor& colour) {
-  return Ogre::ColourValue(static_cast<float>(colour.redF()), static_cast<float>(colour.greenF()),
-                           static_cast<float>(colour.blueF()), 1.0F);
-}
 
 QString millimetres(double metres) {
   return QString::number(1e3 * metres, 'f', 0) + " mm";
@@ -59,11 +55,15 @@ struct SpaceDisplay::Scene {
         point_label(point_node, kPointFrame),
         least_label(point_node, kBoundFrame),
         greatest_label(point_node, kBoundFrame, Ogre::BBO_TOP_CENTER),
-        cone_label(point_node, kBoundFrame) {}
-  std::array<Label*, 6> labels() {
-    return {&region_label, &camera_label, &point_label, &least_label, &greatest_label, &cone_label};
+        cone_label(point_node, kBoundFrame),
+        instruments(camera_node) {}
+  std::vector<Label*> labels() {
+    std::vector<Label*> all = instruments.labels();
+    all.insert(all.end(), {&region_label, &camera_label, &point_label, &least_label, &greatest_label, &cone_label});
+    return all;
   }
 
+  bool camera_known = false;
   Ogre::SceneNode& camera_node;
   Ogre::SceneNode& point_node;
   PaintedQuad region;
@@ -71,6 +71,7 @@ struct SpaceDisplay::Scene {
   LineSet bounds;
   rviz::Shape point;  // two standard deviations
   Label region_label, camera_label, point_label, least_label, greatest_label, cone_label;
+  SpaceInstruments instruments;
 };
 
 SpaceDisplay::SpaceDisplay() {
@@ -138,8 +139,11 @@ void SpaceDisplay::update(float, float) {
   if (now - asked_at_ > kAskPeriod) {
     asked_at_ = now;
     link_->askForBounds();
+    link_->findFeatures();
   }
-  showRegion(link_->facts(now), now);
+  const Facts facts = link_->facts(now);
+  showRegion(facts, now);
+  showInstruments(facts, now);
   showPoint();
   scaleLabels();
 }
@@ -148,7 +152,8 @@ void SpaceDisplay::showRegion(const Facts& facts, double now) {
   const auto info = link_->cameraInfo();
   const auto bounds = link_->bounds();
   scene_->target.show({});
-  if (!follow(info ? info->header.frame_id : "", scene_->camera_node)) return;
+  scene_->camera_known = follow(info ? info->header.frame_id : "", scene_->camera_node);
+  if (!scene_->camera_known) return;
   scene_->region.hide();
   const PictureWords words = pictureWords(facts.picture, now);
   scene_->region_label.show("", {});
@@ -168,6 +173,13 @@ void SpaceDisplay::showRegion(const Facts& facts, double now) {
   // Beside its right edge, a tenth of its width away.
   const Eigen::Vector3d right = ((*corners)[1] + (*corners)[2]) / 2.0, left = ((*corners)[0] + (*corners)[3]) / 2.0;
   scene_->region_label.show(text, right + 0.1 * (right - left));
+}
+
+// After showRegion, which has taken the node to the camera.
+void SpaceDisplay::showInstruments(const Facts& facts, double now) {
+  const auto info = link_->cameraInfo();
+  if (!info || !scene_->camera_known) return scene_->instruments.hide();
+  scene_->instruments.show(facts.features, info->header.frame_id, geometry::cameraFromRowMajor(info->K.data()), now);
 }
 
 void SpaceDisplay::showPoint() {

@@ -1,5 +1,5 @@
-// Display of rviz, laparoscope_servo/Space: the region with its picture where it is believed to be, the insertion point
-// and how well it is known, how far the controller lets the scope go; with labels that nothing hides.
+// Display of rviz, laparoscope_servo/Space: the region with its picture where it is believed to be, instruments, the
+// insertion point and how well it is known, how far the controller lets the scope go; with labels that nothing hides.
 #pragma once
 
 #include <rviz/display.h>
@@ -34,6 +34,7 @@ class SpaceDisplay : public rviz::Display {
   std::string frame(const std::string& name) const;
   bool follow(const std::string& frame, Ogre::SceneNode& node);
   void showRegion(const Facts& facts, double now);
+  void showInstruments(const Facts& facts, double now);
   void showPoint();
   void showBounds(const ScopeBounds& bounds);
   void scaleLabels();

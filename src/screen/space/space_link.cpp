@@ -24,7 +24,11 @@ std::optional<ControllerBounds> boundsOf(const ros::NodeHandle& node) {
 
 }  // namespace
 
-SpaceLink::SpaceLink(const ros::NodeHandle& node, const std::string& camera_info) : node_(node) {
+SpaceLink::SpaceLink(const ros::NodeHandle& node, const std::string& camera_info)
+    : node_(node),
+      features_(std::make_shared<FeatureLink>(node, [this](const std::string& tracker, const TrackedFeatures& message) {
+        keeper_.take(tracker, message, steadyNow());
+      })) {
   const auto hints = ros::TransportHints().tcpNoDelay();  // as the panel's, with which it shares the connections
   const auto locked = [this](auto& kept, const auto& message) {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -83,6 +87,13 @@ CalibrationStateConstPtr SpaceLink::calibration() const {
 std::optional<ControllerBounds> SpaceLink::bounds() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   return bounds_;
+}
+
+void SpaceLink::findFeatures() {
+  feature_calls_.ask([features = features_]() -> std::function<void()> {
+    features->find();
+    return nullptr;
+  });
 }
 
 void SpaceLink::askForBounds() {

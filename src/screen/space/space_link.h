@@ -6,11 +6,13 @@
 #include <sensor_msgs/CameraInfo.h>
 #include <sensor_msgs/Image.h>
 
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 
 #include "screen/fact_keeper.h"
+#include "screen/features/feature_link.h"
 #include "screen/newest_call.h"
 #include "screen/space/space_shapes.h"
 
@@ -27,6 +29,9 @@ class SpaceLink {
  public:
   // `node`: of the cart's namespace; its callback queue is called by another thread.
   SpaceLink(const ros::NodeHandle& node, const std::string& camera_info);
+  ~SpaceLink() { features_->close(); }
+  SpaceLink(const SpaceLink&) = delete;
+  SpaceLink& operator=(const SpaceLink&) = delete;
 
   // With the newest picture; to be called when something is drawn, for only then a picture is converted.
   Facts facts(double now);
@@ -36,6 +41,8 @@ class SpaceLink {
   std::optional<ControllerBounds> bounds() const;
   // Asks for them, in a thread of its own.
   void askForBounds();
+  // Looks for trackers of features that are new, in a thread of its own.
+  void findFeatures();
 
  private:
   ros::NodeHandle node_;
@@ -47,6 +54,8 @@ class SpaceLink {
   CalibrationStateConstPtr calibration_;
   std::optional<ControllerBounds> bounds_;
   NewestCall calls_;
+  std::shared_ptr<FeatureLink> features_;  // shared with the thread that looks for new ones
+  NewestCall feature_calls_;
   // Last, for what they call has to be there.
   ros::Subscriber preview_subscriber_, homography_subscriber_, areas_subscriber_, state_subscriber_;
   ros::Subscriber camera_info_subscriber_, calibration_subscriber_;

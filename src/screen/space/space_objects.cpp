@@ -39,6 +39,11 @@ Ogre::Vector3 ogrePoint(const Eigen::Vector3d& point) {
   return {static_cast<Ogre::Real>(point.x()), static_cast<Ogre::Real>(point.y()), static_cast<Ogre::Real>(point.z())};
 }
 
+Ogre::ColourValue ogreColour(const QColor& colour) {
+  return Ogre::ColourValue(static_cast<float>(colour.redF()), static_cast<float>(colour.greenF()),
+                           static_cast<float>(colour.blueF()), 1.0F);
+}
+
 PaintedMaterial::PaintedMaterial(bool on_top) : name_(freshName()), material_(flatMaterial(name_)) {
   material_->setDepthWriteEnabled(!on_top);
   material_->setDepthCheckEnabled(!on_top);

@@ -9,6 +9,7 @@
 #include <OgreSceneNode.h>
 #include <OgreTexture.h>
 
+#include <QColor>
 #include <QImage>
 #include <string>
 
@@ -83,5 +84,6 @@ class Label {
 };
 
 Ogre::Vector3 ogrePoint(const Eigen::Vector3d& point);
+Ogre::ColourValue ogreColour(const QColor& colour);
 
 }  // namespace laparoscope_servo::screen

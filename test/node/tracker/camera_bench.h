@@ -26,6 +26,7 @@
 #include <thread>
 
 #include "laparoscope_servo/geometry/homography.h"
+#include "support/ros_tests.h"
 #include "support/synthetic_sequence.h"
 
 namespace laparoscope_servo::test_support {
@@ -207,17 +208,5 @@ class DiagnosticsListener {
   diagnostic_msgs::DiagnosticStatus last_;
   ros::Subscriber subscriber_;
 };
-
-// The body of main(): tests wait for messages that other threads take in.
-inline int runTests(int argc, char** argv, const std::string& node) {
-  testing::InitGoogleTest(&argc, argv);
-  ros::init(argc, argv, node);
-  const ros::NodeHandle keep_alive;
-  ros::AsyncSpinner spinner(2);
-  spinner.start();
-  const int result = RUN_ALL_TESTS();
-  ros::shutdown();
-  return result;
-}
 
 }  // namespace laparoscope_servo::test_support

@@ -13,6 +13,7 @@
 
 #include "ros/common/clocks.h"
 #include "screen/screen_widget.h"
+#include "support/ros_tests.h"
 #include "system/screen/virtual_display.h"
 
 namespace laparoscope_servo::test_support {
@@ -77,16 +78,9 @@ class ScreenFixture : public testing::Test {
 
 // The body of main().
 inline int runScreenTests(int argc, char** argv, const std::string& node) {
-  testing::InitGoogleTest(&argc, argv);
-  ros::init(argc, argv, node);
   const VirtualDisplay display;
   QApplication application(argc, argv);
-  const ros::NodeHandle keep_alive;
-  ros::AsyncSpinner spinner(4);
-  spinner.start();
-  const int result = RUN_ALL_TESTS();
-  ros::shutdown();
-  return result;
+  return runTests(argc, argv, node, 4);
 }
 
 }  // namespace laparoscope_servo::test_support

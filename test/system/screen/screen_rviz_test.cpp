@@ -3,24 +3,18 @@
 #include <ros/ros.h>
 
 #include <algorithm>
-#include <csignal>
-#include <fstream>
-#include <iostream>
-#include <memory>
 #include <sstream>
 
-#include "node/sim/node_bench.h"
+#include "support/ros_tests.h"
 #include "system/screen/display_text.h"
 #include "system/screen/fake_nodes.h"
+#include "system/screen/rviz_process.h"
 #include "system/screen/virtual_display.h"
 
 namespace laparoscope_servo {
 namespace {
 
-using test::ChildProcess;
 using test_support::hands;
-
-constexpr double kPatience = 90.0;  // s: rviz starts for half a minute on a busy machine
 
 const char* const kConfiguration = R"(Panels:
   - {Class: laparoscope_servo/Laparoscope, Name: Cart of the left, Namespace: left}
@@ -39,29 +33,6 @@ Window Geometry: {Width: 2400, Height: 960, X: 0, Y: 0}
 
 class ScreenRviz : public testing::Test {
  protected:
-  ScreenRviz() : display_("2400x1000") {
-    std::ofstream(folder_.file("two.rviz")) << kConfiguration;
-    start();
-  }
-  void start() {
-    rviz_ = std::make_unique<ChildProcess>(
-        "/bin/sh", std::vector<std::string>{"-c", "LIBGL_ALWAYS_SOFTWARE=1 exec rviz -d " + folder_.file("two.rviz")},
-        folder_.file("log"));
-  }
-  // Mesa may end rviz at its start: then once more.
-  bool connects() {
-    for (int tries = 0; tries < 2; ++tries) {
-      if (waitFor([this] { return (left_.connected() && right_.connected()) || !rviz_->isRunning(); }) &&
-          rviz_->isRunning())
-        return true;
-      if (rviz_->isRunning()) return false;
-      std::cout << "rviz ended at its start, and is started once more:\n" << test::contents(folder_.file("log"));
-      start();
-    }
-    return false;
-  }
-  static bool waitFor(const std::function<bool()>& condition) { return test::spinUntil(condition, kPatience); }
-
   // Middles of a word on the display, from the left to the right.
   static std::vector<QPoint> placesOf(const std::string& word) {
     std::istringstream rows(test_support::wordsOnDisplay());
@@ -80,14 +51,17 @@ class ScreenRviz : public testing::Test {
   }
   std::vector<QPoint> bothPlacesOf(const std::string& word) {
     std::vector<QPoint> places;
-    waitFor([&] { return (places = placesOf(word)).size() == 2; });
+    test_support::RvizProcess::waitFor([&] { return (places = placesOf(word)).size() == 2; });
     return places;
   }
 
-  test_support::VirtualDisplay display_;
-  test_support::TemporaryFolder folder_;
+  bool connects() {
+    return rviz_.comesUp([this] { return left_.connected() && right_.connected(); });
+  }
+
+  test_support::VirtualDisplay display_{"2400x1000"};
   test_support::FakeNodes left_{"left"}, right_{"right"};
-  std::unique_ptr<ChildProcess> rviz_;
+  test_support::RvizProcess rviz_{kConfiguration};
 };
 
 TEST_F(ScreenRviz, EachPanelShowsAndStopsItsOwnCart) {
@@ -99,13 +73,15 @@ TEST_F(ScreenRviz, EachPanelShowsAndStopsItsOwnCart) {
     robot.state = "FAULT";
     robot.reason = "overcurrent";
   });
-  ASSERT_TRUE(connects()) << test::contents(folder_.file("log"));
+  ASSERT_TRUE(connects()) << rviz_.log();
   const std::string read = test_support::readUntil({"Cart of the left", "Cart of the right", "/left", "/right"});
   EXPECT_EQ(test_support::notRead(read, {"Cart of the left", "Cart of the right", "/left", "/right"}), "") << read;
   // The states, in the half of the display where their panel is.
   std::vector<QPoint> servo, fault;
-  EXPECT_TRUE(waitFor([&] { return (servo = placesOf("SERVO")).size() == 1; })) << test_support::textOnDisplay();
-  EXPECT_TRUE(waitFor([&] { return (fault = placesOf("FAULT")).size() == 1; })) << test_support::textOnDisplay();
+  EXPECT_TRUE(test_support::RvizProcess::waitFor([&] { return (servo = placesOf("SERVO")).size() == 1; }))
+      << test_support::textOnDisplay();
+  EXPECT_TRUE(test_support::RvizProcess::waitFor([&] { return (fault = placesOf("FAULT")).size() == 1; }))
+      << test_support::textOnDisplay();
   const std::vector<QPoint> stop = bothPlacesOf("STOP");
   ASSERT_EQ(stop.size(), 2u) << test_support::textOnDisplay();
   ASSERT_TRUE(!servo.empty() && !fault.empty());
@@ -116,35 +92,28 @@ TEST_F(ScreenRviz, EachPanelShowsAndStopsItsOwnCart) {
     hands("mousemove " + std::to_string(at.x()) + " " + std::to_string(at.y()) + " click 1");
   };
   press(stop[0]);
-  EXPECT_TRUE(waitFor([&] { return left_.robot_stops == 1 && left_.controller_stops == 1 && left_.disables == 1; }));
+  EXPECT_TRUE(test_support::RvizProcess::waitFor(
+      [&] { return left_.robot_stops == 1 && left_.controller_stops == 1 && left_.disables == 1; }));
   press(stop[1]);
-  EXPECT_TRUE(waitFor([&] { return right_.robot_stops == 1 && right_.controller_stops == 1 && right_.disables == 1; }));
+  EXPECT_TRUE(test_support::RvizProcess::waitFor(
+      [&] { return right_.robot_stops == 1 && right_.controller_stops == 1 && right_.disables == 1; }));
   EXPECT_EQ(left_.robot_stops, 1);
   EXPECT_EQ(left_.disables, 1);
   // A key has no place, and stops both.
   hands("key Escape");
-  EXPECT_TRUE(waitFor([&] { return left_.robot_stops == 2 && right_.robot_stops == 2; }));
+  EXPECT_TRUE(test_support::RvizProcess::waitFor([&] { return left_.robot_stops == 2 && right_.robot_stops == 2; }));
   const std::vector<QPoint> enable = bothPlacesOf("Enable");
   ASSERT_EQ(enable.size(), 2u) << test_support::textOnDisplay();
   press(enable[1]);
-  EXPECT_TRUE(waitFor([&] { return right_.enables == 1; }));
+  EXPECT_TRUE(test_support::RvizProcess::waitFor([&] { return right_.enables == 1; }));
   EXPECT_EQ(left_.enables, 0);
 
-  rviz_->kill(SIGINT);
-  EXPECT_TRUE(waitFor([&] { return !rviz_->isRunning(); }));
-  EXPECT_EQ(rviz_->exitStatus(1.0), 0) << "it ends in order: " << test::contents(folder_.file("log"));
+  EXPECT_TRUE(rviz_.ends()) << rviz_.log();
 }
 
 }  // namespace
 }  // namespace laparoscope_servo
 
 int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  ros::init(argc, argv, "screen_rviz_test");
-  const ros::NodeHandle keep_alive;
-  ros::AsyncSpinner spinner(4);
-  spinner.start();
-  const int result = RUN_ALL_TESTS();
-  ros::shutdown();
-  return result;
+  return laparoscope_servo::test_support::runTests(argc, argv, "screen_rviz_test", 4);
 }

@@ -1,6 +1,9 @@
 #include "screen/band_text.h"
 
 #include <gtest/gtest.h>
+#include <laparoscope_servo/TrackedFeatures.h>
+
+#include <memory>
 
 namespace laparoscope_servo::screen {
 namespace {
@@ -64,6 +67,58 @@ TEST(BandText, EachStateHasItsWordReasonAndCure) {
   all.robot.reason = "fault: joint limit";
   EXPECT_EQ(robotBand(all, kNow).level, Level::kBad);
   EXPECT_EQ(robotBand(all, kNow).sentence, "The arm's controller has a fault.");
+}
+
+// Of a line of the trackers of features, whose features are `states`.
+BandText lineOf(std::uint8_t state, const std::string& reason, const std::vector<int>& states) {
+  auto result = std::make_shared<FeatureResult>();
+  result->state = state;
+  result->reason = reason;
+  for (const int each : states) {
+    FeatureFact& feature = result->features.emplace_back();
+    feature.id = "shaft " + std::to_string(result->features.size());
+    feature.state = each;
+    feature.expected_error = 0.25;
+  }
+  FeatureTrackerFacts tracker{"edges", true, kNow - 0.1, result, nullptr};
+  return featureBand(facts(), tracker, kNow);
+}
+
+TEST(BandText, ATrackerOfFeaturesHasALineOfWords) {
+  const int tracking = TrackedFeatures::TRACKING, lost = TrackedFeatures::LOST;
+  const BandText good = lineOf(TrackedFeatures::TRACKING, "", {tracking, tracking});
+  EXPECT_EQ(good.word, "TRACKING 2 of 2");
+  EXPECT_EQ(good.sentence, "All are seen, to 0.25 px or better.");
+  EXPECT_EQ(good.cure, "");
+  EXPECT_EQ(good.level, Level::kGood);
+  const BandText bad = lineOf(TrackedFeatures::LOST, "shaft 2: outside the image", {tracking, lost});
+  EXPECT_EQ(bad.word, "LOST 1 of 2");
+  EXPECT_EQ(bad.sentence, "shaft 2: It has left the picture.");
+  EXPECT_EQ(bad.cure, "Move the scope back.");
+  EXPECT_EQ(bad.detail, "shaft 2: outside the image");
+  EXPECT_EQ(bad.level, Level::kBad);
+  EXPECT_EQ(lineOf(TrackedFeatures::SEARCHING, "shaft 1: outside the image", {TrackedFeatures::SEARCHING}).level,
+            Level::kWaiting);
+  const BandText idle = lineOf(TrackedFeatures::IDLE, "no instrument is seen", {});
+  EXPECT_EQ(idle.word, "IDLE");
+  EXPECT_EQ(idle.sentence, "No instrument is seen.");
+  EXPECT_EQ(idle.level, Level::kResting);
+  EXPECT_EQ(lineOf(77, "", {}).level, Level::kBad) << "a state that is none";
+}
+
+TEST(BandText, ATrackerOfFeaturesThatSaysNothingIsSaid) {
+  FeatureTrackerFacts tracker;
+  tracker.name = "edges";
+  tracker.connected = true;
+  EXPECT_EQ(featureBand(facts(), tracker, kNow).word, "WAITING");
+  tracker.newest = std::make_shared<FeatureResult>();
+  tracker.heard_at = kNow - 7.0;
+  EXPECT_EQ(featureBand(facts(), tracker, kNow).word, "SILENT");
+  EXPECT_EQ(featureBand(facts(), tracker, kNow).sentence, "It has said nothing for 7 s.");
+  tracker.connected = false;
+  EXPECT_EQ(featureBand(facts(), tracker, kNow).word, "GONE");
+  EXPECT_NE(featureBand(facts(), tracker, kNow).sentence.find("edges"), std::string::npos);
+  EXPECT_EQ(featureBand({}, tracker, kNow).word, "NO MASTER");
 }
 
 TEST(BandText, ARecordingThatStandsIsNoCameraThatFails) {

@@ -57,6 +57,24 @@ TEST(FactKeeper, AResultMayComeLaterThanItsPicture) {
   EXPECT_EQ(keeper.facts().result->corners[0], 10.1);
 }
 
+TEST(FactKeeper, TellsWhetherFeaturesAreOfThePictureThatIsShown) {
+  FactKeeper keeper;
+  keeper.take(preview(10.1, 7), 0.0, 1.0);
+  TrackedFeatures message;
+  message.header.stamp = ros::Time(10.0);
+  EXPECT_FALSE(keeper.take("edges", message, 2.0));
+  message.header.stamp = ros::Time(10.1);
+  EXPECT_TRUE(keeper.take("edges", message, 2.0));
+  message.header.stamp = ros::Time(10.2);
+  EXPECT_FALSE(keeper.take("edges", message, 2.0));
+  keeper.setFeatureTrackers({{"edges", true}});
+  ASSERT_EQ(keeper.facts().features.size(), 1u);
+  EXPECT_TRUE(keeper.facts().features[0].connected);
+  EXPECT_EQ(keeper.facts().features[0].drawn->stamp, 10100000000);
+  keeper.take(preview(10.2, 8), 0.0, 1.0);
+  EXPECT_EQ(keeper.facts().features[0].drawn->stamp, 10200000000) << "it came before its picture";
+}
+
 TEST(FactKeeper, WhatWasRecordedStandsBesideWhatIsComputedNow) {
   FactKeeper keeper;
   keeper.take(homography(10.1), 0.01, 1.0);

@@ -91,6 +91,60 @@ TEST_F(ImageViewTest, DrawsTheRegionWhereItIsAndWhereItShallBe) {
   }
 }
 
+// What the widget asks for after a change, without being told to draw.
+TEST_F(ImageViewTest, RepaintsForEachThingThatIsDrawn) {
+  class Watch : public QObject {
+   public:
+    bool eventFilter(QObject*, QEvent* event) override {
+      paints += event->type() == QEvent::Paint ? 1 : 0;
+      return false;
+    }
+    int paints = 0;
+  } watch;
+  view_.resize(1280, 720);
+  view_.QWidget::show();
+  view_.installEventFilter(&watch);
+  const auto paintsFor = [&](const Facts& facts) {
+    QApplication::processEvents();
+    watch.paints = 0;
+    view_.show(facts, kNow);
+    QApplication::processEvents();
+    return watch.paints;
+  };
+  Facts facts = tracked();
+  paintsFor(facts);
+  EXPECT_EQ(paintsFor(facts), 0) << "nothing has changed";
+  facts.master = false;
+  EXPECT_EQ(paintsFor(facts), 1) << "the legend";
+  facts.features.resize(1);
+  EXPECT_EQ(paintsFor(facts), 1) << "a tracker of features";
+  facts.features[0].drawn = std::make_shared<FeatureResult>();
+  EXPECT_EQ(paintsFor(facts), 1) << "its result";
+  facts.features[0].heard_at = 7.0;
+  EXPECT_EQ(paintsFor(facts), 0) << "is not drawn";
+}
+
+TEST_F(ImageViewTest, FeaturesAreDrawnUntilTheyAreSwitchedOff) {
+  view_.resize(1280, 720);
+  Facts facts = tracked();
+  const QImage without = drawn(facts);
+  auto result = std::make_shared<FeatureResult>();
+  FeatureFact line;
+  line.kind = 1;   // LINE
+  line.state = 1;  // TRACKING
+  line.outline << QPointF(100, 600) << QPointF(900, 600);
+  result->features.push_back(line);
+  facts.features.resize(1);
+  facts.features[0].drawn = result;
+  const QImage with = drawn(facts);
+  EXPECT_GT(near(with, 500, 600, QColor(0x60, 0xff, 0x60)), 5);
+  view_.drawFeatures(false);
+  EXPECT_EQ(drawn(facts), without) << "also without their legend";
+  view_.drawFeatures(true);
+  EXPECT_EQ(drawn(facts), with);
+  EXPECT_EQ(near(drawn(facts, kNow + 5.0), 500, 600, QColor(0x60, 0xff, 0x60)), 0) << "the picture is not live";
+}
+
 TEST_F(ImageViewTest, HatchesCoveredAreasWhereTheyAreNow) {
   view_.resize(1280, 720);
   const QImage image = drawn(tracked());

@@ -21,6 +21,7 @@ TEST(FeatureMessages, CopiesAllOfAFeature) {
   line.share = 0.9;
   line.expected_error = 0.2;
   line.outline = {{10.0, 20.0}, {30.0, 40.0}};
+  line.radius = 0.0025;
   features::TrackedFeature& rim = tracked.features[1];
   rim.id = "rim";
   rim.kind = features::FeatureKind::kEllipse;
@@ -49,6 +50,7 @@ TEST(FeatureMessages, CopiesAllOfAFeature) {
   EXPECT_EQ(first.share, 0.9);
   EXPECT_EQ(first.expected_error, 0.2);
   EXPECT_EQ(first.outline, (std::vector<double>{10.0, 20.0, 30.0, 40.0}));
+  EXPECT_EQ(first.radius, 0.0025);
   const TrackedFeature& second = message.features[1];
   EXPECT_EQ(second.kind, TrackedFeature::ELLIPSE);
   EXPECT_EQ(second.reason, "outside the image");

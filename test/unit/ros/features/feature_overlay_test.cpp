@@ -37,6 +37,30 @@ TEST(FeatureOverlay, DrawsWhatIsSeenAndWhatIsSearched) {
   }
 }
 
+// Three pieces of a line: believed, half believed, astray.
+TEST(FeatureOverlay, DrawsSitesWithTheirWeights) {
+  const cv::Mat image(240, 400, CV_8UC1, cv::Scalar(90));
+  features::TrackedFeatures tracked = lineIn(State::kTracking);
+  for (int u = 110; u <= 290; u += 3)
+    tracked.features[0].sites.push_back({{u, 120.0}, u < 170 ? 1.0 : u < 230 ? 0.3 : 0.0});
+  const cv::Mat drawn = drawFeatures(image, tracked);
+  const auto count = [&](int from, const cv::Vec3b& colour) {
+    int pixels = 0;
+    for (int v = 110; v < 130; ++v) {
+      for (int u = from; u < from + 55; ++u) pixels += isLike(drawn.at<cv::Vec3b>(v, u), colour) ? 1 : 0;
+    }
+    return pixels;
+  };
+  const cv::Vec3b green(80, 255, 80), white(255, 255, 255);
+  EXPECT_GT(count(112, green), 2 * count(173, green)) << "a larger weight is a larger dot";
+  EXPECT_GT(count(173, green), 10);
+  EXPECT_EQ(count(234, green), 0);
+  EXPECT_GT(count(234, white), 10) << "what is astray is a cross";
+  EXPECT_EQ(count(112, white) + count(173, white), 0);
+  tracked.features[0].sites = {{{std::numeric_limits<double>::quiet_NaN(), 120.0}, 1.0}, {{1e9, 0.0}, 0.0}};
+  EXPECT_EQ(cv::norm(drawFeatures(image, tracked), drawFeatures(image, lineIn(State::kTracking)), cv::NORM_INF), 0.0);
+}
+
 TEST(FeatureOverlay, WritesTheState) {
   const cv::Mat image(240, 400, CV_8UC1, cv::Scalar(90));
   features::TrackedFeatures none;

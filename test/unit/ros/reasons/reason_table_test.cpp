@@ -15,6 +15,7 @@
 
 #include "laparoscope_servo/aesop/messages.h"
 #include "laparoscope_servo/aesop/session_reason.h"
+#include "laparoscope_servo/features/feature_state.h"
 
 namespace laparoscope_servo {
 namespace {
@@ -22,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 const std::string kRoot = LAPAROSCOPE_SERVO_ROOT;
-constexpr Speaker kSpeakers[] = {Speaker::kTracker, Speaker::kController, Speaker::kRobot};
+constexpr Speaker kSpeakers[] = {Speaker::kTracker, Speaker::kFeatures, Speaker::kController, Speaker::kRobot};
 
 std::string textOf(const fs::path& path) {
   std::ifstream file(path);
@@ -94,6 +95,9 @@ const std::map<std::string, std::set<std::string>>& filesWithReasons() {
         ", expected the image's size, ", " px, and type "}},
       {"src/tracking/frozen_feed.cpp", {}},
       {"src/tracking/align/quality.cpp", {"within a factor of"}},
+      {"src/features/feature_state.cpp", {}},
+      {"src/model/instrument/instrument_feature_tracker.cpp",
+       {" features, expected none: instruments are found without a selection"}},
       {"src/tracking/search/region_search.cpp", {}},
       {"src/ros/tracker/image_gate.cpp", {" px, grey", " px, in colour", "the image is stamped ", "old they are"}},
       {"src/ros/tracker/image_conversion.cpp", {}},
@@ -224,6 +228,15 @@ TEST(ReasonTable, KnowsEveryReasonOfASession) {
   }
 }
 
+TEST(ReasonTable, KnowsEveryReasonOfAFeature) {
+  for (int k = 0; k <= static_cast<int>(features::Reason::kAmbiguous); ++k) {
+    const std::string words = features::reasonText(static_cast<features::Reason>(k));
+    if (static_cast<features::Reason>(k) == features::Reason::kNone) continue;
+    EXPECT_FALSE(words.empty()) << k;
+    EXPECT_NE(explain(Speaker::kFeatures, "some id: " + words), nullptr) << words;
+  }
+}
+
 TEST(ReasonTable, ExplainsReasonsAsTheyAreSaid) {
   const struct {
     Speaker speaker;
@@ -232,6 +245,7 @@ TEST(ReasonTable, ExplainsReasonsAsTheyAreSaid) {
   } cases[] = {
       {Speaker::kTracker, "visible fraction 0.04, expected at least 0.1", "Something covers the region."},
       {Speaker::kTracker, "no image for more than 1 s; before: TRACKING", "The camera has stopped sending."},
+      {Speaker::kFeatures, "shaft: outside the image", "It has left the picture."},
       {Speaker::kController, "held for 2 s: the robot is paused; engage again",
        "What was missing did not come back in time."},
       {Speaker::kController, "depth d2 is not between 0.02 and 0.25 m", "The scope is too far out, or too deep."},
