@@ -58,6 +58,9 @@ TEST_F(InstrumentFeatures, TellsEdgesAndTip) {
     EXPECT_GT(edge->covariance(0, 0), 0.0);
     EXPECT_TRUE(std::isfinite(edge->expected_error));
     EXPECT_EQ(edge->outline.size(), 2u);
+    EXPECT_EQ(edge->sites.empty(), edge->share == 0.0) << "sites are those of the fit to the image's edges";
+    for (const features::TrackedSite& site : edge->sites)
+      EXPECT_NEAR(normal.dot(site.point), edge->parameters[0], 0.5) << id;
   }
   const TrackedFeature* point = find(told, "1 tip");
   ASSERT_NE(point, nullptr);
@@ -77,6 +80,7 @@ TEST_F(InstrumentFeatures, TellsThePoseWhereRadiusAndCameraAreKnown) {
   const TrackedFeature* pose = find(start(), "1");
   ASSERT_NE(pose, nullptr);
   EXPECT_EQ(pose->kind, FeatureKind::kPose);
+  EXPECT_EQ(pose->radius, 0.0025);
   ASSERT_EQ(pose->parameters.size(), 6);
   EXPECT_EQ(pose->covariance.rows(), 6);
   // 32 px wide at 300 px focal length: 5 mm are about 47 mm away.
