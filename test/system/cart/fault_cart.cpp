@@ -2,6 +2,7 @@
 
 #include <std_srvs/SetBool.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <limits>
 
@@ -67,14 +68,20 @@ void FaultCart::startCamera() {
 }
 
 void FaultCart::startTracker() {
-  tracker =
-      std::make_unique<ChildProcess>(TRACKER, std::vector<std::string>{"__name:=tracker", "image:=relayed/image_raw"});
+  tracker = std::make_unique<ChildProcess>(TRACKER, trackerArguments());
 }
 
 void FaultCart::startController() {
-  controller = std::make_unique<ChildProcess>(
-      CONTROLLER, std::vector<std::string>{"__name:=controller", "task_error:=tracker/task_error",
-                                           "operating_state:=aesop/operating_state", "measured_cv:=aesop/measured_cv"});
+  controller = std::make_unique<ChildProcess>(CONTROLLER, controllerArguments());
+}
+
+std::vector<std::string> FaultCart::trackerArguments() {
+  return {"__name:=tracker", "image:=relayed/image_raw"};
+}
+
+std::vector<std::string> FaultCart::controllerArguments() {
+  return {"__name:=controller", "task_error:=tracker/task_error", "operating_state:=aesop/operating_state",
+          "measured_cv:=aesop/measured_cv"};
 }
 
 std::string FaultCart::waitFor(const char* what, const std::function<bool()>& condition, double seconds) {
@@ -231,15 +238,24 @@ void FaultCart::mark() {
 Reaction FaultCart::watch(double seconds, double calm) {
   Reaction reaction;
   double moved = marked_at_;
+  const double distance = travel(kinematics_, marked_, home_).degrees;
+  const double lately = steadyNow() + seconds - 2.0;
+  std::optional<aesop::JointVector> lowest, highest;
   bench.waitFor(
       [&] {
-        reaction.travel.atLeast(travel(kinematics_, marked_, bench.truth().state().q));
+        const aesop::JointVector now = bench.truth().state().q;
+        reaction.travel.atLeast(travel(kinematics_, marked_, now));
+        reaction.nearer = distance - travel(kinematics_, now, home_).degrees;
+        reaction.away = std::max(reaction.away, -reaction.nearer);
         if (bench.jointsMove()) moved = steadyNow();
+        if (steadyNow() > lately) {
+          lowest = lowest ? lowest->cwiseMin(now) : now;
+          highest = highest ? highest->cwiseMax(now) : now;
+        }
         return steadyNow() - moved >= calm;
       },
       seconds);
-  reaction.nearer =
-      travel(kinematics_, marked_, home_).degrees - travel(kinematics_, bench.truth().state().q, home_).degrees;
+  if (lowest) reaction.swing = travel(kinematics_, *lowest, *highest).degrees;
   reaction.stood = moved - marked_at_;
   reaction.state = state();
   reaction.reason = reason();

@@ -5,12 +5,14 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "image_relay.h"
 #include "laparoscope_servo/ControllerState.h"
 #include "laparoscope_servo/Homography.h"
 #include "operator.h"
 #include "scope_travel.h"
+#include "stepped_clock.h"
 #include "system/aesop/aesop_bench.h"
 
 namespace laparoscope_servo::test {
@@ -25,6 +27,8 @@ const char* name(Situation situation);
 struct Reaction {
   Travel travel;
   double nearer = 0.0;  // degrees, to where the region is in its place; negative: further away
+  double away = 0.0;    // degrees, by which it was further from there meanwhile, at most
+  double swing = 0.0;   // degrees, that a joint goes to and fro in the last 2 s; 0 where it is not watched to the end
   double stood = 0.0;   // s, after the fault; until the end of watching when it did not stand
   std::string state;    // of the controller, when it stood
   std::string reason;
@@ -56,7 +60,10 @@ class FaultCart {
   void startCamera();
   void startTracker();
   void startController();
+  static std::vector<std::string> trackerArguments();
+  static std::vector<std::string> controllerArguments();
 
+  SteppedClock clock;  // of all processes that are started after it
   AesopBench bench{false};
   Operator operating;
   std::unique_ptr<ImageRelay> relay;

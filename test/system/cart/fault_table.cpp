@@ -1,60 +1,11 @@
 #include "fault_table.h"
 
+#include "fault_rows.h"
+#include "reported_faults.h"
+
 namespace laparoscope_servo::test {
 
 namespace {
-
-constexpr unsigned kServo = static_cast<unsigned>(Situation::kServo);
-constexpr unsigned kHold = static_cast<unsigned>(Situation::kHold);
-constexpr unsigned kManual = static_cast<unsigned>(Situation::kManual);
-constexpr unsigned kAll = kServo | kHold | kManual;
-
-using Begin = std::function<void(FaultCart&)>;
-
-// Of the camera. What a task without a camera is driven by does not count, and a held scope needs a picture to go on.
-FaultRow image(const std::string& name, unsigned usually, Outcome outcome, const std::string& states,
-               const std::function<ImageRelay::Fault()>& fault) {
-  FaultRow row;
-  row.name = "images: " + name;
-  row.usually = usually;
-  row.otherwise = kServo | kHold;
-  row.outcome = outcome;
-  row.states = states;
-  row.begin = [fault](FaultCart& cart) { cart.relay->begin(fault()); };
-  return row;
-}
-
-// The last pictures, over and over.
-FaultRow inTurn(const std::string& name, std::size_t count) {
-  FaultRow row = image(name + " in turn", kServo, Outcome::kStands, "HOLD LOST FAULT", {});
-  row.begin = [count](FaultCart& cart) { cart.relay->begin(image_faults::inTurn(cart.relay->last(count))); };
-  return row;
-}
-
-FaultRow other(
-    const std::string& name, unsigned usually, unsigned otherwise, Outcome outcome, const std::string& states,
-    const Begin& begin, const Begin& end = [](FaultCart&) {}) {
-  FaultRow row;
-  row.name = name;
-  row.usually = usually;
-  row.otherwise = otherwise;
-  row.outcome = outcome;
-  row.states = states;
-  row.begin = begin;
-  row.end = end;
-  return row;
-}
-
-// Another publisher: `begin` is what happens beside it.
-FaultRow stranger(
-    const std::string& name, unsigned usually, unsigned otherwise, Outcome outcome, const std::string& states,
-    const std::string& topic, const std::string& says, double rate, const Begin& begin = [](FaultCart&) {}) {
-  FaultRow row = other(name, usually, otherwise, outcome, states, begin);
-  row.stranger = topic;
-  row.says = says;
-  row.rate = rate;
-  return row;
-}
 
 std::vector<FaultRow> ofImages() {
   using namespace image_faults;
@@ -177,19 +128,6 @@ std::vector<FaultRow> ofRobot() {
   };
 }
 
-FaultRow process(const std::string& name, std::unique_ptr<ChildProcess> FaultCart::*victim, int signal,
-                 const Begin& again, const std::string& states) {
-  return other(
-      name, kServo, kAll, Outcome::kStands, states, [=](FaultCart& cart) { (cart.*victim)->kill(signal); },
-      [=](FaultCart& cart) {
-        if (signal == SIGSTOP) {
-          (cart.*victim)->kill(SIGCONT);
-        } else {
-          again(cart);
-        }
-      });
-}
-
 std::vector<FaultRow> ofProcesses() {
   std::vector<FaultRow> rows{
       process(
@@ -226,7 +164,7 @@ std::vector<FaultRow> ofFrames() {
 const std::vector<FaultRow>& faultTable() {
   static const std::vector<FaultRow> table = [] {
     std::vector<FaultRow> all;
-    for (const auto part : {&ofImages, &ofInputs, &ofRobot, &ofFrames, &ofProcesses}) {
+    for (const auto part : {&ofImages, &ofInputs, &ofRobot, &ofFrames, &ofProcesses, &reportedFaults}) {
       for (const FaultRow& row : part()) all.push_back(row);
     }
     return all;

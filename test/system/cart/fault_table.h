@@ -25,6 +25,7 @@ struct FaultRow {
   std::function<void(FaultCart&)> end = [](FaultCart&) {};
   std::string stranger, says;  // who publishes beside the cart's own nodes, on which topic, and what, see stranger.cpp
   double rate = 50.0;          // Hz
+  double watched = 0.0;        // s, where its effect needs time to show; 0: as long as the others
   double degrees = 3.0;        // allowed after the fault
   double millimetres = 5.0;
 };

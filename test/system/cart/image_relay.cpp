@@ -63,16 +63,11 @@ namespace {
 using Image = sensor_msgs::Image;
 using Publish = ImageRelay::Publish;
 
-// The pixels themselves, three bytes each.
-cv::Mat pixels(Image& image) {
-  return {static_cast<int>(image.height), static_cast<int>(image.width), CV_8UC3, image.data.data(), image.step};
-}
-
 ImageRelay::Fault changed(const std::function<void(cv::Mat&)>& change) {
   return [change](const Image& image, const Publish& publish) {
     Image out = image;
     cv::Mat mat = pixels(out);
-    if (mat.cols > 1) change(mat);
+    if (!mat.empty()) change(mat);
     publish(out);
   };
 }
@@ -90,6 +85,14 @@ cv::Mat noise(const cv::Size& size) {
 }
 
 }  // namespace
+
+cv::Mat pixels(Image& image) {
+  constexpr std::uint32_t kLeast = 64, kMost = 4096;  // px
+  const auto sensible = [](std::uint32_t side) { return side >= kLeast && side <= kMost; };
+  if (!sensible(image.width) || !sensible(image.height) || image.encoding != "bgr8") return {};
+  if (image.step != 3 * image.width || image.data.size() != std::size_t{image.step} * image.height) return {};
+  return {static_cast<int>(image.height), static_cast<int>(image.width), CV_8UC3, image.data.data(), image.step};
+}
 
 ImageRelay::Fault frozen() {
   const auto first = std::make_shared<std::optional<Image>>();
@@ -159,12 +162,13 @@ ImageRelay::Fault half() {
 ImageRelay::Fault resized(int width, int height) {
   return [=](const Image& image, const Publish& publish) {
     Image in = image;
+    if (pixels(in).empty()) return publish(image);
     Image out = image;
     out.width = static_cast<std::uint32_t>(width);
     out.height = static_cast<std::uint32_t>(height);
     out.step = 3 * out.width;
     out.data.assign(static_cast<std::size_t>(out.step) * out.height, 0);
-    cv::Mat mat = pixels(out);
+    cv::Mat mat(height, width, CV_8UC3, out.data.data());
     cv::resize(pixels(in), mat, mat.size(), 0, 0, cv::INTER_AREA);
     publish(out);
   };

@@ -8,6 +8,7 @@
 #include <deque>
 #include <functional>
 #include <mutex>
+#include <opencv2/core.hpp>
 #include <string>
 #include <vector>
 
@@ -50,6 +51,9 @@ class ImageRelay {
 
 // Faults of images. Those that have a state begin anew with each call.
 namespace image_faults {
+
+// The pixels themselves, three bytes each; empty where an image has none: another fault was there before.
+cv::Mat pixels(sensor_msgs::Image& image);
 
 ImageRelay::Fault frozen();
 // Only what lies in the middle, where the region is.

@@ -6,6 +6,7 @@
 
 #include <mutex>
 #include <optional>
+#include <random>
 #include <thread>
 
 #include "laparoscope_servo/ScopeVelocity.h"
@@ -23,7 +24,14 @@ class Operator {
   Operator& operator=(const Operator&) = delete;
 
   void press(bool pressed) {
-    set([=] { pressed_ = pressed; });
+    set([=] {
+      pressed_ = pressed;
+      bounces_ = false;
+    });
+  }
+  // Pressed and released in turn, with each word.
+  void bounceSwitch() {
+    set([this] { bounces_ = true; });
   }
   // How often the switch has been told.
   int told() {
@@ -34,10 +42,12 @@ class Operator {
   void dropSwitch() {
     set([this] { pressed_.reset(); });
   }
-  void push(double pan) {
+  // rad/s; with noise, standard deviation, as of a worn potentiometer.
+  void push(double pan, double noise = 0.0) {
     set([=] {
       stick_ = ScopeVelocity();
       stick_->pan = pan;
+      noise_ = noise;
     });
   }
   // Says nothing at all about the stick.
@@ -63,6 +73,7 @@ class Operator {
 
   bool say() {
     const std::lock_guard<std::mutex> lock(mutex_);
+    if (bounces_ && pressed_) pressed_ = !*pressed_;
     if (pressed_) {
       std_msgs::Bool pressed;
       pressed.data = static_cast<std::uint8_t>(*pressed_);
@@ -70,8 +81,10 @@ class Operator {
       ++told_;
     }
     if (stick_) {
-      stick_->header.stamp = ros::Time::now() + ros::Duration(shift_);
-      stick_publisher_.publish(*stick_);
+      ScopeVelocity word = *stick_;
+      word.header.stamp = ros::Time::now() + ros::Duration(shift_);
+      if (noise_ > 0.0) word.pan += std::normal_distribution<double>(0.0, noise_)(random_);
+      stick_publisher_.publish(word);
     }
     return !ends_;
   }
@@ -83,8 +96,11 @@ class Operator {
   bool ends_ = false;
   int told_ = 0;
   std::optional<bool> pressed_ = false;
+  bool bounces_ = false;
   std::optional<ScopeVelocity> stick_;
   double shift_ = 0.0;
+  double noise_ = 0.0;
+  std::mt19937 random_{3};
   std::thread thread_;
 };
 
