@@ -79,6 +79,7 @@ class PointTracker::Implementation {
     now_.take(image, config_.levels, config_.saturation);
     for (TrackedPoint& point : points_) point.begin();
     if (motion && motion->allFinite()) moveAll(*motion);
+    settle();
     follow();
     lead();
     searchOthers();
@@ -102,7 +103,7 @@ class PointTracker::Implementation {
     result_.reason = reason;
   }
 
-  // What else knows where all of them have gone: those that are there need not be followed.
+  // What else knows where all of them have gone.
   void moveAll(const Eigen::Matrix3d& motion) {
     for (TrackedPoint& point : points_) {
       PointPose moved;  // of the identity, so that its shape is the motion's alone
@@ -110,14 +111,21 @@ class PointTracker::Implementation {
       placeBy(motion, point.pose.place, moved);
       point.pose.place = moved.place;
       point.pose.shape = moved.shape * point.pose.shape;
+    }
+  }
+
+  // Those that have hardly moved since, or as is known, need not be followed: what moves beside them cannot lead them
+  // astray.
+  void settle() {
+    for (TrackedPoint& point : points_) {
       if (point.memory.levels() == 0) continue;
       comparer_.compare(now_, point);
       point.followed = point.settled = point.isSeen();
     }
   }
 
-  // From the last image to this one, those that it showed; together they tell how windows turn and grow, and lead the
-  // others.
+  // From the last image to this one, the others that it showed; together they tell how windows turn and grow, and lead
+  // the others.
   void follow() {
     shift_.clear();
     const int finest = std::min(1, now_.levels() - 1);  // the comparison with the first view does the rest

@@ -26,7 +26,7 @@ struct PointsConfig {
   double min_distance = 12.0;    // px between corners that are chosen
   int saturation = 250;          // grey levels: pixels as bright in any channel are not compared
   double min_correlation = 0.8;  // with the first view
-  double min_share = 0.4;        // of the window's texture that agrees with the first view
+  double min_share = 0.5;        // of the window's texture that agrees with the first view
   double max_error = 0.5;        // px: expected of a point
   double max_scale = 3.0;        // by which a window may grow or shrink since the first view
   double max_distortion = 2.0;   // ratio of its growth along two directions

@@ -16,7 +16,8 @@ void PointImage::take(const cv::Mat& image, int levels, int saturation) {
   while (possible < levels && std::min(image.cols, image.rows) >> possible >= kLeastSide) ++possible;
   pyramid_.build(image, cv::Rect(cv::Point(0, 0), image.size()), possible, image::kLuma);
   usable_.create(image.size());
-  usable_.setTo(1);
+  for (int v = 0; v < image.rows; ++v)
+    std::fill_n(usable_.ptr<unsigned char>(v), image.cols, static_cast<unsigned char>(1));
   const int channels = image.channels(), count = image.cols * channels;
   for (int v = 0; v < image.rows; ++v) {
     const unsigned char* row = image.ptr<unsigned char>(v);

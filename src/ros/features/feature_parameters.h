@@ -10,6 +10,7 @@
 #include "laparoscope_servo/features/dots.h"
 #include "laparoscope_servo/features/edge_config.h"
 #include "laparoscope_servo/features/feature_selection.h"
+#include "laparoscope_servo/features/points.h"
 #include "laparoscope_servo/model/instruments.h"
 #include "laparoscope_servo/motion/motion_config.h"
 #include "laparoscope_servo/parameters/table.h"
@@ -35,6 +36,7 @@ struct FeatureParameters {
 };
 
 using DotsParameters = FeatureParameters<features::DotsConfig>;
+using PointsParameters = FeatureParameters<features::PointsConfig>;
 using EdgesParameters = FeatureParameters<features::EdgeConfig>;
 using InstrumentParameters = FeatureParameters<model::InstrumentConfig>;
 using MotionParameters = FeatureParameters<motion::MotionConfig>;

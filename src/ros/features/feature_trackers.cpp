@@ -4,6 +4,7 @@
 
 #include "laparoscope_servo/features/dot_feature_tracker.h"
 #include "laparoscope_servo/features/edge_feature_tracker.h"
+#include "laparoscope_servo/features/point_feature_tracker.h"
 #include "laparoscope_servo/model/instrument_feature_tracker.h"
 #include "laparoscope_servo/motion/motion_feature_tracker.h"
 
@@ -29,7 +30,9 @@ const struct {
   Maker maker;
 } kTrackers[] = {{"dots", make<features::DotFeatureTracker, features::DotsConfig>},
                  {"edges", make<features::EdgeFeatureTracker, features::EdgeConfig>},
+                 {"points", make<features::PointFeatureTracker, features::PointsConfig>},
                  {"instrument", make<model::InstrumentFeatureTracker, model::InstrumentConfig>},
+
                  {"motion", make<motion::MotionFeatureTracker, motion::MotionConfig>}};
 
 }  // namespace

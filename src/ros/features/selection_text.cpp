@@ -3,7 +3,10 @@
 #include <yaml-cpp/yaml.h>
 
 #include <array>
+#include <cstdlib>
 #include <fstream>
+#include <map>
+#include <opencv2/imgcodecs.hpp>
 #include <sstream>
 #include <stdexcept>
 
@@ -18,12 +21,30 @@ using features::SelectedFeature;
 
 constexpr std::array<FeatureKind, 5> kWrittenKinds = {FeatureKind::kPoint, FeatureKind::kLine, FeatureKind::kEllipse,
                                                       FeatureKind::kSpline, FeatureKind::kMotion};
-constexpr char kKeys[] = "id, one of point, line, ellipse, spline, motion, and arc, closed, range, desired";
+constexpr char kShapes[] = "one of point, corners, line, ellipse, spline, motion";
+constexpr char kKeys[] = "id, one of point, corners, line, ellipse, spline, motion, and arc, closed, range, stored, desired";
+
+constexpr int kFarthest = 100000;  // px
+
+// Each file is read once, so that features of one file have one picture.
+class Pictures {
+ public:
+  // Empty when it cannot be read.
+  cv::Mat read(const std::string& file) {
+    const auto known = read_.find(file);
+    if (known != read_.end()) return known->second;
+    return read_[file] = cv::imread(file, cv::IMREAD_COLOR);
+  }
+
+ private:
+  std::map<std::string, cv::Mat> read_;
+};
 
 // Reads one feature, and keeps what is wrong with it.
 class Reader {
  public:
-  Reader(const YAML::Node& node, std::vector<std::string>& errors) : node_(node), errors_(errors) {}
+  Reader(const YAML::Node& node, Pictures& pictures, std::vector<std::string>& errors)
+      : node_(node), pictures_(pictures), errors_(errors) {}
 
   SelectedFeature read() {
     if (!node_.IsMap()) {
@@ -86,8 +107,49 @@ class Reader {
     feature_.ellipse = ellipse;
   }
 
+  void readCorners(const YAML::Node& node) {
+    features::CornerSelection corners;
+    if (!node.IsMap()) refuse(node, "corners", "{region: [x, y, width, height], count: ...}, px, each may be left out");
+    for (const auto& entry : node) {
+      const std::string key = node.IsMap() ? entry.first.Scalar() : "";
+      if (key == "region") {
+        corners.region = region(entry.second);
+      } else if (key == "count") {
+        if (!entry.second.IsScalar() || !YAML::convert<int>::decode(entry.second, corners.count))
+          refuse(entry.second, "count", "a whole number");
+      } else if (!key.empty()) {
+        refuse(entry.first, "key of corners", "region or count");
+      }
+    }
+    feature_.corners = corners;
+  }
+
+  cv::Rect region(const YAML::Node& node) {
+    std::array<int, 4> sides{};
+    bool is_region = node.IsSequence() && node.size() == sides.size();
+    for (std::size_t k = 0; is_region && k < sides.size(); ++k)
+      is_region =
+          node[k].IsScalar() && YAML::convert<int>::decode(node[k], sides[k]) && std::abs(sides[k]) <= kFarthest;
+    if (!is_region || sides[2] < 1 || sides[3] < 1) {
+      refuse(node, "region", "[x, y, width, height] in whole px, width and height of 1 or more");
+      return {};
+    }
+    return {sides[0], sides[1], sides[2], sides[3]};
+  }
+
+  void readPicture(const YAML::Node& node) {
+    const std::string file = node.IsScalar() ? node.Scalar() : "";
+    if (file.empty() || file.front() != '/') return refuse(node, "stored", "the whole path of a picture");
+    feature_.picture = pictures_.read(file);
+    if (feature_.picture.empty()) refuse(node, "stored", "a picture that can be read: PNG, JPEG, ...");
+  }
+
   void readShape() {
     int shapes = 0;
+    if (node_["corners"]) {
+      ++shapes;
+      readCorners(node_["corners"]);
+    }
     for (const FeatureKind kind : kWrittenKinds) {
       const YAML::Node shape = node_[features::kindName(kind)];
       if (!shape) continue;
@@ -101,17 +163,18 @@ class Reader {
         readPoints(shape, features::kindName(kind));
       }
     }
-    if (shapes != 1)
-      refuse(node_, "its " + std::to_string(shapes) + " shapes", "one of point, line, ellipse, spline, motion");
+    if (shapes != 1) refuse(node_, "its " + std::to_string(shapes) + " shapes", kShapes);
   }
 
   void readOther(const std::string& key, const YAML::Node& value) {
-    if (key == "id") return;
+    if (key == "id" || key == "corners") return;
     for (const FeatureKind kind : kWrittenKinds) {
       if (key == features::kindName(kind)) return;
     }
     if (key == "range") {
       feature_.range = number(value, "range");
+    } else if (key == "stored") {
+      readPicture(value);
     } else if (key == "closed") {
       if (!value.IsScalar() || !YAML::convert<bool>::decode(value, feature_.closed))
         refuse(value, "closed", "true or false");
@@ -129,6 +192,7 @@ class Reader {
   }
 
   const YAML::Node node_;
+  Pictures& pictures_;
   std::vector<std::string>& errors_;
   SelectedFeature feature_;
 };
@@ -163,7 +227,8 @@ features::FeatureSelection parseSelection(const std::string& text) {
     throw std::invalid_argument("selection: no list of features, expected [{id: shaft, line: [[x, y], [x, y]]}, ...]");
   features::FeatureSelection selection;
   std::vector<std::string> errors;
-  for (const YAML::Node& node : root) selection.push_back(Reader(node, errors).read());
+  Pictures pictures;
+  for (const YAML::Node& node : root) selection.push_back(Reader(node, pictures, errors).read());
   validation::throwErrors("selection", errors);
   return selection;
 }

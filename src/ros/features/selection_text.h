@@ -5,6 +5,8 @@
 //   - {id: trocar, ellipse: [[120, 80], [140, 70], ...], arc: [0.5, 2.0], range: 10}
 //   - {id: left dot, point: [80, 60], desired: [160, 120]}
 //   - {id: outline, spline: [[20, 30], [60, 40], ...]}
+//   - {id: tissue, corners: {region: [100, 50, 200, 150], count: 40}}  chosen in the image, or in the picture `stored`
+//   - {id: liver, corners: {count: 60}, stored: /home/me/liver.png}
 //   - {id: view, motion: [[100, 80], [300, 240]]}                      two corners of a region; []: all of the image
 #pragma once
 

@@ -1,10 +1,12 @@
-// A camera before the trackers of features `/scope/dots` and `/scope/edges`, for tests against the running nodelets.
+// A camera before the trackers of features `/scope/dots`, `/scope/points` and `/scope/edges`, for tests against the
+// running nodelets.
 #pragma once
 
 #include <laparoscope_servo/SelectFeatures.h>
 #include <laparoscope_servo/TrackedFeatures.h>
 
 #include <future>
+#include <map>
 #include <string>
 
 #include "node/tracker/camera_bench.h"
@@ -14,12 +16,18 @@ namespace laparoscope_servo::test_support {
 
 class FeatureBench {
  public:
-  FeatureBench() : node_("scope"), images_(node_.advertise<sensor_msgs::Image>("image", 1)) {}
+  FeatureBench() : node_("scope"), images_(node_.advertise<sensor_msgs::Image>("image", 1)) {
+    for (const char* const kind : {"dots", "points", "edges"})
+      inboxes_.try_emplace(kind, node_, std::string(kind) + "/features");
+  }
 
   bool ready() const {
-    return waitFor([this] { return images_.getNumSubscribers() >= 1 && dots_.connected() && edges_.connected(); }) &&
-           ros::service::waitForService("/scope/dots/select_features", 10000) &&
-           ros::service::waitForService("/scope/edges/select_features", 10000);
+    for (const auto& [kind, inbox] : inboxes_) {
+      if (!waitFor([&, box = &inbox] { return images_.getNumSubscribers() >= 1 && box->connected(); }) ||
+          !ros::service::waitForService("/scope/" + kind + "/select_features", 10000))
+        return false;
+    }
+    return true;
   }
 
   // Stamps of all tests go up, so that only those tests see time jump that want to.
@@ -37,7 +45,7 @@ class FeatureBench {
                                 double patience = 20.0) {
     const sensor_msgs::ImagePtr message = imageAt(image, stamp.toSec());
     images_.publish(message);
-    const Inbox<TrackedFeatures>& inbox = kind == "dots" ? dots_ : edges_;
+    const Inbox<TrackedFeatures>& inbox = inboxes_.at(kind);
     waitFor([&] { return inbox.at(message->header.stamp) != nullptr; }, patience);
     return inbox.at(message->header.stamp);
   }
@@ -80,8 +88,7 @@ class FeatureBench {
  private:
   ros::NodeHandle node_;
   ros::Publisher images_;
-  Inbox<TrackedFeatures> dots_{node_, "dots/features"};
-  Inbox<TrackedFeatures> edges_{node_, "edges/features"};
+  std::map<std::string, Inbox<TrackedFeatures>> inboxes_;
   unsigned seed_ = 0;
 };
 

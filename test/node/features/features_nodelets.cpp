@@ -1,5 +1,5 @@
-// The nodelets Dots and Edges beside the region tracker in one manager: selection, tracking, and whatever may go wrong
-// with images and selections.
+// The nodelets Dots, Points and Edges beside the region tracker in one manager: selection, tracking, and whatever may
+// go wrong with images and selections.
 #include <gtest/gtest.h>
 #include <ros/ros.h>
 
@@ -29,13 +29,14 @@ class FeaturesNodelets : public testing::TestWithParam<std::string> {
     ASSERT_TRUE(bench().ready()) << "the nodelets are not there";
     // Whatever the test before did to time and size.
     ASSERT_TRUE(bench().trackUntil(kind(), [](const TrackedFeatures&) { return true; }));
-    ASSERT_TRUE(bench().reset("dots"));
-    ASSERT_TRUE(bench().reset("edges"));
+    for (const char* const each : {"dots", "points", "edges"}) ASSERT_TRUE(bench().reset(each));
   }
 
   static const std::string& kind() { return GetParam(); }
   static std::string selection(const std::string& of = kind()) {
-    return of == "dots" ? test_support::kDotsSelection : test_support::kEdgesSelection;
+    return of == "dots"     ? test_support::kDotsSelection
+           : of == "points" ? test_support::kPointsSelection
+                            : test_support::kEdgesSelection;
   }
   void select() {
     const SelectFeatures::Response answer = bench().select(kind(), selection());
@@ -67,6 +68,12 @@ TEST_P(FeaturesNodelets, SelectsInTheNextImageAndTracks) {
     EXPECT_EQ(told->features[0].kind, TrackedFeature::POINT);
     EXPECT_NEAR(told->features[0].parameters.at(0), 92.0, 0.2);
     EXPECT_NEAR(told->features[0].parameters.at(1), 120.0, 0.2);
+  } else if (kind() == "points") {
+    EXPECT_EQ(told->features[1].id, "beside");
+    EXPECT_EQ(told->features[1].kind, TrackedFeature::POINT);
+    EXPECT_NEAR(told->features[1].parameters.at(0), 98.0, 0.2);
+    EXPECT_NEAR(told->features[1].parameters.at(1), 46.0, 0.2);
+    EXPECT_EQ(told->features[1].outline.size(), 10u);
   } else {
     EXPECT_EQ(told->features[0].id, "border");
     EXPECT_EQ(told->features[0].kind, TrackedFeature::LINE);
@@ -78,14 +85,18 @@ TEST_P(FeaturesNodelets, SelectsInTheNextImageAndTracks) {
 
 TEST_P(FeaturesNodelets, SaysWhatIsWrongWithASelectionAndGoesOn) {
   select();
-  const std::string other = selection(kind() == "dots" ? "edges" : "dots");
+  const bool of_points = kind() != "edges";
+  const std::string other = selection(of_points ? "edges" : "dots");
   const std::vector<std::pair<std::string, std::string>> bad = {
-      {kind() == "dots" ? "[{id: off, point: [9999, 50]}]" : "[{id: off, line: [[9000, 50], [9100, 50]]}]", ""},
-      {kind() == "dots" ? "[{id: a, point: [90, 50]}, {id: b, point: [91, 50]}]"  // one dot twice
-                        : "[{id: short, line: [[50, 50], [50, 50]]}]",
-       kind() == "dots" ? "no other point" : "short: line from (50, 50) to (50, 50)"},
-      {other, "expected " + std::string(kind() == "dots" ? "point" : "line, ellipse or spline") + " of this tracker"},
-      {"[{id: nan, point: [.nan, 50]}]", kind() == "dots" ? "point = [nan, 50]" : "of this tracker"},
+      {of_points ? "[{id: off, point: [9999, 50]}]" : "[{id: off, line: [[9000, 50], [9100, 50]]}]", ""},
+      {of_points ? "[{id: a, point: [90, 50]}, {id: b, point: [90.5, 50]}]"  // one dot, or one place, twice
+                 : "[{id: short, line: [[50, 50], [50, 50]]}]",
+       of_points ? "no other point" : "short: line from (50, 50) to (50, 50)"},
+      {other, "expected " + std::string(of_points ? "point" : "line, ellipse or spline") + " of this tracker"},
+      {"[{id: nan, point: [.nan, 50]}]", of_points ? "point = [nan, 50]" : "of this tracker"},
+      {"[{id: many, corners: {count: 0}}]", kind() == "points" ? "number of corners = 0" : "of"},
+      {"[{id: flat, corners: {region: [140, 150, 40, 40]}}]", kind() == "points" ? "flat: 0 corners" : "of"},
+      {"[{id: gone, point: [90, 50], stored: /nowhere/liver.png}]", "stored = /nowhere/liver.png"},
       {"[{id: x, lien: [[1, 2], [3, 4]]}]", "key lien"},
       {"[{id: x", "selection: "},
       {"", "no list of features"}};
@@ -174,7 +185,9 @@ TEST_P(FeaturesNodelets, TellsEachFeatureInTheDiagnostics) {
   EXPECT_TRUE(waitFor([&] {
     track();
     for (const auto& value : diagnostics.last().values) {
-      if (value.key == (kind() == "dots" ? "feature large" : "feature border") &&
+      if (value.key == (kind() == "dots"     ? "feature large"
+                        : kind() == "points" ? "feature middle"
+                                             : "feature border") &&
           value.value.find("TRACKING") != std::string::npos)
         return true;
     }
@@ -198,7 +211,9 @@ TEST_P(FeaturesNodelets, StaysInactiveWithWrongParametersAndSaysWhy) {
   DiagnosticsListener diagnostics(bench().node(), "wrong/" + kind());
   EXPECT_TRUE(diagnostics.waitForMessage(diagnostic_msgs::DiagnosticStatus::ERROR, "tracking/rnge"))
       << diagnostics.last();
-  EXPECT_NE(diagnostics.last().message.find("tracking/min_contrast"), std::string::npos) << diagnostics.last();
+  EXPECT_NE(diagnostics.last().message.find(kind() == "points" ? "tracking/min_share" : "tracking/min_contrast"),
+            std::string::npos)
+      << diagnostics.last();
 }
 
 // With the file of the parameter, whole path, in the first image.
@@ -216,7 +231,7 @@ TEST_P(FeaturesNodelets, SelectsTheFileInTheFirstImage) {
   EXPECT_EQ(told->state, TrackedFeatures::TRACKING) << told->reason;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, FeaturesNodelets, testing::Values("dots", "edges"));
+INSTANTIATE_TEST_SUITE_P(All, FeaturesNodelets, testing::Values("dots", "points", "edges"));
 
 }  // namespace
 }  // namespace laparoscope_servo

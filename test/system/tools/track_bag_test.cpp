@@ -147,8 +147,10 @@ TEST_F(TrackBag, TracksFeaturesOfAFile) {
   for (unsigned k = 0; k < 3; ++k)
     cv::imwrite(scene.file(std::to_string(k) + ".png"), test_support::featureScene(0.5 * k, k + 1));
   const std::string file = out_.file("features.yaml"), table = out_.file("out.csv");
-  for (const std::string tracker : {"dots", "edges"}) {
-    std::ofstream(file) << (tracker == "dots" ? test_support::kDotsSelection : test_support::kEdgesSelection);
+  for (const std::string tracker : {"dots", "points", "edges"}) {
+    std::ofstream(file) << (tracker == "dots"     ? test_support::kDotsSelection
+                            : tracker == "points" ? test_support::kPointsSelection
+                                                  : test_support::kEdgesSelection);
     const std::string command = scene.path() + " --tracker " + tracker + " --select " + file;
     EXPECT_EQ(run(command + " --csv " + table), kSuccess) << stderr_;
     EXPECT_TRUE(says("3 images: TRACKING 3")) << stderr_;

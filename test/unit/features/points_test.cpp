@@ -90,7 +90,7 @@ TEST_F(PointsTest, ComeBackFromBehindACover) {
   for (; k < 15; ++k) {
     g = motion({1.5 * k, -1.0 * k}, 0.01 * k);
     track(covered(image(g)));
-    EXPECT_LT(worst(g), 0.5) << k;
+    EXPECT_LT(worst(g), 0.75) << k;  // of windows that are covered in part
   }
   const std::size_t seen = tracking();
   EXPECT_LT(seen, corners_.size() - 3);
@@ -172,7 +172,7 @@ TEST_F(PointsTest, DoNotSlideAlongAnOcclusionEdge) {
       if (std::min(with_tissue, with_shaft) > 2.0) ++slid;
     }
   }
-  EXPECT_LE(slid, 0.02 * 15.0 * static_cast<double>(places.size())) << "of " << claims << " claims";
+  EXPECT_LE(slid, 0.03 * 15.0 * static_cast<double>(places.size())) << "of " << claims << " claims";
 }
 
 TEST_F(PointsTest, OfAStoredPictureAreFoundInTheImage) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
 
 #include "support/temporary_folder.h"
@@ -55,6 +56,46 @@ TEST(SelectionText, ReadsEveryShape) {
   EXPECT_EQ(selection[4].kind, FeatureKind::kSpline);
   EXPECT_EQ(selection[4].points.size(), 4u);
   EXPECT_TRUE(selection[4].closed);
+}
+
+TEST(SelectionText, ReadsCornersAndStoredPictures) {
+  const test_support::TemporaryFolder folder;
+  const std::string file = folder.file("liver.png");
+  cv::imwrite(file, cv::Mat(30, 40, CV_8UC3, cv::Scalar(10, 20, 30)));
+  const FeatureSelection selection = parseSelection(
+      "- {id: tissue, corners: {region: [10, 20, 200, 150], count: 40}}\n"
+      "- {id: all, corners: {}}\n"
+      "- {id: liver, corners: {count: 7}, stored: " +
+      file + "}\n- {id: one, point: [3, 4], stored: " + file + "}");
+  ASSERT_EQ(selection.size(), 4u);
+  EXPECT_EQ(selection[0].kind, FeatureKind::kPoint);
+  ASSERT_TRUE(selection[0].corners);
+  EXPECT_EQ(selection[0].corners->region, cv::Rect(10, 20, 200, 150));
+  EXPECT_EQ(selection[0].corners->count, 40);
+  EXPECT_TRUE(selection[0].picture.empty());
+  ASSERT_TRUE(selection[1].corners);
+  EXPECT_TRUE(selection[1].corners->region.empty());
+  EXPECT_EQ(selection[2].picture.size(), cv::Size(40, 30));
+  // One file is one picture.
+  EXPECT_EQ(selection[3].picture.data, selection[2].picture.data);
+  EXPECT_FALSE(selection[3].corners);
+}
+
+TEST(SelectionText, NamesWhatIsWrongWithCornersAndPictures) {
+  EXPECT_EQ(errorOf("- {id: a, corners: {region: [1, 2, 3]}}"),
+            "selection: a, line 1: region, expected [x, y, width, height] in whole px, width and height of 1 or more");
+  EXPECT_NE(errorOf("- {id: a, corners: {region: [1, 2, 0, 5]}}").find("region"), std::string::npos);
+  EXPECT_NE(errorOf("- {id: a, corners: {region: [1, 2, 3000000, 5]}}").find("region"), std::string::npos);
+  EXPECT_EQ(errorOf("- {id: a, corners: {count: many}}"),
+            "selection: a, line 1: count = many, expected a whole number");
+  EXPECT_NE(errorOf("- {id: a, corners: {number: 5}}").find("= number, expected region or count"), std::string::npos);
+  EXPECT_NE(errorOf("- {id: a, corners: 7}").find("corners = 7"), std::string::npos);
+  EXPECT_NE(errorOf("- {id: a, corners: [1, 2]}").find("corners, expected {region"), std::string::npos);
+  EXPECT_NE(errorOf("- {id: a, corners: {}, point: [1, 2]}").find("its 2 shapes"), std::string::npos);
+  EXPECT_EQ(errorOf("- {id: a, point: [1, 2], stored: liver.png}"),
+            "selection: a, line 1: stored = liver.png, expected the whole path of a picture");
+  EXPECT_EQ(errorOf("- {id: a, point: [1, 2], stored: /nowhere/liver.png}"),
+            "selection: a, line 1: stored = /nowhere/liver.png, expected a picture that can be read: PNG, JPEG, ...");
 }
 
 TEST(SelectionText, ReadsJson) {
