@@ -32,7 +32,6 @@ const struct {
                  {"edges", make<features::EdgeFeatureTracker, features::EdgeConfig>},
                  {"points", make<features::PointFeatureTracker, features::PointsConfig>},
                  {"instrument", make<model::InstrumentFeatureTracker, model::InstrumentConfig>},
-
                  {"motion", make<motion::MotionFeatureTracker, motion::MotionConfig>}};
 
 }  // namespace

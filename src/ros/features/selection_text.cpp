@@ -22,7 +22,8 @@ using features::SelectedFeature;
 constexpr std::array<FeatureKind, 5> kWrittenKinds = {FeatureKind::kPoint, FeatureKind::kLine, FeatureKind::kEllipse,
                                                       FeatureKind::kSpline, FeatureKind::kMotion};
 constexpr char kShapes[] = "one of point, corners, line, ellipse, spline, motion";
-constexpr char kKeys[] = "id, one of point, corners, line, ellipse, spline, motion, and arc, closed, range, stored, desired";
+constexpr char kKeys[] =
+    "id, one of point, corners, line, ellipse, spline, motion, and arc, closed, range, stored, desired";
 
 constexpr int kFarthest = 100000;  // px
 
