@@ -12,8 +12,8 @@
 namespace laparoscope_servo::test_support {
 
 constexpr char kDotsSelection[] = "[{id: large, point: [90, 120]}, {id: small, point: [90, 50]}]";
-// On the outline of the small disc; the windows around them hold it in part.
-constexpr char kPointsSelection[] = "[{id: middle, point: [90, 50]}, {id: beside, point: [96, 46]}]";
+// In the small disc, which the windows around them hold nearly whole.
+constexpr char kPointsSelection[] = "[{id: middle, point: [90, 50]}, {id: beside, point: [92, 51]}]";
 constexpr char kEdgesSelection[] =
     "[{id: border, line: [[221, 30], [219, 200]]},"
     " {id: rim, ellipse: {centre: [90, 120], radii: [26, 22], angle: 0.3}}]";

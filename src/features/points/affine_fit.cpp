@@ -24,7 +24,8 @@ constexpr double kFar = 0.1;     // px of the window: larger last steps have not
 constexpr double kDeform = 1.0;  // px at the window's border, standard deviation of a change of shape in an image
 constexpr double kNoise = 0.5;   // grey levels: less noise than that is not believed, for pixels are whole numbers
 constexpr double kMaxDeformation = 0.4;  // of a window, other than was expected: what is not alike is bent at will
-constexpr double kMaxGain = 3.0;         // of the light, and its inverse
+constexpr double kLeastContrast = 4.0 * kNoise;  // grey levels: less is the noise of a flat window, not texture
+constexpr double kMaxGain = 3.0;                 // of the light, and its inverse
 
 LAPAROSCOPE_SERVO_CLONES
 float dotProduct(const float* __restrict a, const float* __restrict b, int count) {
@@ -229,7 +230,7 @@ void AffineFitter::judge(const Window& view, const PointImage& image, int view_l
   } else if (!(longest <= config_.max_distortion * shortest) || !(longest <= config_.max_scale) ||
              !(shortest >= 1.0 / config_.max_scale) || !(deformation.norm() <= kMaxDeformation)) {
     fit_.reason = Reason::kShape;
-  } else if (!(fit_.expected_error <= config_.max_error)) {
+  } else if (!(fit_.expected_error <= config_.max_error) || !(view.contrast() >= kLeastContrast)) {
     fit_.reason = Reason::kUncertain;
   } else {
     fit_.reason = Reason::kNone;
