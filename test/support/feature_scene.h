@@ -1,10 +1,12 @@
-// A picture with a dot, a disc and the border of a half plane, as messages and as selections.
+// A picture with a dot, a disc, a piece of texture and the border of a half plane, as messages and as selections.
 #pragma once
 
 #include <cv_bridge/cv_bridge.h>
 
+#include <cmath>
 #include <functional>
 #include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
 #include <string>
 
 #include "support/synthetic_edges.h"
@@ -12,11 +14,25 @@
 namespace laparoscope_servo::test_support {
 
 constexpr char kDotsSelection[] = "[{id: large, point: [90, 120]}, {id: small, point: [90, 50]}]";
-// In the small disc, which the windows around them hold nearly whole.
-constexpr char kPointsSelection[] = "[{id: middle, point: [90, 50]}, {id: beside, point: [92, 51]}]";
+// In the texture.
+constexpr char kPointsSelection[] = "[{id: middle, point: [165, 55]}, {id: beside, point: [172, 60]}]";
 constexpr char kEdgesSelection[] =
     "[{id: border, line: [[221, 30], [219, 200]]},"
     " {id: rim, ellipse: {centre: [90, 120], radii: [26, 22], angle: 0.3}}]";
+
+// Smooth texture from (140, 30) to (190, 80), moved by `shift` px to the right.
+inline void addTexture(cv::Mat1f& pixels, double shift) {
+  constexpr int kSide = 50, kMargin = 20;
+  cv::Mat1f texture(kSide + 2 * kMargin, kSide + 2 * kMargin), moved;
+  cv::RNG(11).fill(texture, cv::RNG::NORMAL, 0.0, 200.0);
+  cv::GaussianBlur(texture, texture, cv::Size(), 2.0);
+  const int whole = static_cast<int>(std::floor(shift));
+  const double part = shift - whole;
+  cv::getRectSubPix(texture, {kSide, kSide},
+                    {static_cast<float>(0.5 * (texture.cols - 1) - part), 0.5f * static_cast<float>(texture.rows - 1)},
+                    moved);
+  pixels(cv::Rect(140 + whole, 30, kSide, kSide)) += moved;
+}
 
 // `shift` px to the right; `seed` of the noise: no two pictures repeat.
 inline cv::Mat featureScene(double shift, unsigned seed, const std::function<void(cv::Mat1f&)>& cover = nullptr) {
@@ -27,7 +43,11 @@ inline cv::Mat featureScene(double shift, unsigned seed, const std::function<voi
   test::EdgeScene drawn;
   drawn.seed = seed;
   return test::draw(
-      drawn, [&](const Eigen::Vector2d& p) { return disc(p) || small(p) || half(p); }, cover);
+      drawn, [&](const Eigen::Vector2d& p) { return disc(p) || small(p) || half(p); },
+      [&](cv::Mat1f& pixels) {
+        addTexture(pixels, shift);
+        if (cover) cover(pixels);
+      });
 }
 
 inline cv::Mat coveredScene(unsigned seed) {

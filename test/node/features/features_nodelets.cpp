@@ -71,8 +71,8 @@ TEST_P(FeaturesNodelets, SelectsInTheNextImageAndTracks) {
   } else if (kind() == "points") {
     EXPECT_EQ(told->features[1].id, "beside");
     EXPECT_EQ(told->features[1].kind, TrackedFeature::POINT);
-    EXPECT_NEAR(told->features[1].parameters.at(0), 94.0, 0.3);
-    EXPECT_NEAR(told->features[1].parameters.at(1), 51.0, 0.3);
+    EXPECT_NEAR(told->features[1].parameters.at(0), 174.0, 0.2);
+    EXPECT_NEAR(told->features[1].parameters.at(1), 60.0, 0.2);
     EXPECT_EQ(told->features[1].outline.size(), 10u);
   } else {
     EXPECT_EQ(told->features[0].id, "border");
