@@ -80,7 +80,7 @@ ImageRelay::Fault doubled() {
     const ros::Duration half = last->isZero() ? ros::Duration(0.02) : (image.header.stamp - *last) * 0.5;
     *last = image.header.stamp;
     Image out = image;
-    out.header.stamp -= half;
+    if (!out.header.stamp.isZero()) out.header.stamp -= half;  // another fault may have taken it away
     publish(out);
     publish(image);
   };

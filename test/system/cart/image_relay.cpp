@@ -189,7 +189,7 @@ ImageRelay::Fault stamped(double offset, int period) {
   const auto count = std::make_shared<int>(0);
   return [=](const Image& image, const Publish& publish) {
     Image out = image;
-    if (++*count % period == 0) out.header.stamp += ros::Duration(offset);
+    if (++*count % period == 0 && !out.header.stamp.isZero()) out.header.stamp += ros::Duration(offset);
     publish(out);
   };
 }
