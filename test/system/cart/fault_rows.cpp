@@ -1,5 +1,7 @@
 #include "fault_rows.h"
 
+#include <utility>
+
 namespace laparoscope_servo::test {
 
 FaultRow other(const std::string& name, unsigned usually, unsigned otherwise, Outcome outcome,
@@ -22,7 +24,7 @@ FaultRow image(const std::string& name, unsigned usually, Outcome outcome, const
 }
 
 FaultRow inTurn(const std::string& name, std::size_t count) {
-  FaultRow row = image(name + " in turn", kServo, Outcome::kStands, "HOLD LOST FAULT", {});
+  FaultRow row = image(name + " in turn", kServo, Outcome::kStands, kDoubted, {});
   row.begin = [count](FaultCart& cart) { cart.relay->begin(image_faults::inTurn(cart.relay->last(count))); };
   return row;
 }
@@ -53,6 +55,14 @@ FaultRow process(const std::string& name, std::unique_ptr<ChildProcess> FaultCar
           again(cart);
         }
       });
+}
+
+std::vector<FaultRow> joined(std::initializer_list<std::vector<FaultRow> (*)()> parts) {
+  std::vector<FaultRow> all;
+  for (const auto part : parts) {
+    for (FaultRow& row : part()) all.push_back(std::move(row));
+  }
+  return all;
 }
 
 }  // namespace laparoscope_servo::test

@@ -1,6 +1,8 @@
 // How the lines of the fault table are made, by what is at fault.
 #pragma once
 
+#include <initializer_list>
+
 #include "fault_table.h"
 
 namespace laparoscope_servo::test {
@@ -9,6 +11,9 @@ constexpr unsigned kServo = static_cast<unsigned>(Situation::kServo);
 constexpr unsigned kHold = static_cast<unsigned>(Situation::kHold);
 constexpr unsigned kManual = static_cast<unsigned>(Situation::kManual);
 constexpr unsigned kAll = kServo | kHold | kManual;
+
+// States of the controller that a fault may lead to: what is missing may come again, or the picture is doubted.
+constexpr char kLost[] = "HOLD LOST", kDoubted[] = "HOLD LOST FAULT";
 
 using Begin = std::function<void(FaultCart&)>;
 
@@ -34,5 +39,8 @@ FaultRow watched(FaultRow row, double seconds);
 // A process gets a signal; after SIGSTOP it is continued in the end, otherwise `again` starts it.
 FaultRow process(const std::string& name, std::unique_ptr<ChildProcess> FaultCart::*victim, int signal,
                  const Begin& again, const std::string& states);
+
+// The rows of all parts, in their order.
+std::vector<FaultRow> joined(std::initializer_list<std::vector<FaultRow> (*)()> parts);
 
 }  // namespace laparoscope_servo::test

@@ -9,45 +9,44 @@ namespace {
 
 std::vector<FaultRow> ofImages() {
   using namespace image_faults;
-  const std::string lost = "HOLD LOST", doubted = "HOLD LOST FAULT";
   return {
-      image("frozen", kServo | kHold, Outcome::kStands, doubted, frozen),
-      image("frozen where the region is", kServo, Outcome::kStands, doubted, frozenInside),
-      image("half of the last", kServo, Outcome::kStands, doubted, half),
+      image("frozen", kServo | kHold, Outcome::kStands, kDoubted, frozen),
+      image("frozen where the region is", kServo, Outcome::kStands, kDoubted, frozenInside),
+      image("half of the last", kServo, Outcome::kStands, kDoubted, half),
       inTurn("two", 2),
       inTurn("twelve", 12),
-      image("swapped in pairs", kServo, Outcome::kEither, lost, swapped),
-      image("mirrored left to right", kServo, Outcome::kStands, doubted, [] { return flipped(1); }),
-      image("mirrored upside down", 0, Outcome::kStands, doubted, [] { return flipped(0); }),
-      image("rolled by 180 degrees", kServo, Outcome::kStands, doubted, [] { return flipped(-1); }),
-      image("mirrored and rolled by 90 degrees", 0, Outcome::kStands, doubted, flippedAndTurned),
-      image("shifted by 40 px", 0, Outcome::kEither, doubted,
+      image("swapped in pairs", kServo, Outcome::kEither, kLost, swapped),
+      image("mirrored left to right", kServo, Outcome::kStands, kDoubted, [] { return flipped(1); }),
+      image("mirrored upside down", 0, Outcome::kStands, kDoubted, [] { return flipped(0); }),
+      image("rolled by 180 degrees", kServo, Outcome::kStands, kDoubted, [] { return flipped(-1); }),
+      image("mirrored and rolled by 90 degrees", 0, Outcome::kStands, kDoubted, flippedAndTurned),
+      image("shifted by 40 px", 0, Outcome::kEither, kDoubted,
             [] {
               return warped({1.0, 0.0, 40.0, 0.0, 1.0, 0.0});
             }),
-      image("enlarged by a quarter", 0, Outcome::kEither, doubted,
+      image("enlarged by a quarter", 0, Outcome::kEither, kDoubted,
             [] {
               return warped({1.25, 0.0, -80.0, 0.0, 1.25, -60.0});
             }),
-      image("of another size", kServo, Outcome::kStands, lost, [] { return resized(320, 240); }),
-      image("of one pixel", kServo, Outcome::kStands, lost, [] { return resized(1, 1); }),
-      image("late by 0.5 s", kServo, Outcome::kStands, lost, [] { return late(0.5); }),
-      image("1 in 5 stamped 30 ms early", kServo, Outcome::kEither, lost, [] { return stamped(-0.03, 5); }),
-      image("1 in 5 stamped 1 s ahead", kServo, Outcome::kEither, lost, [] { return stamped(1.0, 5); }),
-      image("stamped 1 s ahead", kServo, Outcome::kStands, lost, [] { return stamped(1.0); }),
+      image("of another size", kServo, Outcome::kStands, kLost, [] { return resized(320, 240); }),
+      image("of one pixel", kServo, Outcome::kStands, kLost, [] { return resized(1, 1); }),
+      image("late by 0.5 s", kServo, Outcome::kStands, kLost, [] { return late(0.5); }),
+      image("1 in 5 stamped 30 ms early", kServo, Outcome::kEither, kLost, [] { return stamped(-0.03, 5); }),
+      image("1 in 5 stamped 1 s ahead", kServo, Outcome::kEither, kLost, [] { return stamped(1.0, 5); }),
+      image("stamped 1 s ahead", kServo, Outcome::kStands, kLost, [] { return stamped(1.0); }),
       image("stamped unevenly, 0 to 0.1 s later", kServo, Outcome::kGoesOn, "", [] { return unevenlyStamped(0.1); }),
-      image("all of one stamp", kServo, Outcome::kStands, lost, [] { return slowlyStamped(0.0); }),
-      image("stamps that go half as fast", 0, Outcome::kStands, lost, [] { return slowlyStamped(0.5); }),
-      image("without stamps", kServo, Outcome::kStands, lost, unstamped),
-      image("flickering", kServo, Outcome::kEither, lost, flickering),
-      image("black", kServo, Outcome::kStands, lost, black),
-      image("none", kServo | kHold, Outcome::kStands, lost, silent),
-      image("1 in 2 dropped", kServo, Outcome::kEither, lost, [] { return dropped(2); }),
+      image("all of one stamp", kServo, Outcome::kStands, kLost, [] { return slowlyStamped(0.0); }),
+      image("stamps that go half as fast", 0, Outcome::kStands, kLost, [] { return slowlyStamped(0.5); }),
+      image("without stamps", kServo, Outcome::kStands, kLost, unstamped),
+      image("flickering", kServo, Outcome::kEither, kLost, flickering),
+      image("black", kServo, Outcome::kStands, kLost, black),
+      image("none", kServo | kHold, Outcome::kStands, kLost, silent),
+      image("1 in 2 dropped", kServo, Outcome::kEither, kLost, [] { return dropped(2); }),
       image("1 in 10 dropped", 0, Outcome::kGoesOn, "", [] { return dropped(10); }),
       image("1 in 50 dropped", 0, Outcome::kGoesOn, "", [] { return dropped(50); }),
-      image("1 in 4 of another camera", kServo, Outcome::kEither, lost, [] { return otherScene(4); }),
-      image("of another camera", kServo, Outcome::kStands, lost, [] { return otherScene(1); }),
-      image("of an encoding that they are not in", 0, Outcome::kStands, lost, mislabelled),
+      image("1 in 4 of another camera", kServo, Outcome::kEither, kLost, [] { return otherScene(4); }),
+      image("of another camera", kServo, Outcome::kStands, kLost, [] { return otherScene(1); }),
+      image("of an encoding that they are not in", 0, Outcome::kStands, kLost, mislabelled),
   };
 }
 
@@ -73,17 +72,16 @@ std::vector<FaultRow> ofInputs() {
                "controller/manual", "velocity_nan", 1e4),
       stranger("task error: another's", kServo, kServo | kHold, Outcome::kGoesOn, "HOLD", "tracker/task_error",
                "elsewhere", 25.0),
-      stranger("task error: another's, 10 kHz", 0, kServo | kHold, Outcome::kEither, "HOLD LOST", "tracker/task_error",
+      stranger("task error: another's, 10 kHz", 0, kServo | kHold, Outcome::kEither, kLost, "tracker/task_error",
                "elsewhere", 1e4),
-      stranger("task error: silent, another's", kServo, kServo | kHold, Outcome::kStands, "HOLD LOST",
-               "tracker/task_error", "elsewhere", 25.0,
-               [](FaultCart& cart) { cart.relay->begin(image_faults::silent()); }),
-      stranger("measured velocity: another's", 0, kServo, Outcome::kEither, "HOLD LOST FAULT", "aesop/measured_cv",
-               "measured", 50.0),
+      stranger("task error: silent, another's", kServo, kServo | kHold, Outcome::kStands, kLost, "tracker/task_error",
+               "elsewhere", 25.0, [](FaultCart& cart) { cart.relay->begin(image_faults::silent()); }),
+      stranger("measured velocity: another's", 0, kServo, Outcome::kEither, kDoubted, "aesop/measured_cv", "measured",
+               50.0),
       stranger("camera_info: another's, of twice the focal length", 0, kServo, Outcome::kGoesOn, "", "camera_info",
                "intrinsics", 25.0),
-      stranger("images: another's", kServo, kServo | kHold, Outcome::kEither, "HOLD LOST FAULT", "relayed/image_raw",
-               "grey", 25.0),
+      stranger("images: another's", kServo, kServo | kHold, Outcome::kEither, kDoubted, "relayed/image_raw", "grey",
+               25.0),
   };
 }
 
@@ -118,12 +116,12 @@ std::vector<FaultRow> ofRobot() {
             emergencyStopAndBack),
       stranger("robot: disabled, another says ENABLED", kServo, kAll, Outcome::kStands, "LOST HOLD",
                "aesop/operating_state", "enabled", 100.0, [](FaultCart& cart) { cart.robot("disable"); }),
-      other("robot: paused", kServo, kAll, Outcome::kStands, "HOLD LOST", [](FaultCart& cart) { cart.robot("pause"); }),
-      other("robot: a motor trips", 0, kAll, Outcome::kStands, "HOLD LOST FAULT",
+      other("robot: paused", kServo, kAll, Outcome::kStands, kLost, [](FaultCart& cart) { cart.robot("pause"); }),
+      other("robot: a motor trips", 0, kAll, Outcome::kStands, kDoubted,
             [](FaultCart& cart) { cart.bench.truth().fault("joint", 2.0); }),
-      other("robot: the port goes away", kServo, kAll, Outcome::kStands, "HOLD LOST FAULT",
+      other("robot: the port goes away", kServo, kAll, Outcome::kStands, kDoubted,
             [](FaultCart& cart) { cart.bench.truth().request("fault hangup for 1"); }),
-      other("robot: the line is silent", 0, kAll, Outcome::kStands, "HOLD LOST FAULT",
+      other("robot: the line is silent", 0, kAll, Outcome::kStands, kDoubted,
             [](FaultCart& cart) { cart.bench.truth().request("fault stall for 1"); }),
   };
 }
@@ -133,10 +131,10 @@ std::vector<FaultRow> ofProcesses() {
       process(
           "controller: killed, started again", &FaultCart::controller, SIGKILL,
           [](FaultCart& cart) { cart.startController(); }, ""),
-      process("tracker: hangs", &FaultCart::tracker, SIGSTOP, {}, "HOLD LOST"),
+      process("tracker: hangs", &FaultCart::tracker, SIGSTOP, {}, kLost),
       process("controller: hangs", &FaultCart::controller, SIGSTOP, {}, ""),
       other(
-          "robot's node: hangs", kServo, kAll, Outcome::kStands, "HOLD LOST",
+          "robot's node: hangs", kServo, kAll, Outcome::kStands, kLost,
           [](FaultCart& cart) { cart.bench.node().kill(SIGSTOP); },
           [](FaultCart& cart) { cart.bench.node().kill(SIGCONT); }),
   };
@@ -147,9 +145,8 @@ std::vector<FaultRow> ofProcesses() {
 }
 
 std::vector<FaultRow> ofFrames() {
-  const std::string doubted = "HOLD LOST FAULT";
   const auto row = [&](const std::string& name, unsigned usually, const std::string& says) {
-    return stranger("tf: " + name, usually, kServo | kHold, Outcome::kEither, doubted, "/tf", says, 50.0);
+    return stranger("tf: " + name, usually, kServo | kHold, Outcome::kEither, kDoubted, "/tf", says, 50.0);
   };
   return {
       row("another's camera, 50 mm off", kServo, "tip_off"),
@@ -162,13 +159,8 @@ std::vector<FaultRow> ofFrames() {
 }  // namespace
 
 const std::vector<FaultRow>& faultTable() {
-  static const std::vector<FaultRow> table = [] {
-    std::vector<FaultRow> all;
-    for (const auto part : {&ofImages, &ofInputs, &ofRobot, &ofFrames, &ofProcesses, &reportedFaults}) {
-      for (const FaultRow& row : part()) all.push_back(row);
-    }
-    return all;
-  }();
+  static const std::vector<FaultRow> table =
+      joined({&ofImages, &ofInputs, &ofRobot, &ofFrames, &ofProcesses, &reportedFaults});
   return table;
 }
 

@@ -63,19 +63,6 @@ namespace {
 using Image = sensor_msgs::Image;
 using Publish = ImageRelay::Publish;
 
-ImageRelay::Fault changed(const std::function<void(cv::Mat&)>& change) {
-  return [change](const Image& image, const Publish& publish) {
-    Image out = image;
-    cv::Mat mat = pixels(out);
-    if (!mat.empty()) change(mat);
-    publish(out);
-  };
-}
-
-cv::Rect middle(const cv::Mat& image) {
-  return {image.cols / 4, image.rows / 6, image.cols / 2, 2 * image.rows / 3};
-}
-
 cv::Mat noise(const cv::Size& size) {
   cv::Mat coarse(size / 16, CV_8UC3), out;
   cv::RNG random(5);
@@ -92,6 +79,25 @@ cv::Mat pixels(Image& image) {
   if (!sensible(image.width) || !sensible(image.height) || image.encoding != "bgr8") return {};
   if (image.step != 3 * image.width || image.data.size() != std::size_t{image.step} * image.height) return {};
   return {static_cast<int>(image.height), static_cast<int>(image.width), CV_8UC3, image.data.data(), image.step};
+}
+
+cv::Rect middle(const cv::Mat& image) {
+  return {image.cols / 4, image.rows / 6, image.cols / 2, 2 * image.rows / 3};
+}
+
+ImageRelay::Fault changedInTime(const std::function<void(cv::Mat&, double)>& change) {
+  const auto first = std::make_shared<ros::Time>();
+  return [=](const Image& image, const Publish& publish) {
+    if (first->isZero()) *first = image.header.stamp;
+    Image out = image;
+    cv::Mat mat = pixels(out);
+    if (!mat.empty()) change(mat, (image.header.stamp - *first).toSec());
+    publish(out);
+  };
+}
+
+ImageRelay::Fault changed(const std::function<void(cv::Mat&)>& change) {
+  return changedInTime([change](cv::Mat& mat, double) { change(mat); });
 }
 
 ImageRelay::Fault frozen() {

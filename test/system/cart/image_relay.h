@@ -54,6 +54,12 @@ namespace image_faults {
 
 // The pixels themselves, three bytes each; empty where an image has none: another fault was there before.
 cv::Mat pixels(sensor_msgs::Image& image);
+// Where the region is.
+cv::Rect middle(const cv::Mat& image);
+
+// Of the pixels alone. `change` gets the picture, and the time since the first one [s].
+ImageRelay::Fault changed(const std::function<void(cv::Mat&)>& change);
+ImageRelay::Fault changedInTime(const std::function<void(cv::Mat&, double)>& change);
 
 ImageRelay::Fault frozen();
 // Only what lies in the middle, where the region is.

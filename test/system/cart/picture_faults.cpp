@@ -12,25 +12,10 @@ namespace laparoscope_servo::test::image_faults {
 
 namespace {
 
-using Image = sensor_msgs::Image;
-using Publish = ImageRelay::Publish;
-
 // Of the camera head, about the middle, and larger by `scale`.
 cv::Matx23d aboutTheMiddle(const cv::Mat& image, double degrees, double scale) {
   const cv::Point2f middle(0.5F * static_cast<float>(image.cols - 1), 0.5F * static_cast<float>(image.rows - 1));
   return cv::getRotationMatrix2D(middle, degrees, scale);
-}
-
-// `change` gets the picture and the time since the first one [s].
-ImageRelay::Fault changedInTime(const std::function<void(cv::Mat&, double)>& change) {
-  const auto first = std::make_shared<ros::Time>();
-  return [=](const Image& image, const Publish& publish) {
-    if (first->isZero()) *first = image.header.stamp;
-    Image out = image;
-    cv::Mat mat = pixels(out);
-    if (!mat.empty()) change(mat, (image.header.stamp - *first).toSec());
-    publish(out);
-  };
 }
 
 void warp(cv::Mat& image, const cv::Matx23d& to) {
@@ -42,7 +27,7 @@ void warp(cv::Mat& image, const cv::Matx23d& to) {
 ImageRelay::Fault torn() {
   const auto before = std::make_shared<cv::Mat>();
   const auto random = std::make_shared<cv::RNG>(11);
-  return changedInTime([=](cv::Mat& mat, double) {
+  return changed([=](cv::Mat& mat) {
     const cv::Mat now = mat.clone();
     const int line = random->uniform(1, mat.rows - 1);
     if (!before->empty()) before->rowRange(line, mat.rows).copyTo(mat.rowRange(line, mat.rows));
@@ -52,7 +37,7 @@ ImageRelay::Fault torn() {
 
 ImageRelay::Fault interlaced() {
   const auto before = std::make_shared<cv::Mat>();
-  return changedInTime([=](cv::Mat& mat, double) {
+  return changed([=](cv::Mat& mat) {
     const cv::Mat now = mat.clone();
     for (int y = 1; y < mat.rows && !before->empty(); y += 2) before->row(y).copyTo(mat.row(y));
     *before = now;
@@ -61,7 +46,7 @@ ImageRelay::Fault interlaced() {
 
 ImageRelay::Fault runningThrough(int right, int down) {
   const auto shift = std::make_shared<cv::Point>(0, 0);
-  return changedInTime([=](cv::Mat& mat, double) {
+  return changed([=](cv::Mat& mat) {
     *shift += cv::Point(right, down);
     const cv::Mat now = mat.clone();
     for (int y = 0; y < mat.rows; ++y) {
@@ -74,19 +59,19 @@ ImageRelay::Fault runningThrough(int right, int down) {
 }
 
 ImageRelay::Fault swappedColours() {
-  return changedInTime([](cv::Mat& mat, double) { cv::cvtColor(mat.clone(), mat, cv::COLOR_BGR2RGB); });
+  return changed([](cv::Mat& mat) { cv::cvtColor(mat.clone(), mat, cv::COLOR_BGR2RGB); });
 }
 
 ImageRelay::Fault gamma(double exponent) {
   cv::Mat table(1, 256, CV_8UC1);
   for (int k = 0; k < 256; ++k) table.at<uchar>(k) = cv::saturate_cast<uchar>(255.0 * std::pow(k / 255.0, exponent));
-  return changedInTime([table](cv::Mat& mat, double) { cv::LUT(mat.clone(), table, mat); });
+  return changed([table](cv::Mat& mat) { cv::LUT(mat.clone(), table, mat); });
 }
 
 ImageRelay::Fault smoothed(double pictures) {
   const auto mean = std::make_shared<cv::Mat>();
   const double weight = 1.0 - std::exp(-1.0 / pictures);
-  return changedInTime([=](cv::Mat& mat, double) {
+  return changed([=](cv::Mat& mat) {
     if (mean->empty()) mat.convertTo(*mean, CV_32FC3);
     cv::accumulateWeighted(mat, *mean, weight);
     mean->convertTo(mat, CV_8UC3);
@@ -94,7 +79,7 @@ ImageRelay::Fault smoothed(double pictures) {
 }
 
 ImageRelay::Fault compressed(int quality) {
-  return changedInTime([quality](cv::Mat& mat, double) {
+  return changed([quality](cv::Mat& mat) {
     std::vector<std::uint8_t> bytes;
     cv::imencode(".jpg", mat, bytes, {cv::IMWRITE_JPEG_QUALITY, quality});
     cv::imdecode(bytes, cv::IMREAD_COLOR).copyTo(mat);
@@ -102,7 +87,7 @@ ImageRelay::Fault compressed(int quality) {
 }
 
 ImageRelay::Fault sideBySide() {
-  return changedInTime([](cv::Mat& mat, double) {
+  return changed([](cv::Mat& mat) {
     cv::Mat narrow;
     cv::resize(mat, narrow, {mat.cols / 2, mat.rows}, 0, 0, cv::INTER_AREA);
     narrow.copyTo(mat.colRange(0, mat.cols / 2));
@@ -111,8 +96,8 @@ ImageRelay::Fault sideBySide() {
 }
 
 ImageRelay::Fault menu() {
-  return changedInTime([](cv::Mat& mat, double) {
-    const cv::Rect box(mat.cols / 4, mat.rows / 6, mat.cols / 2, 2 * mat.rows / 3);
+  return changed([](cv::Mat& mat) {
+    const cv::Rect box = middle(mat);
     cv::rectangle(mat, box, {60, 60, 60}, cv::FILLED);
     const char* const lines[] = {"WHITE BALANCE", "BRIGHTNESS  5", "ENHANCE  HIGH", "FREEZE  OFF", "EXIT"};
     int y = box.y;
@@ -123,7 +108,7 @@ ImageRelay::Fault menu() {
 }
 
 ImageRelay::Fault testPicture() {
-  return changedInTime([](cv::Mat& mat, double) {
+  return changed([](cv::Mat& mat) {
     constexpr int kBars = 8;
     for (int k = 0; k < kBars; ++k) {
       const cv::Scalar colour(k & 1 ? 190 : 20, k & 2 ? 190 : 20, k & 4 ? 190 : 20);
@@ -153,7 +138,7 @@ ImageRelay::Fault stabilised() {
     cv::Point2d shift;
   };
   const auto state = std::make_shared<State>();
-  return changedInTime([=](cv::Mat& mat, double) {
+  return changed([=](cv::Mat& mat) {
     cv::Mat small, grey;
     cv::resize(mat, small, mat.size() / kCoarse, 0, 0, cv::INTER_AREA);
     cv::cvtColor(small, small, cv::COLOR_BGR2GRAY);

@@ -19,8 +19,6 @@ namespace laparoscope_servo::test {
 
 namespace {
 
-const std::string kLost = "HOLD LOST", kDoubted = "HOLD LOST FAULT";
-
 // Watched for so long: what comes of it shows later.
 FaultRow either(const std::string& name, double seconds, const std::function<ImageRelay::Fault()>& fault) {
   return watched(image(name, 0, Outcome::kEither, kDoubted, fault), seconds);
@@ -132,7 +130,7 @@ std::vector<FaultRow> ofServices() {
     return other(name, 0, kServo, outcome, states, begin, end);
   };
   return {
-      in_servo("region: another is selected", Outcome::kEither, "SERVO " + kDoubted,
+      in_servo("region: another is selected", Outcome::kEither, std::string("SERVO ") + kDoubted,
                [](FaultCart&) { select(40, 300); }),
       in_servo("region: 30 others, one after the other", Outcome::kEither, kDoubted,
                [](FaultCart&) { repeat(30, [](int k) { select(20 * k % 500, 37 * k % 350); }); }),
@@ -177,11 +175,7 @@ std::vector<FaultRow> ofHands() {
 }  // namespace
 
 std::vector<FaultRow> reportedFaults() {
-  std::vector<FaultRow> all;
-  for (const auto part : {&ofDelivery, &ofPictures, &ofServices, &ofHands, &reportedRobotFaults}) {
-    for (const FaultRow& row : part()) all.push_back(row);
-  }
-  return all;
+  return joined({&ofDelivery, &ofPictures, &ofServices, &ofHands, &reportedRobotFaults});
 }
 
 }  // namespace laparoscope_servo::test

@@ -14,11 +14,9 @@ namespace laparoscope_servo::test {
 
 namespace {
 
-const std::string kLost = "HOLD LOST", kDoubted = "HOLD LOST FAULT";
-
 FaultRow arm(const std::string& name, Outcome outcome, const std::string& fault, double seconds = 4.0,
              unsigned otherwise = kServo) {
-  return watched(other("robot: " + name, 0, otherwise, outcome, "HOLD LOST FAULT",
+  return watched(other("robot: " + name, 0, otherwise, outcome, kDoubted,
                        [fault](FaultCart& cart) { cart.bench.truth().request("fault " + fault); }),
                  seconds);
 }
@@ -155,11 +153,7 @@ std::vector<FaultRow> ofMachines() {
 }  // namespace
 
 std::vector<FaultRow> reportedRobotFaults() {
-  std::vector<FaultRow> all;
-  for (const auto part : {&ofArm, &ofSeconds, &ofMachines}) {
-    for (const FaultRow& row : part()) all.push_back(row);
-  }
-  return all;
+  return joined({&ofArm, &ofSeconds, &ofMachines});
 }
 
 }  // namespace laparoscope_servo::test
