@@ -1,9 +1,11 @@
-// A process that a test starts, may kill, and never leaves behind.
+// A process that a test starts, may kill, and never leaves behind: it ends with the thread that has started it, also
+// when the test crashes.
 #pragma once
 
 #include <dirent.h>
 #include <fcntl.h>
 #include <signal.h>
+#include <sys/prctl.h>
 #include <sys/types.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -24,6 +26,7 @@ class ChildProcess {
       : pid_(::fork()) {
     if (pid_ < 0) throw std::runtime_error("cannot fork");
     if (pid_ > 0) return;
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (!output.empty()) {
       const int file = ::open(output.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
       ::dup2(file, STDOUT_FILENO);
