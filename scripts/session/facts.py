@@ -52,7 +52,8 @@ class TwoCarts(Exception):
 
 class Session:
     def __init__(self, cart=""):
-        self.cart = cart.rstrip("/")  # namespace of the topics that are read; empty: all, which must be of one cart
+        name = cart.strip("/")
+        self.cart = "/" + name if name else ""  # namespace of the topics that are read; empty: all, which must be of one cart
         self.topics = {}  # what is told by a topic: the one topic that is read for it
         self.sources = []  # path, what is wrong with it
         self.begin, self.end = math.inf, -math.inf
@@ -162,16 +163,19 @@ def read_bag(session, path, progress):
     session.sources.append((str(path), bag.problem))
 
 
+# Type of a message: how its topic ends, and what it tells.
+ROLES = {"laparoscope_servo/ScopeVelocity": ("servo_command", "commands"), "geometry_msgs/PoseStamped": ("measured_cp", "positions"),
+         "laparoscope_servo/ControllerState": ("", "the controller's states"),
+         "laparoscope_servo/OperatingState": ("", "the robot's states"), "std_msgs/String": ("session", "parameters")}
+
+
 def role_of(kind, topic):
     """What a message tells of the session; empty: nothing that the report is made of."""
     if kind == "laparoscope_servo/Homography":
         return "" if topic.endswith("/recorded/tracker/homography") else "results"  # the player's copies of earlier ones
     if kind in ("sensor_msgs/CompressedImage", "sensor_msgs/Image"):
         return "" if "/tracker/" in topic else "images"  # the tracker's previews and masks are none of the camera's
-    ends = {"laparoscope_servo/ScopeVelocity": ("servo_command", "commands"), "geometry_msgs/PoseStamped": ("measured_cp", "positions"),
-            "laparoscope_servo/ControllerState": ("", "the controller's states"),
-            "laparoscope_servo/OperatingState": ("", "the robot's states"), "std_msgs/String": ("session", "parameters")}
-    end, role = ends.get(kind, ("", ""))
+    end, role = ROLES.get(kind, ("", ""))
     return role if topic.endswith(end) else ""
 
 

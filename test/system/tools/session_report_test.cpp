@@ -151,6 +151,8 @@ TEST_F(SessionReport, OfTwoCartsItTellsOfTheOneThatIsChosen) {
   EXPECT_TRUE(has("100 results of the tracker"));
   EXPECT_TRUE(has("begins as LOST"));
   EXPECT_FALSE(has("SERVO"));
+  ASSERT_EQ(report("'" + file + "'", "--cart left"), 0) << contents("log");
+  EXPECT_TRUE(has("begins as SERVO"));
   ASSERT_EQ(report("'" + file + "'", "--cart /middle"), 0);
   EXPECT_TRUE(has("There is nothing in it"));
   EXPECT_NE(contents("log").find("no topic begins with /middle/"), std::string::npos) << contents("log");
