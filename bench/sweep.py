@@ -19,6 +19,7 @@ import json
 import os
 import pathlib
 import re
+import shutil
 import statistics
 import subprocess
 import sys
@@ -156,15 +157,12 @@ class Build:
     def __init__(self, arguments, targets):
         self.tree, self.folder = arguments.work.resolve() / "tree", arguments.work.resolve() / "build"
         self.jobs, self.targets = arguments.jobs, targets
-        if not self.tree.exists():
-            self.tree.mkdir(parents=True)
-            run(["cp", "-r", *[TREE / name for name in COPIED if (TREE / name).exists()], self.tree])
-        for file in TREE.joinpath("src").rglob("*"):  # of an earlier sweep: the numbers as they are now
-            if file.suffix in (".cpp", ".h"):
+        for name in COPIED:  # also over what an earlier sweep has written
+            for file in [TREE / name] if (TREE / name).is_file() else TREE.joinpath(name).rglob("*"):
                 copy = self.tree / file.relative_to(TREE)
-                copy.parent.mkdir(parents=True, exist_ok=True)
-                if not copy.exists() or "sweptConstant" in copy.read_text() or copy.read_text() != file.read_text():
-                    copy.write_text(file.read_text())
+                if file.is_file() and not (copy.exists() and copy.read_bytes() == file.read_bytes()):
+                    copy.parent.mkdir(parents=True, exist_ok=True)
+                    shutil.copy(file, copy)
         run(["cmake", "-S", self.tree, "-B", self.folder, "-DLAPAROSCOPE_SERVO_BENCH=ON", "-DCATKIN_ENABLE_TESTING=OFF",
              "-DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON", "-DPYTHON_EXECUTABLE=/usr/bin/python3", "-DPython3_EXECUTABLE=/usr/bin/python3"])
         sources = [Source(f, self.tree) for folder in FOLDER.values() for f in sorted((self.tree / folder).rglob("*.cpp"))]
