@@ -15,8 +15,10 @@ struct ViewConfig {
   // of the region when a view is stored, so that no instrument becomes part of a view
   double min_visible_fraction = 0.5;
   // Limits within which a view counts as reached, so that a recall goes on to the next one.
-  double arrival_centre = 20.0;  // px: distance of the region's centre from its place in the view
-  double arrival_scale = 0.1;    // relative difference between the region's scale and that in the view
+  // px: distance of the region's centre from its place in the view. The scope has to be slow by then: what it does
+  // while the next view is searched has not shown its effect, and uses up effect/unconfirmed_turn of the controller.
+  double arrival_centre = 6.0;
+  double arrival_scale = 0.1;  // relative difference between the region's scale and that in the view
 };
 
 // Adds the rows of all parameters, with range and meaning.
