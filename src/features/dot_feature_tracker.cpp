@@ -45,13 +45,8 @@ void DotFeatureTracker::tell() {
     told.state = dot.state;
     told.reason = reasonText(dot.reason);
     told.parameters = dot.centre;
-    const bool tracks = dot.state == State::kTracking;
-    if (tracks) {
-      told.covariance = dot.covariance;
-    } else {
-      setUnknown(told.covariance, 2);
-    }
-    told.share = tracks ? 1.0 : 0.0;
+    told.covariance = dot.covariance;
+    told.share = dot.state == State::kTracking ? 1.0 : 0.0;
     told.expected_error = dot.expected_error;
     const double radius = std::sqrt(dot.area / M_PI);
     for (std::size_t i = 0; i <= kOutlinePoints; ++i) {

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "features/dot_finder.h"
+#include "laparoscope_servo/features/tracked_feature.h"
 #include "laparoscope_servo/geometry/homography.h"
 #include "laparoscope_servo/image/image_type.h"
 #include "laparoscope_servo/parameters/table.h"
@@ -248,8 +249,8 @@ class DotTracker::Implementation {
       told.reason = dot.keeper.reason();
       told.centre = dot.place;
       const bool tracks = told.state == State::kTracking;
-      told.covariance =
-          tracks ? dot.measured.covariance : Eigen::Matrix2d::Identity() * std::numeric_limits<double>::infinity();
+      told.covariance = dot.measured.covariance;
+      if (!tracks) setUnknown(told.covariance);
       told.expected_error = tracks ? worst(dot.measured.covariance) : std::numeric_limits<double>::infinity();
       told.area = dot.looks.area;
       told.level = dot.looks.level;

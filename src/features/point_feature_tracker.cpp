@@ -103,13 +103,8 @@ void PointFeatureTracker::tell() {
     told.state = point.state;
     told.reason = reasonText(point.reason);
     told.parameters = point.place;
-    const bool tracks = point.state == State::kTracking;
-    if (tracks) {
-      told.covariance = point.covariance;
-    } else {
-      setUnknown(told.covariance, 2);
-    }
-    told.share = tracks ? point.share : 0.0;
+    told.covariance = point.covariance;
+    told.share = point.state == State::kTracking ? point.share : 0.0;
     told.expected_error = point.expected_error;
     for (std::size_t i = 0; i < kCorners.size(); ++i)
       told.outline[i] = point.place + 0.5 * config_.window * (point.shape * kCorners[i]);

@@ -13,6 +13,7 @@
 #include "features/points/point_motion.h"
 #include "features/points/point_selection.h"
 #include "features/points/tracked_point.h"
+#include "laparoscope_servo/features/tracked_feature.h"
 #include "laparoscope_servo/image/image_type.h"
 #include "laparoscope_servo/validation/error_report.h"
 
@@ -248,10 +249,9 @@ class PointTracker::Implementation {
       told.place = point.pose.place;
       told.shape = point.pose.shape;
       const bool tracks = told.state == State::kTracking;
-      const double infinity = std::numeric_limits<double>::infinity();
-      told.covariance =
-          tracks ? point.fit.covariance : Eigen::Matrix2d(Eigen::Vector2d::Constant(infinity).asDiagonal());
-      told.expected_error = tracks ? point.fit.expected_error : infinity;
+      told.covariance = point.fit.covariance;
+      if (!tracks) setUnknown(told.covariance);
+      told.expected_error = tracks ? point.fit.expected_error : std::numeric_limits<double>::infinity();
       told.gain = point.pose.gain;
       told.offset = point.pose.offset;
       told.correlation = point.isSeen() ? point.fit.correlation : 0.0;

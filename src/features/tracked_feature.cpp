@@ -1,7 +1,5 @@
 #include "laparoscope_servo/features/tracked_feature.h"
 
-#include <limits>
-
 #include "laparoscope_servo/features/curve.h"
 
 namespace laparoscope_servo::features {
@@ -25,8 +23,8 @@ const char* kindName(FeatureKind kind) {
 }
 
 void setUnknown(Eigen::MatrixXd& covariance, Eigen::Index count) {
-  covariance.setZero(count, count);
-  covariance.diagonal().setConstant(std::numeric_limits<double>::infinity());
+  covariance.resize(count, count);
+  setUnknown(covariance);
 }
 
 void tellSites(const std::vector<SiteFinding>& findings, std::vector<TrackedSite>& sites) {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "laparoscope_servo/features/tracked_feature.h"
 #include "laparoscope_servo/validation/error_report.h"
 #include "motion/motion_sequence.h"
 
@@ -174,8 +175,7 @@ const AnchoredResult& AnchoredMotion::Implementation::track(const cv::Mat& image
   result_.covariance = covariance_;
   result_.expected_error = errorAtCorners();
   if (result_.state != State::kTracking) {
-    result_.covariance.setZero();
-    result_.covariance.diagonal().setConstant(kInfinite);
+    features::setUnknown(result_.covariance);
     result_.expected_error = kInfinite;
   }
   return result_;

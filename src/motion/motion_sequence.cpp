@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "laparoscope_servo/features/tracked_feature.h"
 #include "laparoscope_servo/image/image_type.h"
 
 namespace laparoscope_servo::motion {
@@ -146,8 +147,7 @@ const MotionResult& MotionSequence::track(const cv::Mat& image, double stamp,
   result_.region = region_;
   if (result_.state != State::kTracking) {
     result_.expected_error = kInfinite;
-    result_.covariance.setZero();
-    result_.covariance.diagonal().setConstant(kInfinite);
+    features::setUnknown(result_.covariance);
   }
   std::swap(last_, current_);
   last_stamp_ = stamp;

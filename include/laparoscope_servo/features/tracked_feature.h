@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -56,7 +57,13 @@ struct TrackedFeatures {
   std::vector<TrackedFeature> features;
 };
 
-// The covariance of `count` parameters of which nothing is known.
+// The covariance of parameters of which nothing is known: infinite variances, and 0 beside them.
+template <class Covariance>
+void setUnknown(Covariance& covariance) {
+  covariance.setZero();
+  covariance.diagonal().setConstant(std::numeric_limits<double>::infinity());
+}
+// Of `count` parameters.
 void setUnknown(Eigen::MatrixXd& covariance, Eigen::Index count);
 
 // Of a fit to edges, those in the image that have a say; not those beyond the curve's end.

@@ -157,6 +157,9 @@ TEST(Dots, aDotThatVanishesIsNotClaimedThoughAnotherIsNear) {
     const DotsResult& result = tracker.track(draw(one, k), 0.04 * k);
     EXPECT_EQ(result.dots[0].state, State::kSearching) << "image " << k;
     EXPECT_TRUE(std::isinf(result.dots[0].expected_error));
+    EXPECT_TRUE(std::isinf(result.dots[0].covariance(0, 0)) && std::isinf(result.dots[0].covariance(1, 1)));
+    EXPECT_EQ(result.dots[0].covariance(0, 1), 0.0);
+    EXPECT_EQ(result.dots[0].covariance(1, 0), 0.0);
     EXPECT_EQ(result.dots[1].state, State::kTracking) << "image " << k;
     EXPECT_LT((result.dots[1].centre - two[1]).norm(), 0.2);
   }

@@ -64,7 +64,7 @@ TEST(FeatureState, idleStaysIdle) {
 }
 
 TEST(FeatureState, everyReasonHasWords) {
-  for (int k = 1; k <= static_cast<int>(Reason::kCovered); ++k)
+  for (int k = 1; k <= static_cast<int>(Reason::kNothingDominates); ++k)
     EXPECT_GT(std::string(reasonText(Reason(k))).size(), 4u);
   EXPECT_STREQ(stateName(State::kSearching), "SEARCHING");
 }
