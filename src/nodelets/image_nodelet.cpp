@@ -103,8 +103,11 @@ void ImageNodelet::checkTime(const ros::Time& stamp, double max_ahead) {
   const ros::Time now = ros::Time::now();
   if ((last_now_ - now).toSec() > kJump) clockJumpedBack();
   last_now_ = now;
-  // Simulated time comes on its own topic, before or after the image, so stamps are then not compared with it.
-  checkStamp(stamp, ros::Time::isSimTime() ? ros::Time() : now, max_ahead);
+  checkStamp(stamp, clockOfStamps(), max_ahead);
+}
+
+ros::Time ImageNodelet::clockOfStamps() {
+  return ros::Time::isSimTime() ? ros::Time() : ros::Time::now();
 }
 
 void ImageNodelet::refuse(const std::string& error, Refusal cause) {

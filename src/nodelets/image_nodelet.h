@@ -44,6 +44,8 @@ class ImageNodelet : public nodelet::Nodelet {
   void subscribe();
   // For process(), before the image is used. Throws ImageError, see checkStamp of ros/tracker/image_gate.h.
   void checkTime(const ros::Time& stamp, double max_ahead);
+  // For checkStamp; zero in simulated time, which comes on its own topic, before or after what is stamped.
+  static ros::Time clockOfStamps();
 
  private:
   void onInit() override;

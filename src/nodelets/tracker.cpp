@@ -126,10 +126,9 @@ void Tracker::followMasks(MaskInputConfig config) {
 // A mask that is refused leaves tracking as it is.
 void Tracker::takeMask(const ros::MessageEvent<const sensor_msgs::Image>& event) {
   const double now = steadyNow();
-  // Simulated time comes on its own topic, before or after the mask.
-  const ros::Time clock = ros::Time::isSimTime() ? ros::Time() : ros::Time::now();
   try {
-    masks_->take(event.getConstMessage(), {event.getPublisherName(), event.getConnectionHeaderPtr(), now, clock});
+    masks_->take(event.getConstMessage(),
+                 {event.getPublisherName(), event.getConnectionHeaderPtr(), now, clockOfStamps()});
   } catch (const std::exception& error) {
     statistics_->maskRefused(now, error.what());
     NODELET_WARN_THROTTLE(kThrottle, "external mask refused: %s", error.what());

@@ -8,13 +8,14 @@
 #include <cmath>
 #include <iterator>
 
+#include "screen/legend.h"
+
 namespace laparoscope_servo::screen {
 
 namespace {
 
 const QColor kRecorded(0xff, 0x80, 0xff);
-const QColor kCasing(0, 0, 0, 200);  // about every line, so that it is seen over anything
-constexpr double kFarAway = 1e5;     // px: further out nothing is drawn
+constexpr double kFarAway = 1e5;  // px: further out nothing is drawn
 
 using Corners = std::array<double, 8>;
 
@@ -143,45 +144,26 @@ void drawOverlay(QPainter& painter, const Facts& facts, const Letterbox& letterb
 }
 
 void drawLegend(QPainter& painter, const QRectF& canvas, bool recorded) {
-  constexpr double kLine = 16.0, kSample = 34.0, kWidth = 220.0;
-  constexpr int kLines = 3 + static_cast<int>(std::size(kCauses));
-  const int lines = kLines + (recorded ? 1 : 0);
-  const QRectF box(canvas.left() + 6, canvas.bottom() - lines * kLine - 12, kWidth, lines * kLine + 8);
+  constexpr int kRows = 3 + static_cast<int>(std::size(kCauses));
   painter.save();
   painter.setRenderHint(QPainter::Antialiasing);
-  painter.fillRect(box, QColor(0, 0, 0, 170));
-  QFont font = painter.font();
-  font.setPixelSize(12);
-  painter.setFont(font);
-  const auto place = [&](int line) { return QRectF(box.left() + 8, box.top() + 4 + line * kLine, kSample, kLine); };
-  const auto words = [&](int line, const QString& text) {
-    painter.setPen(Qt::white);
-    painter.drawText(QRectF(box.left() + kSample + 16, place(line).top(), kWidth, kLine),
-                     Qt::AlignLeft | Qt::AlignVCenter, text);
-  };
-  const auto sample = [&](int line, const QColor& colour, Qt::PenStyle style, double width) {
-    const QRectF at = place(line);
+  Legend legend(painter, canvas, Legend::Corner::kLeft, kLegendWidth, kRows + (recorded ? 1 : 0));
+  const auto sample = [&](const QRectF& at, const QColor& colour, Qt::PenStyle style, double width) {
     drawOutline(painter, QPolygonF(QVector<QPointF>{{at.left(), at.center().y()}, {at.right(), at.center().y()}}),
                 colour, style, width);
   };
-  sample(0, kPresentColour, Qt::SolidLine, 3.0);
-  words(0, "where the region is");
-  sample(1, kPresentColour, Qt::DotLine, 3.0);
-  words(1, "where it is looked for");
-  sample(2, kTargetColour, Qt::CustomDashLine, 2.0);
+  sample(legend.next("where the region is"), kPresentColour, Qt::SolidLine, 3.0);
+  sample(legend.next("where it is looked for"), kPresentColour, Qt::DotLine, 3.0);
+  const QRectF target = legend.next("where it shall be");
+  sample(target, kTargetColour, Qt::CustomDashLine, 2.0);
   painter.setBrush(kTargetColour);
-  painter.drawRect(QRectF(place(2).left() - 3, place(2).center().y() - 4, 8, 8));
-  words(2, "where it shall be");
-  for (int line = 3; line < kLines; ++line) {
-    const Cause& cause = kCauses[line - 3];
+  painter.drawRect(QRectF(target.left() - 3, target.center().y() - 4, 8, 8));
+  for (const Cause& cause : kCauses) {
+    const QRectF at = legend.next(cause.words);
     painter.setPen(Qt::NoPen);
-    fill(painter, QPolygonF(place(line).adjusted(0, 2, 0, -2)), cause);
-    words(line, cause.words);
+    fill(painter, QPolygonF(at.adjusted(0, 2, 0, -2)), cause);
   }
-  if (recorded) {
-    sample(kLines, kRecorded, Qt::DashDotLine, 2.0);
-    words(kLines, "where it was when recorded");
-  }
+  if (recorded) sample(legend.next("where it was when recorded"), kRecorded, Qt::DashDotLine, 2.0);
   painter.restore();
 }
 

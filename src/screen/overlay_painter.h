@@ -14,6 +14,8 @@ namespace laparoscope_servo::screen {
 
 const QColor kPresentColour(0xff, 0xe0, 0x30);
 const QColor kTargetColour(0x40, 0xe0, 0xff);
+const QColor kCasing(0, 0, 0, 200);     // about every line, so that it is seen over anything
+constexpr double kLegendWidth = 220.0;  // px
 
 void drawOverlay(QPainter& painter, const Facts& facts, const Letterbox& letterbox);
 

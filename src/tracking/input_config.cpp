@@ -14,10 +14,13 @@ void describe(parameters::Table& table, InputConfig& c) {
   table.number("moved", c.moved, {0.1, 100}, "px",
                "after a larger displacement a repeat means a frozen feed: of the region by robot_motion, of a part of "
                "it also by the image");
+  describeSequence(table, c, "the region is searched as it was selected");
+}
+
+void describeSequence(parameters::Table& table, InputConfig& c, const std::string& after_loop) {
   table.number("restart_images", c.restart_images, {2, 100}, "images",
                "number in a row after which an earlier time (a loop) or another size (a camera) is accepted");
-  table.number("loop_step", c.loop_step, {0.1, 1e6}, "s",
-               "a larger step back is a loop: the region is searched as it was selected");
+  table.number("loop_step", c.loop_step, {0.1, 1e6}, "s", "a larger step back is a loop: " + after_loop);
   table.number("max_gap", c.max_gap, {0.1, 1e6}, "s",
                "an image that is further ahead of the last one is accepted only if the next one agrees");
   table.number("max_ahead", c.max_ahead, {0, 10}, "s",

@@ -41,6 +41,13 @@ inline cv::Mat view(const cv::Mat& reference, const Eigen::Matrix3d& g) {
   return image;
 }
 
+// As a camera sees it: with noise of one grey level, by which no two pictures are the same.
+inline cv::Mat noisy(const cv::Mat& image, cv::RNG& random) {
+  cv::Mat noise(image.size(), image.type());
+  random.fill(noise, cv::RNG::UNIFORM, 0, 2);
+  return noise + image;
+}
+
 // A slow closed motion of the corners of `roi`, starting at the identity: n homographies with determinant 1, up to
 // `amplitude` px in every corner.
 inline std::vector<Eigen::Matrix3d> motion(int n, const geometry::Rectangle& roi, double amplitude) {

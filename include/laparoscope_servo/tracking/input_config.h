@@ -29,6 +29,8 @@ struct InputConfig {
 
 // Adds the rows of all parameters, with range and meaning.
 void describe(parameters::Table& table, InputConfig& config);
+// Of these the rows of jumps and changes of size, which every tracker has. `after_loop`: what it does then.
+void describeSequence(parameters::Table& table, InputConfig& config, const std::string& after_loop);
 
 // Every error, each naming the field, its value and what was expected. Empty when the configuration can be used.
 std::vector<std::string> validate(const InputConfig& config);

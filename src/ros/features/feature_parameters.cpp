@@ -11,14 +11,7 @@ void describeInput(parameters::Table& table, tracking::InputConfig& c) {
                "number in a row that may repeat their picture; with more the feed counts as frozen (SEARCHING)");
   table.number("max_still_repeats", c.max_still_repeats, {0, 1000}, "images",
                "number in a row that may repeat around the features alone, since a codec may skip what rests");
-  table.number("restart_images", c.restart_images, {2, 100}, "images",
-               "number in a row after which an earlier time (a loop) or another size (a camera) is accepted");
-  table.number("loop_step", c.loop_step, {0.1, 1e6}, "s",
-               "a larger step back is a loop: the features are forgotten, and those of `selection` selected again");
-  table.number("max_gap", c.max_gap, {0.1, 1e6}, "s",
-               "an image that is further ahead of the last one is accepted only if the next one agrees");
-  table.number("max_ahead", c.max_ahead, {0, 10}, "s",
-               "images stamped further ahead of this machine's clock are refused");
+  describeSequence(table, c, "the features are forgotten, and those of `selection` selected again");
 }
 
 }  // namespace

@@ -55,7 +55,7 @@ const std::vector<ReasonRow>& featureReasons() {
        "Take away what covers it, or select more of it."},
       {{"the expected error is too large"},
        "It is seen, but its place is too uncertain.",
-       "Wait for a sharper picture; the bound is edges/max_error."},
+       "Wait for a sharper picture; the bound is tracking/max_error."},
       {{"it would have jumped to something that looks different"},
        "What was found lies too far off, and looks different.",
        "Move slowly; if it has moved there, select it again."},

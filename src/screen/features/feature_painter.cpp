@@ -6,16 +6,16 @@
 #include <cmath>
 #include <tuple>
 
+#include "screen/deviations.h"
 #include "screen/features/feature_spread.h"
+#include "screen/legend.h"
+#include "screen/overlay_painter.h"
 #include "screen/picture_words.h"
 
 namespace laparoscope_servo::screen {
 
 namespace {
 
-const QColor kCasing(0, 0, 0, 200);   // about every line, so that it is seen over anything
-constexpr double kForgotten = 10.0;   // s: an older result is not drawn
-constexpr double kDeviations = 2.0;   // standard deviations to either side that are drawn
 constexpr double kWidth = 2.0;        // px of lines
 constexpr double kLeastSpread = 2.5;  // px of the widget: a narrower band would be hidden by its line
 constexpr double kMostSpread = 200.0;
@@ -77,11 +77,18 @@ void drawArrow(QPainter& painter, const QPolygonF& line, const Look& look) {
          {look.colour});
 }
 
-void drawSpread(QPainter& painter, const FeatureFact& feature, const Letterbox& letterbox, const QColor& colour) {
+// Pen and brush of a spread.
+void takeVeil(QPainter& painter, const QColor& colour) {
   QColor veil = colour;
   veil.setAlpha(60);
   painter.setPen(QPen(colour, kBorder));
   painter.setBrush(veil);
+}
+
+// `line`: its outline in the widget.
+void drawSpread(QPainter& painter, const FeatureFact& feature, const QPolygonF& line, const Letterbox& letterbox,
+                const QColor& colour) {
+  takeVeil(painter, colour);
   if (const std::optional<Eigen::Matrix2d> around = spreadAround(feature)) {
     const QPointF centre(feature.parameters[0], feature.parameters[1]);
     QPolygonF ellipse;
@@ -94,11 +101,10 @@ void drawSpread(QPainter& painter, const FeatureFact& feature, const Letterbox& 
     return;
   }
   const std::vector<double> spread = spreadAlong(feature);
-  if (spread.empty() || feature.outline.size() < 2) return;
+  if (spread.empty() || line.size() < 2) return;
   const double scale = kDeviations * letterbox.scale();
   const double widest = scale * *std::max_element(spread.begin(), spread.end());
   if (!(widest >= kLeastSpread && widest <= kMostSpread)) return;
-  const QPolygonF line = inWidget(feature.outline, letterbox);
   QPolygonF band;
   for (int k = 0; k < line.size(); ++k)
     band << line[k] + scale * spread[static_cast<std::size_t>(k)] * normalAt(line, k);
@@ -123,11 +129,12 @@ void drawWords(QPainter& painter, const QRectF& area, QPointF left_bottom, const
   painter.drawText(left_bottom, words);
 }
 
-void drawFeature(QPainter& painter, const FeatureFact& feature, const Letterbox& letterbox, const QColor& colour) {
+// Where it is in the widget; empty when nothing of it is drawn.
+QRectF drawFeature(QPainter& painter, const FeatureFact& feature, const Letterbox& letterbox, const QColor& colour) {
   const bool seen = feature.state == TrackedFeatures::TRACKING;
-  if ((!seen && feature.state != TrackedFeatures::SEARCHING) || feature.outline.isEmpty()) return;
-  if (seen) drawSpread(painter, feature, letterbox, colour);
+  if ((!seen && feature.state != TrackedFeatures::SEARCHING) || feature.outline.isEmpty()) return {};
   const QPolygonF line = inWidget(feature.outline, letterbox);
+  if (seen) drawSpread(painter, feature, line, letterbox, colour);
   const Look look{colour, seen ? Qt::SolidLine : Qt::DotLine};
   QPointF label = line.first();
   if (line.size() == 1) {
@@ -145,6 +152,7 @@ void drawFeature(QPainter& painter, const FeatureFact& feature, const Letterbox&
     if (feature.kind == TrackedFeature::LINE) drawBars(painter, line, look);
   }
   drawWords(painter, letterbox.area(), label + QPointF(8, -6), QString::fromStdString(feature.id), colour);
+  return line.boundingRect().adjusted(0, 0, 1, 1);
 }
 
 }  // namespace
@@ -160,12 +168,8 @@ void drawFeatures(QPainter& painter, const Facts& facts, const Letterbox& letter
     if (!(age <= kForgotten)) continue;
     const QColor& colour = age > 0.0 ? kOldFeatureColour : kFeatureColour;
     QRectF box;
-    for (const FeatureFact& feature : tracker.drawn->features) {
-      drawFeature(painter, feature, letterbox, colour);
-      const bool drawn = feature.state == TrackedFeatures::TRACKING || feature.state == TrackedFeatures::SEARCHING;
-      if (drawn && !feature.outline.isEmpty())
-        box = box.united(inWidget(feature.outline, letterbox).boundingRect().adjusted(0, 0, 1, 1));
-    }
+    for (const FeatureFact& feature : tracker.drawn->features)
+      box = box.united(drawFeature(painter, feature, letterbox, colour));
     if (age > kOldest && !box.isNull())
       drawWords(painter, letterbox.area(), (box & letterbox.area()).center(),
                 QString("%1: %2 s old").arg(QString::fromStdString(tracker.name)).arg(age, 0, 'f', 1), Qt::white);
@@ -174,22 +178,13 @@ void drawFeatures(QPainter& painter, const Facts& facts, const Letterbox& letter
 }
 
 void drawFeatureLegend(QPainter& painter, const QRectF& canvas) {
-  constexpr double kLine = 16.0, kSample = 34.0, kBox = 234.0, kOther = 232.0;  // the last: the region's legend
-  constexpr int kLines = 6;
-  if (canvas.width() < kBox + kOther) return;
-  const QRectF box(canvas.right() - kBox - 6, canvas.bottom() - kLines * kLine - 12, kBox, kLines * kLine + 8);
+  constexpr double kLegend = 234.0;  // px, width
+  if (canvas.width() < kLegend + kLegendWidth + 2.0 * Legend::kMargin) return;
   painter.save();
   painter.setRenderHint(QPainter::Antialiasing);
-  painter.fillRect(box, QColor(0, 0, 0, 170));
-  int row = 0;
-  const auto next = [&](const QString& words) {
-    const QRectF sample(box.left() + 8, box.top() + 4 + kLine * row++, kSample, kLine);
-    QFont font = painter.font();
-    font.setPixelSize(12);
-    font.setBold(false);
-    painter.setFont(font);
-    painter.setPen(Qt::white);
-    painter.drawText(QRectF(sample.right() + 8, sample.top(), kBox, kLine), Qt::AlignLeft | Qt::AlignVCenter, words);
+  Legend legend(painter, canvas, Legend::Corner::kRight, kLegend, 6);
+  const auto next = [&legend](const QString& words) {
+    const QRectF sample = legend.next(words);
     const double middle = sample.center().y();
     return QPolygonF(QVector<QPointF>{{sample.left(), middle}, {sample.right(), middle}});
   };
@@ -202,10 +197,7 @@ void drawFeatureLegend(QPainter& painter, const QRectF& canvas) {
   drawMark(painter, (mark[0] + mark[1]) / 2, seen);
   drawArrow(painter, next("axis of an instrument"), seen);
   const QPolygonF band = next("twice the expected error");
-  QColor veil = kFeatureColour;
-  veil.setAlpha(60);
-  painter.setPen(QPen(kFeatureColour, kBorder));
-  painter.setBrush(veil);
+  takeVeil(painter, kFeatureColour);
   painter.drawRect(QRectF(band[0] - QPointF(0, 4), band[1] + QPointF(0, 4)));
   stroke(painter, next("of an earlier picture"), {kOldFeatureColour});
   painter.restore();

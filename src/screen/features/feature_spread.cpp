@@ -5,11 +5,12 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "screen/deviations.h"
+
 namespace laparoscope_servo::screen {
 
 namespace {
 
-constexpr double kDeviations = 2.0;
 constexpr std::size_t kLineParameters = 2;
 constexpr std::size_t kEllipseParameters = 5;
 

@@ -6,14 +6,14 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "laparoscope_servo/geometry/se3.h"
+#include "screen/deviations.h"
+
 namespace laparoscope_servo::screen {
 
 namespace {
 
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
-
 constexpr std::size_t kParameters = 6;
-constexpr double kDeviations = 2.0;
 constexpr int kRings = 6;        // along what is seen of the shaft
 constexpr int kRingParts = 24;   // of a ring
 constexpr int kEveryPart = 3;    // of them that a line along the shaft comes from
@@ -34,15 +34,13 @@ std::optional<double> alongAxis(const geometry::PinholeCamera& camera, const Eig
 struct Tube {
   Eigen::Vector3d point, axis;
   Eigen::Matrix<double, 3, 2> across;  // two directions, perpendicular to the axis and to each other
-  Matrix6 covariance;
+  geometry::Matrix6d covariance;
   double radius;
 
   // `along`, m, from the point. A small rotation w about the point moves the axis there by along (w x axis).
   std::vector<Eigen::Vector3d> ring(double along) const {
-    Eigen::Matrix3d cross;  // cross * w = axis x w
-    cross << 0, -axis.z(), axis.y(), axis.z(), 0, -axis.x(), -axis.y(), axis.x(), 0;
     Eigen::Matrix<double, 3, 6> jacobian;
-    jacobian << Eigen::Matrix3d::Identity(), -along * cross;
+    jacobian << Eigen::Matrix3d::Identity(), -along * geometry::skew(axis);
     const Eigen::Matrix<double, 2, 6> lateral = across.transpose() * jacobian;
     const Eigen::Matrix2d spread = lateral * covariance * lateral.transpose();
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(spread);
@@ -89,8 +87,7 @@ std::optional<InstrumentShape> instrumentShape(const geometry::PinholeCamera& ca
     return std::nullopt;
   const Eigen::Vector3d point(p[0], p[1], p[2]), turn(p[3], p[4], p[5]);
   if (!point.allFinite() || !turn.allFinite() || !(point.z() > 0.0)) return std::nullopt;
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
-  if (turn.norm() > 0.0) axis = Eigen::AngleAxisd(turn.norm(), turn.normalized()) * axis;
+  const Eigen::Vector3d axis = geometry::so3Exp(turn) * Eigen::Vector3d::UnitZ();
   const std::optional<double> entry = alongAxis(camera, point, axis, pose.outline[0]);
   const std::optional<double> end = alongAxis(camera, point, axis, pose.outline[1]);
   if (!entry || !end || !(*entry < *end)) return std::nullopt;
@@ -102,7 +99,7 @@ std::optional<InstrumentShape> instrumentShape(const geometry::PinholeCamera& ca
   if (pose.covariance.size() != kParameters * kParameters) return shape;
 
   const Eigen::Vector3d any = axis.unitOrthogonal();
-  Tube tube{point, axis, {}, Eigen::Map<const Matrix6>(pose.covariance.data()), pose.radius};
+  Tube tube{point, axis, {}, Eigen::Map<const geometry::Matrix6d>(pose.covariance.data()), pose.radius};
   tube.across << any, axis.cross(any);
   const double slide = std::sqrt(std::max(0.0, axis.dot(tube.covariance.topLeftCorner<3, 3>() * axis)));
   const bool open = !(slide < kOpen);

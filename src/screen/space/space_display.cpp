@@ -195,9 +195,7 @@ void SpaceDisplay::showPoint() {
   QString text = "insertion point";
   if (ellipsoid) {
     // The covariance is in the arm's base, the node in the insertion point's frame: their axes are parallel.
-    const Eigen::Quaterniond turn(ellipsoid->axes);
-    const auto real = [](double value) { return static_cast<Ogre::Real>(value); };
-    scene_->point.setOrientation(Ogre::Quaternion(real(turn.w()), real(turn.x()), real(turn.y()), real(turn.z())));
+    scene_->point.setOrientation(ogreTurn(Eigen::Quaterniond(ellipsoid->axes)));
     scene_->point.setScale(ogrePoint(2.0 * ellipsoid->radii));
     scene_->point.setColor(1.0F, 0.75F, 0.1F, 0.45F);
     text += QString(" \u00b1 %1 mm (2 \u03c3%2)")

@@ -11,12 +11,7 @@ namespace laparoscope_servo::screen {
 
 namespace {
 
-constexpr std::size_t kMost = 12;    // a tracker of instruments has three
-constexpr double kForgotten = 10.0;  // s: as in the picture
-
-Ogre::Real real(double value) {
-  return static_cast<Ogre::Real>(value);
-}
+constexpr std::size_t kMost = 12;  // a tracker of instruments has three
 
 }  // namespace
 
@@ -61,9 +56,9 @@ void SpaceInstruments::show(Drawn& drawn, const FeatureFact& pose, const Instrum
   const bool live = age <= kOldest, seen = live && pose.state == TrackedFeatures::TRACKING;
   const Eigen::Vector3d axis = shape.end - shape.entry;
   drawn.shaft.getRootNode()->setVisible(seen);
-  const auto turn = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitY(), axis);  // Ogre's is along y
   drawn.shaft.setPosition(ogrePoint(0.5 * (shape.entry + shape.end)));
-  drawn.shaft.setOrientation(Ogre::Quaternion(real(turn.w()), real(turn.x()), real(turn.y()), real(turn.z())));
+  // Ogre's cylinder is along y.
+  drawn.shaft.setOrientation(ogreTurn(Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitY(), axis)));
   drawn.shaft.setScale(ogrePoint({2.0 * shape.radius, axis.norm(), 2.0 * shape.radius}));
   drawn.shaft.setColor(0.55F, 0.6F, 0.62F, 1.0F);
   drawn.spread.show(seen ? shape.spread : Lines());

@@ -39,6 +39,11 @@ Ogre::Vector3 ogrePoint(const Eigen::Vector3d& point) {
   return {static_cast<Ogre::Real>(point.x()), static_cast<Ogre::Real>(point.y()), static_cast<Ogre::Real>(point.z())};
 }
 
+Ogre::Quaternion ogreTurn(const Eigen::Quaterniond& turn) {
+  return {static_cast<Ogre::Real>(turn.w()), static_cast<Ogre::Real>(turn.x()), static_cast<Ogre::Real>(turn.y()),
+          static_cast<Ogre::Real>(turn.z())};
+}
+
 Ogre::ColourValue ogreColour(const QColor& colour) {
   return Ogre::ColourValue(static_cast<float>(colour.redF()), static_cast<float>(colour.greenF()),
                            static_cast<float>(colour.blueF()), 1.0F);

@@ -9,6 +9,7 @@
 #include <OgreSceneNode.h>
 #include <OgreTexture.h>
 
+#include <Eigen/Geometry>
 #include <QColor>
 #include <QImage>
 #include <string>
@@ -84,6 +85,7 @@ class Label {
 };
 
 Ogre::Vector3 ogrePoint(const Eigen::Vector3d& point);
+Ogre::Quaternion ogreTurn(const Eigen::Quaterniond& turn);
 Ogre::ColourValue ogreColour(const QColor& colour);
 
 }  // namespace laparoscope_servo::screen

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "screen/deviations.h"
+
 namespace laparoscope_servo::screen {
 
 namespace {
@@ -14,7 +16,6 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr int kRingParts = 48;  // of a circle
 constexpr int kArcParts = 12;   // of an arc from the axis to the cone
 constexpr int kRulings = 8;     // of the cone
-constexpr double kDeviations = 2.0;
 
 // A direction `angle` off the axis, turned about it by `turn`.
 Eigen::Vector3d direction(const Eigen::Quaterniond& axis, double angle, double turn) {

@@ -1,13 +1,15 @@
-// A camera before the trackers of features `/scope/dots`, `/scope/points` and `/scope/edges`, for tests against the
-// running nodelets.
+// A camera before trackers of features in `/scope`, for tests against the running nodelets.
 #pragma once
 
 #include <laparoscope_servo/SelectFeatures.h>
 #include <laparoscope_servo/TrackedFeatures.h>
 
+#include <functional>
 #include <future>
 #include <map>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "node/tracker/camera_bench.h"
 #include "support/feature_scene.h"
@@ -16,9 +18,13 @@ namespace laparoscope_servo::test_support {
 
 class FeatureBench {
  public:
-  FeatureBench() : node_("scope"), images_(node_.advertise<sensor_msgs::Image>("image", 1)) {
-    for (const char* const kind : {"dots", "points", "edges"})
-      inboxes_.try_emplace(kind, node_, std::string(kind) + "/features");
+  // Each picture has a number of its own, from 1 on; no two of them may repeat.
+  using Scene = std::function<cv::Mat(unsigned number)>;
+
+  // `kinds`: names of the nodelets. `scene`: what the camera shows while nothing else is asked for.
+  FeatureBench(const std::vector<std::string>& kinds, Scene scene)
+      : node_("scope"), images_(node_.advertise<sensor_msgs::Image>("image", 1)), scene_(std::move(scene)) {
+    for (const std::string& kind : kinds) inboxes_.try_emplace(kind, node_, kind + "/features");
   }
 
   bool ready() const {
@@ -37,8 +43,8 @@ class FeatureBench {
     return stamp;
   }
 
-  // A picture of its own, no two of which repeat.
-  cv::Mat picture(double shift = 0.0) { return featureScene(shift, ++seed_); }
+  cv::Mat picture() { return scene_(nextNumber()); }
+  unsigned nextNumber() { return ++number_; }
 
   // What `kind` says of this image; null when it is refused.
   TrackedFeaturesConstPtr track(const std::string& kind, const cv::Mat& image, const ros::Time& stamp = nextStamp(),
@@ -58,6 +64,9 @@ class FeatureBench {
       return told && is(*told);
     });
     return told && is(*told) ? told : nullptr;
+  }
+  TrackedFeaturesConstPtr trackUntil(const std::string& kind, std::uint8_t state) {
+    return trackUntil(kind, [state](const TrackedFeatures& told) { return told.state == state; });
   }
 
   // Selects while images come.
@@ -89,7 +98,8 @@ class FeatureBench {
   ros::NodeHandle node_;
   ros::Publisher images_;
   std::map<std::string, Inbox<TrackedFeatures>> inboxes_;
-  unsigned seed_ = 0;
+  Scene scene_;
+  unsigned number_ = 0;
 };
 
 }  // namespace laparoscope_servo::test_support

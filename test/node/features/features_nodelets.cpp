@@ -21,7 +21,8 @@ class FeaturesNodelets : public testing::TestWithParam<std::string> {
  protected:
   // Connections take longer than the tests: one bench for all of them.
   static FeatureBench& bench() {
-    static FeatureBench bench;
+    static FeatureBench bench({"dots", "points", "edges"},
+                              [](unsigned number) { return test_support::featureScene(0.0, number); });
     return bench;
   }
 
@@ -42,7 +43,9 @@ class FeaturesNodelets : public testing::TestWithParam<std::string> {
     const SelectFeatures::Response answer = bench().select(kind(), selection());
     ASSERT_TRUE(answer.success) << answer.message;
   }
-  TrackedFeaturesConstPtr track(double shift = 0.0) { return bench().track(kind(), bench().picture(shift)); }
+  TrackedFeaturesConstPtr track(double shift = 0.0) {
+    return bench().track(kind(), test_support::featureScene(shift, bench().nextNumber()));
+  }
 };
 
 TEST_P(FeaturesNodelets, AnswersEveryImageAlsoWhileIdle) {
@@ -163,8 +166,7 @@ TEST_P(FeaturesNodelets, BelievesNoFrozenFeed) {
   for (int k = 0; k < 4; ++k) ASSERT_TRUE(told = bench().track(kind(), frozen));
   EXPECT_EQ(told->state, TrackedFeatures::SEARCHING);
   EXPECT_NE(told->reason.find("the picture repeats"), std::string::npos) << told->reason;
-  ASSERT_TRUE(bench().trackUntil(
-      kind(), [](const TrackedFeatures& features) { return features.state == TrackedFeatures::TRACKING; }));
+  ASSERT_TRUE(bench().trackUntil(kind(), TrackedFeatures::TRACKING));
 }
 
 TEST_P(FeaturesNodelets, DrawsWhileSomebodyListens) {
@@ -182,16 +184,10 @@ TEST_P(FeaturesNodelets, DrawsWhileSomebodyListens) {
 TEST_P(FeaturesNodelets, TellsEachFeatureInTheDiagnostics) {
   DiagnosticsListener diagnostics(bench().node(), "scope/" + kind());
   select();
+  const std::string key = kind() == "dots" ? "feature large" : kind() == "points" ? "feature middle" : "feature border";
   EXPECT_TRUE(waitFor([&] {
     track();
-    for (const auto& value : diagnostics.last().values) {
-      if (value.key == (kind() == "dots"     ? "feature large"
-                        : kind() == "points" ? "feature middle"
-                                             : "feature border") &&
-          value.value.find("TRACKING") != std::string::npos)
-        return true;
-    }
-    return false;
+    return diagnostics.value(key).find("TRACKING") != std::string::npos;
   })) << diagnostics.last();
 }
 

@@ -1,33 +1,33 @@
 // The nodelet DominantMotion: tells the motion without a selection, and of a region; goes on after bad input.
 #include <gtest/gtest.h>
-#include <laparoscope_servo/SelectFeatures.h>
-#include <laparoscope_servo/TrackedFeatures.h>
 #include <ros/ros.h>
 
-#include <future>
-
-#include "node/tracker/camera_bench.h"
-#include "support/feature_scene.h"
+#include "feature_bench.h"
 #include "support/synthetic_motion.h"
 
 namespace laparoscope_servo {
 namespace {
 
 using test_support::DiagnosticsListener;
-using test_support::imageAt;
+using test_support::FeatureBench;
 using test_support::Inbox;
 using test_support::waitFor;
 
+const char* const kKind = "motion";
+
+// The scene goes to and fro, by 2 px each image.
+cv::Mat movingScene(unsigned number) {
+  static const cv::Mat scene = test::tissue({test::kMotionWidth, test::kMotionHeight}, 3);
+  Eigen::Matrix3d g = Eigen::Matrix3d::Identity();
+  g(0, 2) = number % 2 == 0 ? 2.0 : 0.0;
+  return test::view(scene, g, 1.0, 0.0, 2.0, number);
+}
+
 class MotionNodelet : public testing::Test {
  protected:
-  struct Bench {
-    ros::NodeHandle node{"scope"};
-    ros::Publisher images = node.advertise<sensor_msgs::Image>("image", 1);
-    Inbox<TrackedFeatures> features{node, "motion/features"};
-    Inbox<sensor_msgs::Image> masks{node, "motion/mask"};
-    cv::Mat scene = test::tissue({test::kMotionWidth, test::kMotionHeight}, 3);
-    int image = 0;
-    double time = 1000.0;
+  struct Bench : FeatureBench {
+    Bench() : FeatureBench({kKind}, movingScene) {}
+    Inbox<sensor_msgs::Image> masks{node(), "motion/mask"};
   };
   static Bench& bench() {
     static Bench bench;
@@ -35,43 +35,18 @@ class MotionNodelet : public testing::Test {
   }
 
   void SetUp() override {
-    ASSERT_TRUE(waitFor([] {
-      return bench().images.getNumSubscribers() > 0 && bench().features.connected() && bench().masks.connected();
-    }));
-    ASSERT_TRUE(waitFor([this] { return track() != nullptr; })) << "the nodelet does not answer";
-    std_srvs::Trigger call;
-    ASSERT_TRUE(ros::service::call("/scope/motion/reset", call) && call.response.success);
+    ASSERT_TRUE(bench().ready() && waitFor([] { return bench().masks.connected(); }));
+    ASSERT_TRUE(bench().trackUntil(kKind, [](const TrackedFeatures&) { return true; }))
+        << "the nodelet does not answer";
+    ASSERT_TRUE(bench().reset(kKind));
   }
 
-  // The scene goes to and fro, by 2 px each image; no two pictures repeat.
-  cv::Mat picture() {
-    const int k = ++bench().image;
-    Eigen::Matrix3d g = Eigen::Matrix3d::Identity();
-    g(0, 2) = k % 2 == 0 ? 2.0 : 0.0;
-    return test::view(bench().scene, g, 1.0, 0.0, 2.0, static_cast<unsigned>(k));
-  }
   // Null when the image is refused.
-  TrackedFeaturesConstPtr send(const cv::Mat& image, double patience = 20.0) {
-    const sensor_msgs::ImagePtr message = imageAt(image, bench().time += 0.04);
-    bench().images.publish(message);
-    waitFor([&] { return bench().features.at(message->header.stamp) != nullptr; }, patience);
-    return bench().features.at(message->header.stamp);
+  static TrackedFeaturesConstPtr send(const cv::Mat& image) {
+    return bench().track(kKind, image, FeatureBench::nextStamp(), 0.5);
   }
-  TrackedFeaturesConstPtr track() { return send(picture(), 0.5); }
-  TrackedFeaturesConstPtr trackUntil(std::uint8_t state) {
-    TrackedFeaturesConstPtr told;
-    waitFor([&] { return (told = track()) != nullptr && told->state == state; });
-    return told && told->state == state ? told : nullptr;
-  }
-  SelectFeatures::Response select(const std::string& text) {
-    SelectFeatures call;
-    call.request.selection = text;
-    auto answer =
-        std::async(std::launch::async, [&call] { return ros::service::call("/scope/motion/select_features", call); });
-    while (answer.wait_for(std::chrono::milliseconds(5)) != std::future_status::ready) track();
-    if (!answer.get()) call.response.message = "the service call failed";
-    return call.response;
-  }
+  static TrackedFeaturesConstPtr trackUntil(std::uint8_t state) { return bench().trackUntil(kKind, state); }
+  static SelectFeatures::Response select(const std::string& text) { return bench().select(kKind, text); }
 };
 
 TEST_F(MotionNodelet, TellsTheMotionWithoutASelection) {
@@ -111,16 +86,16 @@ TEST_F(MotionNodelet, SaysWhyThereIsNoMotion) {
   ASSERT_TRUE(trackUntil(TrackedFeatures::TRACKING));
   TrackedFeaturesConstPtr told;
   cv::Mat white(test::kMotionHeight, test::kMotionWidth, CV_8UC3, cv::Scalar::all(255));
-  ASSERT_TRUE(waitFor([&] { return (told = send(white, 0.5)) != nullptr; }));
+  ASSERT_TRUE(waitFor([&] { return (told = send(white)) != nullptr; }));
   EXPECT_EQ(told->state, TrackedFeatures::SEARCHING);
   EXPECT_NE(told->reason.find("highlight"), std::string::npos) << told->reason;
   EXPECT_TRUE(trackUntil(TrackedFeatures::TRACKING));
 }
 
 TEST_F(MotionNodelet, RefusesAnImageOfAnotherSizeAndGoesOn) {
-  DiagnosticsListener diagnostics(bench().node, "scope/motion");
+  DiagnosticsListener diagnostics(bench().node(), "scope/motion");
   ASSERT_TRUE(trackUntil(TrackedFeatures::TRACKING));
-  EXPECT_FALSE(send(cv::Mat(120, 160, CV_8UC3, cv::Scalar(90, 90, 90)), 0.5));
+  EXPECT_FALSE(send(cv::Mat(120, 160, CV_8UC3, cv::Scalar(90, 90, 90))));
   EXPECT_TRUE(diagnostics.waitForMessage(diagnostic_msgs::DiagnosticStatus::ERROR, "image refused"))
       << diagnostics.last();
   EXPECT_TRUE(trackUntil(TrackedFeatures::TRACKING));
@@ -129,27 +104,28 @@ TEST_F(MotionNodelet, RefusesAnImageOfAnotherSizeAndGoesOn) {
 TEST_F(MotionNodelet, BeginsAnewWhenTimeJumpsBack) {
   const TrackedFeaturesConstPtr before = trackUntil(TrackedFeatures::TRACKING);
   ASSERT_TRUE(before);
-  bench().time -= 500.0;
+  ros::Time stamp = FeatureBench::nextStamp() - ros::Duration(500.0);
   TrackedFeaturesConstPtr told;
   EXPECT_TRUE(waitFor([&] {
-    told = track();
+    stamp += ros::Duration(0.04);
+    told = bench().track(kKind, bench().picture(), stamp, 0.5);
     return told && told->state == TrackedFeatures::TRACKING && told->header.stamp < before->header.stamp;
   }));
 }
 
 TEST_F(MotionNodelet, AFrozenPictureIsNotTracked) {
   ASSERT_TRUE(trackUntil(TrackedFeatures::TRACKING));
-  const cv::Mat frozen = picture();
+  const cv::Mat frozen = bench().picture();
   TrackedFeaturesConstPtr told;
   EXPECT_TRUE(waitFor([&] {
-    told = send(frozen, 0.5);
+    told = send(frozen);
     return told && told->state == TrackedFeatures::SEARCHING;
   }));
   EXPECT_TRUE(trackUntil(TrackedFeatures::TRACKING));
 }
 
 TEST_F(MotionNodelet, DoesNotStartWithAWrongParameter) {
-  DiagnosticsListener diagnostics(bench().node, "wrong/motion");
+  DiagnosticsListener diagnostics(bench().node(), "wrong/motion");
   EXPECT_TRUE(diagnostics.waitForMessage(diagnostic_msgs::DiagnosticStatus::ERROR, "tracking/model"))
       << diagnostics.last();
 }

@@ -103,12 +103,10 @@ class CameraBench {
     return homographies.waitFor(stamp);
   }
 
-  // An image with noise of one grey level, without which it would be one that repeats.
+  // Without noise it would be one that repeats.
   sensor_msgs::ImagePtr message(const cv::Mat& image, const ros::Time& stamp) {
-    cv::Mat noise(image.size(), image.type());
-    random_.fill(noise, cv::RNG::UNIFORM, 0, 2);
-    noise += image;
-    return cv_bridge::CvImage(header(stamp), image.channels() == 1 ? "mono8" : "bgr8", noise).toImageMsg();
+    const std::string encoding = image.channels() == 1 ? "mono8" : "bgr8";
+    return cv_bridge::CvImage(header(stamp), encoding, noisy(image, random_)).toImageMsg();
   }
   void send(const cv::Mat& image, const ros::Time& stamp) { images_.publish(message(image, stamp)); }
 
@@ -198,6 +196,13 @@ class DiagnosticsListener {
   diagnostic_msgs::DiagnosticStatus last() const {
     const std::lock_guard<std::mutex> lock(mutex_);
     return last_;
+  }
+  // Empty when it has no such key.
+  std::string value(const std::string& key) const {
+    for (const diagnostic_msgs::KeyValue& value : last().values) {
+      if (value.key == key) return value.value;
+    }
+    return "";
   }
   bool waitForMessage(int level, const std::string& part) const {
     return waitFor([&] { return last().level == level && last().message.find(part) != std::string::npos; });

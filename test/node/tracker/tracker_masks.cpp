@@ -1,14 +1,12 @@
 // Masks of what covers the tissue, from node to node: of the nodelet Instrument beside the tracker in one manager, and
 // of a node that does it wrong.
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <string>
 
 #include "camera_bench.h"
+#include "second_publisher.h"
 #include "support/instrument_scene.h"
 
 namespace laparoscope_servo {
@@ -24,15 +22,9 @@ using test_support::waitFor;
 const geometry::Rectangle kCrossed{190.0, 90.0, 110.0, 110.0};
 const geometry::Rectangle kRoi{110.0, 70.0, 100.0, 90.0};  // of the launch file
 
-std::string valueOf(const diagnostic_msgs::DiagnosticStatus& status, const std::string& key) {
-  const auto found =
-      std::find_if(status.values.begin(), status.values.end(), [&](const auto& value) { return value.key == key; });
-  return found == status.values.end() ? "" : found->value;
-}
-
 // Share of the region that the last mask covers, as /diagnostics says; 0 when it says nothing.
-double shareOf(const diagnostic_msgs::DiagnosticStatus& status) {
-  const std::string text = valueOf(status, "external mask");
+double shareOf(const DiagnosticsListener& diagnostics) {
+  const std::string text = diagnostics.value("external mask");
   const std::size_t place = text.find("covers ");
   return place == std::string::npos ? 0.0 : std::stod(text.substr(place + 7));
 }
@@ -63,12 +55,12 @@ TEST(TrackerMasks, AShaftThatCrossesTheRegionIsLeftOutAndTrackingGoesOn) {
     EXPECT_EQ(homography->state, Homography::TRACKING) << shift;
     const geometry::Quadrilateral corners = kCrossed.corners();
     for (std::size_t c = 0; c < 4; ++c) EXPECT_NEAR(homography->corners[2 * c], corners[c].x(), 1.0) << shift;
-    largest = std::max(largest, shareOf(diagnostics.last()));
+    largest = std::max(largest, shareOf(diagnostics));
   }
   // It stays there, until /diagnostics tells of it.
   EXPECT_TRUE(waitFor([&] {
     track(40.0);
-    largest = std::max(largest, shareOf(diagnostics.last()));
+    largest = std::max(largest, shareOf(diagnostics));
     return largest > 0.1;
   })) << diagnostics.last();
   EXPECT_LT(largest, 0.8);
@@ -148,7 +140,7 @@ TEST_F(TrackerMasksOfTheTest, AnEarlierOneIsUsedUntilItIsTooOld) {
   EXPECT_TRUE(halfIsUsed()) << bench().diagnostics.last();
   EXPECT_TRUE(waitFor([&] {
     halfIsUsed();
-    return valueOf(bench().diagnostics.last(), "external mask").find("covers 0.5") != std::string::npos;
+    return bench().diagnostics.value("external mask").find("covers 0.5") != std::string::npos;
   })) << bench().diagnostics.last();
   EXPECT_TRUE(allIsUsed());
 }
@@ -189,16 +181,9 @@ TEST_F(TrackerMasksOfTheTest, ATimeThatJumpsBackIsRefused) {
       "before the one before it");
 }
 
-// A node of its own sends them: within one process nobody could tell them apart.
 TEST_F(TrackerMasksOfTheTest, ASecondPublisherIsRefused) {
   EXPECT_TRUE(halfIsUsed());
-  const pid_t other = fork();
-  ASSERT_GE(other, 0);
-  if (other == 0) {
-    execlp("rostopic", "rostopic", "pub", "-r", "25", "/told/tracker/external_mask", "sensor_msgs/Image",
-           "{header: {stamp: {secs: 990}}, height: 1, width: 1, encoding: mono8, step: 1, data: [7]}", nullptr);
-    _exit(1);
-  }
+  const test_support::SecondPublisher other("/told/tracker/external_mask");
   bool named = false;
   EXPECT_TRUE(waitFor([&] {
     EXPECT_TRUE(halfIsUsed()) << "it takes nothing away from the owner";
@@ -207,8 +192,6 @@ TEST_F(TrackerMasksOfTheTest, ASecondPublisherIsRefused) {
                       message.find("only those of /tracker_masks count") != std::string::npos);
     return named;
   })) << bench().diagnostics.last();
-  kill(other, SIGINT);
-  waitpid(other, nullptr, 0);
 }
 
 }  // namespace

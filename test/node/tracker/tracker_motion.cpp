@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 #include <tf2_ros/transform_broadcaster.h>
 
-#include <algorithm>
 #include <chrono>
 
 #include "camera_bench.h"
@@ -43,12 +42,7 @@ class TrackerMotion : public testing::Test {
     broadcaster_.sendTransform(transform);
   }
 
-  std::string robotMotion() const {
-    const diagnostic_msgs::DiagnosticStatus status = diagnostics_.last();
-    const auto found = std::find_if(status.values.begin(), status.values.end(),
-                                    [](const auto& value) { return value.key == "robot motion"; });
-    return found == status.values.end() ? "" : found->value;
-  }
+  std::string robotMotion() const { return diagnostics_.value("robot motion"); }
 
   CameraBench bench_{"/"};
   DiagnosticsListener diagnostics_{bench_.node(), "tracker"};

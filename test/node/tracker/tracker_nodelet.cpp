@@ -2,15 +2,13 @@
 #include <gtest/gtest.h>
 #include <laparoscope_servo/TrackerState.h>
 #include <ros/topic.h>
-#include <signal.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <limits>
 #include <mutex>
 
 #include "camera_bench.h"
+#include "second_publisher.h"
 
 namespace laparoscope_servo {
 namespace {
@@ -309,17 +307,10 @@ TEST_F(TrackerNodelet, HasNoTaskErrorOfPicturesThatRepeat) {
   EXPECT_TRUE(left().task_errors.waitFor(stamp)->valid);
 }
 
-// A node of its own sends the second camera's images: within one process nobody could tell them apart.
 TEST_F(TrackerNodelet, RefusesASecondPublisher) {
   ASSERT_TRUE(selectWhileRunning(image_, kRoi).success);
   DiagnosticsListener diagnostics(left().node(), "left/tracker");
-  const pid_t other = fork();
-  ASSERT_GE(other, 0);
-  if (other == 0) {
-    execlp("rostopic", "rostopic", "pub", "-r", "25", "/left/image", "sensor_msgs/Image",
-           "{header: {stamp: {secs: 990}}, height: 1, width: 1, encoding: mono8, step: 1, data: [7]}", nullptr);
-    _exit(1);
-  }
+  const test_support::SecondPublisher other("/left/image");
   bool named = false;
   EXPECT_TRUE(waitFor(
       [&] {
@@ -335,8 +326,6 @@ TEST_F(TrackerNodelet, RefusesASecondPublisher) {
       },
       20.0))
       << diagnostics.last();
-  kill(other, SIGINT);
-  waitpid(other, nullptr, 0);
 }
 
 TEST_F(TrackerNodelet, SelectsTheParametersRoiByItselfAndFindsItAgainInALoop) {

@@ -68,10 +68,5 @@ TEST(TrackerReload, TheManagerSurvivesItAndTheNextOneTracks) {
 }  // namespace laparoscope_servo
 
 int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  ros::init(argc, argv, "tracker_reload");
-  ros::NodeHandle keeps_ros_up;
-  ros::AsyncSpinner spinner(2);
-  spinner.start();
-  return RUN_ALL_TESTS();
+  return laparoscope_servo::test_support::runTests(argc, argv, "tracker_reload");
 }

@@ -7,6 +7,7 @@
 
 #include "screen/features/feature_painter.h"
 #include "support/instrument_scene.h"
+#include "support/like_colour.h"
 #include "system/screen/image_feed.h"
 #include "system/screen/screen_fixture.h"
 
@@ -52,10 +53,7 @@ class ScreenFeatures : public test_support::ScreenFixture {
         for (int y = -3; y <= 3; ++y) {
           for (int x = -3; x <= 3; ++x) {
             if (!shown.rect().contains(at + QPoint(x, y))) continue;
-            const QColor c = shown.pixelColor(at + QPoint(x, y));
-            const int off = std::abs(c.red() - colour.red()) + std::abs(c.green() - colour.green()) +
-                            std::abs(c.blue() - colour.blue());
-            found += off < 60 ? 1 : 0;
+            found += test_support::isLike(shown.pixelColor(at + QPoint(x, y)), colour) ? 1 : 0;
           }
         }
       }

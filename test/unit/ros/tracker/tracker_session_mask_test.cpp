@@ -27,12 +27,7 @@ class TrackerSessionMask : public testing::Test {
     });
   }
 
-  // As a camera sees it: no two pictures are the same.
-  cv::Mat picture() {
-    cv::Mat noise(kSize, CV_8UC3);
-    random_.fill(noise, cv::RNG::UNIFORM, 0, 2);
-    return noise + image_;
-  }
+  cv::Mat picture() { return test_support::noisy(image_, random_); }
   static cv::Mat covering(const cv::Rect& part) {
     cv::Mat mask = cv::Mat::zeros(kSize, CV_8UC1);
     mask(part).setTo(255);

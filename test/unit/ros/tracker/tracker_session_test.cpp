@@ -36,12 +36,7 @@ sensor_msgs::CameraInfo cameraInfo() {
 
 class TrackerSessionTest : public testing::Test {
  protected:
-  // As a camera sees it: no two pictures are the same.
-  cv::Mat picture() {
-    cv::Mat noise(kSize, CV_8UC3);
-    random_.fill(noise, cv::RNG::UNIFORM, 0, 2);
-    return noise + image_;
-  }
+  cv::Mat picture() { return test_support::noisy(image_, random_); }
 
   cv::RNG random_{3};
   const cv::Mat image_ = test_support::texture(kSize);

@@ -12,6 +12,7 @@
 #include "ros/tracker/tracker_session.h"
 #include "ros/tracker/view_library.h"
 #include "support/stamped_header.h"
+#include "support/synthetic_sequence.h"
 #include "support/synthetic_tissue.h"
 
 namespace laparoscope_servo {
@@ -33,12 +34,7 @@ class TrackerSessionViewsTest : public testing::Test {
     info.K = {focal_length, 0.0, 160.0, 0.0, focal_length, 120.0, 0.0, 0.0, 1.0};
     session_.setCameraInfo(info);
   }
-  // With noise of one grey level, without which it would be one that repeats.
-  cv::Mat picture(const cv::Rect& window) {
-    cv::Mat noise(window.size(), CV_8UC3);
-    random_.fill(noise, cv::RNG::UNIFORM, 0, 2);
-    return noise + scene_(window);
-  }
+  cv::Mat picture(const cv::Rect& window) { return test_support::noisy(scene_(window), random_); }
   Processed see(int x, const std::optional<geometry::Rectangle>& request = std::nullopt) {
     time_ += 0.04;
     return session_.process(picture(cv::Rect(cv::Point(x, 0), kSize)), at(time_), request);

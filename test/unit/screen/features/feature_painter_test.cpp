@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 #include <laparoscope_servo/TrackedFeatures.h>
 
-#include <cmath>
 #include <limits>
 
+#include "support/like_colour.h"
 #include "unit/screen/features/feature_facts_examples.h"
 
 namespace laparoscope_servo::screen {
@@ -38,10 +38,7 @@ int count(const QImage& image, const QRectF& where, const QColor& colour) {
   const QRect box = QRectF(2 * where.topLeft(), 2 * where.size()).toRect() & image.rect();
   for (int y = box.top(); y <= box.bottom(); ++y) {
     for (int x = box.left(); x <= box.right(); ++x) {
-      const QColor c = image.pixelColor(x, y);
-      if (std::abs(c.red() - colour.red()) + std::abs(c.green() - colour.green()) + std::abs(c.blue() - colour.blue()) <
-          60)
-        ++found;
+      if (laparoscope_servo::test_support::isLike(image.pixelColor(x, y), colour)) ++found;
     }
   }
   return found;
