@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "laparoscope_servo/geometry/sl3.h"
+#include "laparoscope_servo/image/field_mask.h"
 #include "laparoscope_servo/image/image_type.h"
 #include "laparoscope_servo/parameters/table.h"
 #include "laparoscope_servo/validation/error_report.h"
@@ -74,6 +75,8 @@ class RegionTracker::Implementation {
                   bool confirming = false);
   Attempt search(const cv::Mat& image, double stamp);
   void decide(const Attempt& best, const MotionPrior& prior, double stamp);
+  // Of the image, px of the raw one: where the ROI is seen at `g`, with room for what it may move besides.
+  cv::Rect seenBox(const Eigen::Matrix3d& g) const;
   const Eigen::Matrix3d& shown() const;
   const TrackResult& report(const Attempt& attempt);
   const TrackResult& idle(double stamp, const std::string& reason);
@@ -84,6 +87,7 @@ class RegionTracker::Implementation {
   RegionAligner aligner_;
   MotionFilter filter_;
   RegionSearch search_;
+  image::FieldMask field_;  // of the last image
 
   State state_ = State::kIdle;
   cv::Size image_size_;
@@ -110,8 +114,12 @@ double RegionTracker::Implementation::check(const cv::Mat& image, const geometry
                                             RegionAligner& aligner, const cv::Mat& mask) const {
   checkImage(image);
   image::checkMask(mask, image);
-  aligner.setMask(mask);
-  aligner.setReference(image, checkedRoi(image, wanted, config_.min_roi_side, lens_.get()));
+  image::FieldMask field;
+  field.look(image);
+  const geometry::Rectangle roi = checkedRoi(image, wanted, config_.min_roi_side, lens_.get());
+  checkWithinField(roi, field, lens_.get());
+  aligner.setMask(field.joined(mask));
+  aligner.setReference(image, roi);
   return checkedCornerError(aligner, config_.min_texture);
 }
 
@@ -125,8 +133,12 @@ std::optional<geometry::Rectangle> RegionTracker::Implementation::propose(const 
   least.width = std::max<double>(wanted.width, config_.min_roi_side);
   least.height = std::max<double>(wanted.height, config_.min_roi_side);
   RegionAligner aligner(config_, lens_);
+  image::FieldMask field;
+  field.look(image);
+  aligner.setMask(field.joined(cv::Mat()));
   return proposeRegion(image, least, lens_.get(), [&](const geometry::Rectangle& roi) {
     try {
+      checkWithinField(roi, field, lens_.get());
       aligner.setReference(image, checkedRoi(image, roi, config_.min_roi_side, lens_.get()));
       return aligner.referenceTexture().corner_error <= kClearly * config_.min_texture;
     } catch (const std::invalid_argument&) {
@@ -201,9 +213,11 @@ const TrackResult& RegionTracker::Implementation::track(const cv::Mat& image, do
     reset();
     return idle(stamp, why.str());
   }
-  aligner_.setMask(mask);
   carried_ = carriedBy(motion);
   MotionPrior prior = filter_.predict(stamp, carried_);
+  field_.look(image);
+  const bool deep = state_ == State::kTracking && field_.contains(seenBox(prior.predicted));
+  aligner_.setMask(deep ? mask : field_.joined(mask));
   Attempt best;
   if (state_ == State::kTracking) {
     EsmState start = last_;
@@ -225,6 +239,11 @@ const TrackResult& RegionTracker::Implementation::track(const cv::Mat& image, do
   aligner_.advance();
   last_stamp_ = stamp;
   return report(best);
+}
+
+cv::Rect RegionTracker::Implementation::seenBox(const Eigen::Matrix3d& g) const {
+  const geometry::Rectangle& roi = aligner_.roi();
+  return image::seenBox(lens_.get(), geometry::apply(g, roi.corners()), kLeastReach * lengthUnit(roi));
 }
 
 // The last G moved by the ego-motion; empty if the result is implausible.
@@ -338,7 +357,7 @@ const TrackResult& RegionTracker::Implementation::report(const Attempt& attempt)
   result.areas.columns = grid.columns();
   result.areas.distance = gates.distances();
   result.areas.occluded.resize(grid.count());
-  for (int area = 0; area < grid.count(); ++area) result.areas.occluded[area] = gates.occluded(area);
+  for (int area = 0; area < grid.count(); ++area) result.areas.occluded[area] = gates.covered(area);
   gates.causes(result.areas.cause);
   return result;
 }

@@ -10,6 +10,8 @@ namespace laparoscope_servo::tracking {
 
 namespace {
 
+constexpr double kMostBeyond = 0.5;  // share of a ROI that may lie beyond the endoscope's field of view
+
 // Every pixel of the border, through the lens: what is one to one takes the inside of the border to the inside. False
 // for NaN.
 bool shows(const cv::Mat& image, const geometry::Rectangle& roi, const image::Lens& lens) {
@@ -61,6 +63,16 @@ geometry::Rectangle checkedRoi(const cv::Mat& image, const geometry::Rectangle& 
                                 (lens != nullptr ? ", as its lens shows it: the ROI is in rectified pixels" : ""));
   }
   return whole;
+}
+
+void checkWithinField(const geometry::Rectangle& roi, const image::FieldMask& field, const image::Lens* lens) {
+  const double beyond = field.shareBeyond(image::seenBox(lens, roi.corners(), 0.0));
+  if (beyond <= kMostBeyond) return;
+  std::ostringstream message;
+  message.precision(2);
+  message << text(roi) << " lies beyond the picture's border, where it is black, by " << 100.0 * beyond
+          << " %, expected at most " << 100.0 * kMostBeyond << " %";
+  throw std::invalid_argument(message.str());
 }
 
 double checkedCornerError(RegionAligner& aligner, double max_error) {

@@ -4,6 +4,7 @@
 #include <opencv2/core.hpp>
 
 #include "laparoscope_servo/geometry/homography.h"
+#include "laparoscope_servo/image/field_mask.h"
 #include "laparoscope_servo/image/lens.h"
 #include "tracking/align/region_aligner.h"
 
@@ -16,6 +17,9 @@ void checkImage(const cv::Mat& image);
 // the image. With a lens (null: none) the image is raw, and the ROI in rectified pixels.
 geometry::Rectangle checkedRoi(const cv::Mat& image, const geometry::Rectangle& roi, int min_side,
                                const image::Lens* lens);
+
+// Throws std::invalid_argument when most of the ROI shows nothing, since it lies beyond the endoscope's field of view.
+void checkWithinField(const geometry::Rectangle& roi, const image::FieldMask& field, const image::Lens* lens);
 
 // px, the corner error that noise causes in the aligner's reference, see ReferenceTexture. Throws std::invalid_argument
 // when it is more than `max_error`: the ROI has too little texture.

@@ -18,7 +18,7 @@ constexpr double kShare =
 
 }  // namespace
 
-GreyLevels greyLevels(const GreyMap& map, const FieldOfView& view) {
+GreyLevels greyLevels(const GreyMap& map, const image::FieldOfView& view) {
   constexpr int kTop = static_cast<int>(GreyMap::kZero + kRed * GreyMap::kUnit);
   std::array<double, kTop + 1> counts{};
   double all = 0.0, sum = 0.0;

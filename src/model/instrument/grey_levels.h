@@ -1,7 +1,7 @@
 // What counts as grey in a picture: lamp, white balance and tissue differ, so each picture tells.
 #pragma once
 
-#include "model/instrument/field_of_view.h"
+#include "laparoscope_servo/image/field_of_view.h"
 #include "model/instrument/grey_map.h"
 
 namespace laparoscope_servo::model {
@@ -11,6 +11,6 @@ struct GreyLevels {
   double usual = 0.0;      // units of S0 cos H / mean: the colour of most of the picture, the tissue's
 };
 
-GreyLevels greyLevels(const GreyMap& map, const FieldOfView& view);
+GreyLevels greyLevels(const GreyMap& map, const image::FieldOfView& view);
 
 }  // namespace laparoscope_servo::model

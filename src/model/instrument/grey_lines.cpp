@@ -21,7 +21,7 @@ constexpr double kPi = 3.14159265358979323846;
 
 }  // namespace
 
-void GreyLines::collect(const GreyMap& map, const FieldOfView& view, double threshold) {
+void GreyLines::collect(const GreyMap& map, const image::FieldOfView& view, double threshold) {
   points_.clear();
   const cv::Mat1b& c = map.colour();
   const int limit = static_cast<int>(threshold);
@@ -124,7 +124,7 @@ bool GreyLines::refine(GreyLine& line) {
   return true;
 }
 
-const std::vector<GreyLine>& GreyLines::find(const GreyMap& map, const FieldOfView& view, double threshold) {
+const std::vector<GreyLine>& GreyLines::find(const GreyMap& map, const image::FieldOfView& view, double threshold) {
   lines_.clear();
   collect(map, view, threshold);
   const int reach = static_cast<int>(std::ceil(std::hypot(map.columns(), map.rows()))) + 2;

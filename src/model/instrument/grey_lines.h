@@ -7,7 +7,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "model/instrument/field_of_view.h"
+#include "laparoscope_servo/image/field_of_view.h"
 #include "model/instrument/grey_map.h"
 
 namespace laparoscope_servo::model {
@@ -30,7 +30,7 @@ struct GreyLine {
 class GreyLines {
  public:
   // `threshold`, as GreyMap::colour: below it is grey.
-  const std::vector<GreyLine>& find(const GreyMap& map, const FieldOfView& view, double threshold);
+  const std::vector<GreyLine>& find(const GreyMap& map, const image::FieldOfView& view, double threshold);
 
  private:
   struct OutlinePoint {
@@ -47,7 +47,7 @@ class GreyLines {
     bool stale = true;
   };
 
-  void collect(const GreyMap& map, const FieldOfView& view, double threshold);
+  void collect(const GreyMap& map, const image::FieldOfView& view, double threshold);
   void vote(const OutlinePoint& point, int sign);
   bool refine(GreyLine& line);
   bool isOn(const OutlinePoint& point, const GreyLine& line, double tolerance) const;

@@ -21,7 +21,7 @@ struct InstrumentScene {
   double stamp;            // s
   const std::optional<Eigen::Matrix3d>& motion;
   const GreyMap& map;
-  const FieldOfView& view;
+  const image::FieldOfView& view;
   const GreyLevels& levels;
 };
 

@@ -175,7 +175,7 @@ class InstrumentTracker::Implementation {
 
   InstrumentConfig config_;
   GreyMap map_;
-  FieldOfView view_;
+  image::FieldOfView view_;
   ShaftFinder finder_;
   std::vector<InstrumentTrack> tracks_;
   std::vector<Pending> pending_;

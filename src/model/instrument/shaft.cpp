@@ -10,7 +10,7 @@ namespace {
 constexpr double kTurned = 0.94;  // cosine of 20 degrees, between the axes of one shaft in two pictures
 constexpr int kSamples = 10;      // along a shaft
 
-bool isInside(const FieldOfView& view, const Eigen::Vector2d& p) {
+bool isInside(const image::FieldOfView& view, const Eigen::Vector2d& p) {
   return view.contains(static_cast<int>(std::lround(p.x())), static_cast<int>(std::lround(p.y())));
 }
 
@@ -32,7 +32,7 @@ double Shaft::widthAt(double along) const {
   return -edges[0].distance(p) - edges[1].distance(p);
 }
 
-void follow(const FieldOfView& view, const std::array<GreyLine, 2>& edges, Shaft& shaft) {
+void follow(const image::FieldOfView& view, const std::array<GreyLine, 2>& edges, Shaft& shaft) {
   shaft.edges = edges;
   // Directions that point to the tip: edge 1's own, and edge 0's turned round.
   shaft.axis = (edges[1].direction() - edges[0].direction()).normalized();

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 
-#include "model/instrument/field_of_view.h"
+#include "laparoscope_servo/image/field_of_view.h"
 #include "model/instrument/grey_lines.h"
 
 namespace laparoscope_servo::model {
@@ -31,7 +31,7 @@ struct Shaft {
 };
 
 // `shaft` with other edges, which are near to its own: axis, entry, length and width follow from them.
-void follow(const FieldOfView& view, const std::array<GreyLine, 2>& edges, Shaft& shaft);
+void follow(const image::FieldOfView& view, const std::array<GreyLine, 2>& edges, Shaft& shaft);
 // Whether one is where the other is: they point the same way, and cover each other for the most part.
 bool isSame(const Shaft& a, const Shaft& b);
 // Whether much of the shorter one's axis lies in the other one.

@@ -183,7 +183,8 @@ bool ShaftFinder::single(const Scene& scene, const GreyLine& line, Shaft& shaft)
   return true;
 }
 
-const std::vector<Shaft>& ShaftFinder::find(const GreyMap& map, const FieldOfView& view, const GreyLevels& levels) {
+const std::vector<Shaft>& ShaftFinder::find(const GreyMap& map, const image::FieldOfView& view,
+                                            const GreyLevels& levels) {
   const double threshold = levels.threshold;
   const Scene scene{map, view, threshold, std::max(kLeastContrast, kContrast * levels.usual),
                     std::max(kLeastContrast, levels.usual)};

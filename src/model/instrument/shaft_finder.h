@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "model/instrument/field_of_view.h"
+#include "laparoscope_servo/image/field_of_view.h"
 #include "model/instrument/grey_levels.h"
 #include "model/instrument/grey_lines.h"
 #include "model/instrument/grey_map.h"
@@ -18,12 +18,12 @@ class ShaftFinder {
   static constexpr int kMost = 3;
 
   // Best first; no two share an edge or most of their place.
-  const std::vector<Shaft>& find(const GreyMap& map, const FieldOfView& view, const GreyLevels& levels);
+  const std::vector<Shaft>& find(const GreyMap& map, const image::FieldOfView& view, const GreyLevels& levels);
 
  private:
   struct Scene {
     const GreyMap& map;
-    const FieldOfView& view;
+    const image::FieldOfView& view;
     double threshold;
     double contrast;
     double usual;

@@ -35,7 +35,7 @@ bool Silhouette::mayBe(const Shaft& shaft, const Eigen::Vector2d& p) const {
   return beyond <= kReach * width && aside <= std::min(0.5 * width + kTolerance + kSpread * beyond, kAside * width);
 }
 
-void Silhouette::grow(const GreyMap& map, const FieldOfView& view, double threshold, const Shaft& shaft) {
+void Silhouette::grow(const GreyMap& map, const image::FieldOfView& view, double threshold, const Shaft& shaft) {
   cells_.create(map.size());
   cells_.setTo(0);
   stack_.clear();

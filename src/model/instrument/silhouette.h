@@ -6,7 +6,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "model/instrument/field_of_view.h"
+#include "laparoscope_servo/image/field_of_view.h"
 #include "model/instrument/grey_map.h"
 #include "model/instrument/shaft_finder.h"
 
@@ -15,7 +15,7 @@ namespace laparoscope_servo::model {
 class Silhouette {
  public:
   // Cells that are grey, hang on to the shaft, and lie where wrist and jaws may be.
-  void grow(const GreyMap& map, const FieldOfView& view, double threshold, const Shaft& shaft);
+  void grow(const GreyMap& map, const image::FieldOfView& view, double threshold, const Shaft& shaft);
 
   bool found() const { return count_ > 0; }
   // Cells: the cell furthest along the axis, to a fraction of a cell along it.

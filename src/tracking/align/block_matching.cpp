@@ -195,6 +195,10 @@ BlockMatching::Peak BlockMatching::find(const cv::Point& block) {
   return peak;
 }
 
+Eigen::Vector2d BlockMatching::centreOf(const cv::Point& block) const {
+  return geometry::apply(reference_T_crop_, Eigen::Vector2d(block.x + 0.5 * (kSide - 1), block.y + 0.5 * (kSide - 1)));
+}
+
 const std::vector<BlockShift>& BlockMatching::measure(const image::RegionPyramid& current, const Eigen::Matrix3d& g) {
   shifts_.clear();
   if (blocks_.empty()) return shifts_;
@@ -203,8 +207,7 @@ const std::vector<BlockShift>& BlockMatching::measure(const image::RegionPyramid
     if (cv::mean(valid_(cv::Rect(block.x, block.y, kSide, kSide)))[0] < kLeastValid) continue;
     const Peak peak = find(block);
     BlockShift found;
-    found.centre =
-        geometry::apply(reference_T_crop_, Eigen::Vector2d(block.x + 0.5 * (kSide - 1), block.y + 0.5 * (kSide - 1)));
+    found.centre = centreOf(block);
     found.shift = scale_ * Eigen::Vector2d(peak.x, peak.y);
     found.correlation = peak.top;
     found.confident = peak.top >= kPeak && peak.top - peak.second >= kLead;

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <memory>
 #include <opencv2/core.hpp>
 #include <vector>
@@ -40,6 +41,13 @@ class BlockMatching {
   // Searches on this level of the pyramid, or on its coarsest one. Each level doubles the search range.
   void setReference(const image::RegionPyramid& reference, const geometry::Rectangle& roi, int level);
 
+  // Drops the blocks for which `used(centre)` is false; `centre` in px of the reference.
+  template <typename Used>
+  void keep(const Used& used) {
+    const auto unused = [&](const cv::Point& block) { return !used(centreOf(block)); };
+    blocks_.erase(std::remove_if(blocks_.begin(), blocks_.end(), unused), blocks_.end());
+  }
+
   // Level of the pyramid on which blocks are searched.
   int level() const { return level_; }
   // Number of blocks whose texture is unique within the search range.
@@ -61,6 +69,7 @@ class BlockMatching {
   void look(const image::RegionPyramid& current, const Eigen::Matrix3d& g);
   void contrast();
   Peak find(const cv::Point& block);
+  Eigen::Vector2d centreOf(const cv::Point& block) const;
 
   std::shared_ptr<const image::Lens> lens_;
   int level_ = 0;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <vector>
 
 #include "laparoscope_servo/geometry/sl3.h"
 #include "tracking/align/channel_choice.h"
@@ -73,8 +74,12 @@ void RegionAligner::setReference(const cv::Mat& image, const geometry::Rectangle
   far_blocks_.setReference(pyramid_, roi, blocks_.level() + 1);
   sample(image, Eigen::Matrix3d::Identity());
   gates_.setReference(patch_, patchSize(), coloursIn(channels_));
-  if (!mask_.empty()) gates_.hideInReference(covered_.blue);
+  const bool hidden = !mask_.empty() && cv::countNonZero(covered_.blue) > 0;
+  if (hidden) gates_.hideInReference(covered_.blue);
   esm_.setWeights(weights());
+  if (!hidden) return;
+  for (BlockMatching* blocks : {&blocks_, &far_blocks_})
+    blocks->keep([&](const Eigen::Vector2d& centre) { return isVisible(centre, blocks->side()); });
 }
 
 ReferenceTexture RegionAligner::referenceTexture() {
@@ -195,18 +200,14 @@ const std::vector<BlockShift>& RegionAligner::measure(const EsmResult& estimate,
   return shifts;
 }
 
-int RegionAligner::visibleBlocks(const std::vector<BlockShift>& shifts) const {
+bool RegionAligner::isVisible(const Eigen::Vector2d& centre, double side) const {
   const EsmLevel& level = esm_.level(0);
   const cv::Mat1f weight = level.weight.view();
-  const auto visible = [&](const BlockShift& block) {
-    const cv::Point centre(cvRound((block.centre.x() - level.image_T_patch(0, 2)) / level.scale),
-                           cvRound((block.centre.y() - level.image_T_patch(1, 2)) / level.scale));
-    const int half = static_cast<int>(blocks_.side() / level.scale / 2.0);
-    const cv::Rect box =
-        cv::Rect(centre.x - half, centre.y - half, 2 * half, 2 * half) & cv::Rect({0, 0}, weight.size());
-    return cv::mean(weight(box))[0] >= kBlockVisible;
-  };
-  return static_cast<int>(std::count_if(shifts.begin(), shifts.end(), visible));
+  const cv::Point middle(cvRound((centre.x() - level.image_T_patch(0, 2)) / level.scale),
+                         cvRound((centre.y() - level.image_T_patch(1, 2)) / level.scale));
+  const int half = static_cast<int>(side / level.scale / 2.0);
+  const cv::Rect box = cv::Rect(middle.x - half, middle.y - half, 2 * half, 2 * half) & cv::Rect({0, 0}, weight.size());
+  return cv::mean(weight(box))[0] >= kBlockVisible;
 }
 
 // Where blocks and ESM contradict each other the blocks are believed: moving light and shadows bias residuals, but not
@@ -222,7 +223,9 @@ void RegionAligner::correct(EsmResult& estimate, BlockEvidence& evidence) {
     follow(*fit, estimate);
     shifts = &measure(estimate, evidence);
   }
-  evidence.visible = visibleBlocks(*shifts);
+  evidence.visible = static_cast<int>(std::count_if(shifts->begin(), shifts->end(), [this](const BlockShift& block) {
+    return isVisible(block.centre, blocks_.side());
+  }));
   evidence.deformation = deformationCovariance(*shifts, evidence.off, roi());
 }
 
@@ -262,9 +265,11 @@ double RegionAligner::detail() const {
 
 cv::Mat RegionAligner::occlusionMask(const Eigen::Matrix3d& g, const cv::Size& size) const {
   const image::AreaGrid& grid = gates_.grid();
+  std::vector<uchar> covered(static_cast<std::size_t>(grid.count()));
+  for (int area = 0; area < grid.count(); ++area) covered[area] = gates_.covered(area) ? 255 : 0;
   cv::Mat1b areas(grid.height(), grid.width());
   for (int j = 0; j < grid.height(); ++j) {
-    for (int i = 0; i < grid.width(); ++i) areas(j, i) = gates_.occluded(grid.areaOf(i, j)) ? 255 : 0;
+    for (int i = 0; i < grid.width(); ++i) areas(j, i) = covered[grid.areaOf(i, j)];
   }
   const geometry::Quadrilateral corners = geometry::apply(g, roi().corners());
   cv::Mat1b mask = cv::Mat1b::zeros(size);

@@ -96,7 +96,8 @@ class RegionAligner {
   void look(const cv::Mat& image, const Eigen::Matrix3d& g);
   void follow(const ShiftFit& fit, EsmResult& estimate) const;
   const std::vector<BlockShift>& measure(const EsmResult& estimate, BlockEvidence& evidence);
-  int visibleBlocks(const std::vector<BlockShift>& shifts) const;
+  // The pixels of a block, with its centre and side in px of the reference, have weight.
+  bool isVisible(const Eigen::Vector2d& centre, double side) const;
   void correct(EsmResult& estimate, BlockEvidence& evidence);
   void lookFurther(EsmResult& estimate, BlockEvidence& evidence);
   int observeStructure(const EsmResult& estimate);

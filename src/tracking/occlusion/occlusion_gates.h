@@ -70,6 +70,10 @@ class OcclusionGates {
   // False when the image has no colour, or the gate is off: the colour gate is then inactive.
   bool colourUsed() const { return colour_used_; }
   bool occluded(int area) const { return colour_rejects_[area] || held_[area] > 0; }
+  // Occluded, or most of it is not valid: outside of the image, or covered by what patches leave out.
+  bool covered(int area) const {
+    return occluded(area) || hidden(area / grid_.columns(), area % grid_.columns()) == AreaCause::kBorder;
+  }
   // Causes for all areas, for display only: no decision depends on them.
   void causes(std::vector<AreaCause>& causes) const;
   const std::vector<float>& distances() const { return distances_; }

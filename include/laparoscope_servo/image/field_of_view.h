@@ -5,7 +5,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-namespace laparoscope_servo::model {
+namespace laparoscope_servo::image {
 
 class FieldOfView {
  public:
@@ -26,9 +26,11 @@ class FieldOfView {
   const cv::Range& row(int y) const { return rows_[static_cast<std::size_t>(y)]; }
 
  private:
+  void bound(const std::vector<cv::Point>& points, int sign);
+
   std::vector<cv::Range> rows_;  // of each row, the columns that belong to it
-  std::vector<cv::Point> points_, hull_;
+  std::vector<cv::Point> left_, right_, chain_;
   int area_ = 0;
 };
 
-}  // namespace laparoscope_servo::model
+}  // namespace laparoscope_servo::image
