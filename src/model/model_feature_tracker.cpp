@@ -60,7 +60,7 @@ const features::TrackedFeatures& ModelFeatureTracker::track(const cv::Mat& image
     end("the camera is another one than that of the selection");
     return told_;
   }
-  for (ModelTracker& tracker : trackers_) tracker.track(image, stamp);
+  for (ModelTracker& tracker : trackers_) tracker.track(image, stamp, prior.camera_motion);
   tell();
   return told_;
 }

@@ -18,11 +18,12 @@ class ModelFeatureTracker : public features::FeatureTracker {
   const features::TrackedFeatures& select(const cv::Mat& image, double stamp,
                                           const features::FeatureSelection& selection,
                                           const features::FeaturePrior& prior) override;
-  // The prior's motion of pixels is no motion in space, and not used. Another camera than that of the selection resets.
+  // Of the prior's motions that in space is used. Another camera than that of the selection resets.
   const features::TrackedFeatures& track(const cv::Mat& image, double stamp,
                                          const features::FeaturePrior& prior) override;
   void reset() override;
   const features::TrackedFeatures& features() const override { return told_; }
+  bool givesPoses() const override { return true; }
 
  private:
   void end(const char* reason);

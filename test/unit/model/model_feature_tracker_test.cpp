@@ -67,6 +67,18 @@ TEST_F(ModelFeatureTrackerTest, nothingIsKnownOfWhatIsNotSeen) {
   EXPECT_TRUE(std::isinf(told.features[0].covariance(0, 0)));
 }
 
+TEST_F(ModelFeatureTrackerTest, theCamerasMotionInSpaceIsExpected) {
+  Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
+  motion.linear() = geometry::so3Exp({0.0, 0.0, 0.4});  // turns the image by 23 degrees
+  const cv::Mat turned = test::ModelRenderer(*model_, scene_).draw(motion * truth_, 2);
+  tracker_.select(image_, 0.0, selection_, prior_);
+  EXPECT_NE(tracker_.track(turned, 0.04, prior_).state, State::kTracking);
+  tracker_.select(image_, 0.0, selection_, prior_);
+  features::FeaturePrior known = prior_;
+  known.camera_motion = motion;
+  EXPECT_EQ(tracker_.track(turned, 0.04, known).state, State::kTracking) << tracker_.features().reason;
+}
+
 TEST_F(ModelFeatureTrackerTest, whatCannotBeIsRefusedByNameAndTrackingGoesOn) {
   tracker_.select(image_, 0.0, selection_, prior_);
   EXPECT_NE(refusal({}, prior_).find("0 features"), std::string::npos);

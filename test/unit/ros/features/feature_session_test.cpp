@@ -65,6 +65,34 @@ TEST_P(FeatureSessionTest, SelectsAndTracks) {
   EXPECT_EQ(tracked.result.features.size(), 2u);
 }
 
+// A jump of 30 px, further than edges and dots are searched by themselves.
+TEST_P(FeatureSessionTest, StartsFromWhereTheCamerasMotionPuts) {
+  sensor_msgs::CameraInfo info;
+  info.width = 320;
+  info.height = 240;
+  info.K = {300.0, 0.0, 160.0, 0.0, 300.0, 120.0, 0.0, 0.0, 1.0};
+  for (const bool knows : {false, true}) {
+    FeatureSession session = this->session();
+    session.setCameraInfo(info);
+    select(session);
+    std::vector<std::pair<ros::Time, ros::Time>> asked;
+    const auto motion = [&](const std::string& frame, const ros::Time& from, const ros::Time& to, std::string& why) {
+      EXPECT_EQ(frame, "optical_of_the_test");
+      asked.emplace_back(from, to);
+      if (!knows) why = "tf does not know";
+      Eigen::Isometry3d moved = Eigen::Isometry3d::Identity();
+      moved.translation().x() = 30.0 / 300.0 * FeatureInput().robot_motion.depth;
+      return knows ? std::make_optional(moved) : std::nullopt;
+    };
+    session.setCameraMotion(motion);
+    const ProcessedFeatures jumped = next(session, 30.0);
+    ASSERT_EQ(asked.size(), 1u);
+    EXPECT_NEAR((asked[0].second - asked[0].first).toSec(), kPeriod, 1e-6);
+    EXPECT_EQ(jumped.motion_error, knows ? "" : "tf does not know");
+    EXPECT_EQ(jumped.result.state == State::kTracking, knows) << jumped.result.reason;
+  }
+}
+
 TEST_P(FeatureSessionTest, GoesOnWhenASelectionIsRefused) {
   FeatureSession session = this->session();
   select(session);
