@@ -98,7 +98,12 @@ void FeatureSession::complete(ProcessedFeatures& processed, const std::optional<
   processed.camera_error = intrinsics_.error();
   track(processed, request);
   watchPicture(processed);
-  if (processed.repeats.whole == 0) last_stamp_ = processed.header.stamp;
+  // A motion that tf does not know yet is a part of the next one, unless the features were seen without it.
+  const auto& told = processed.result.features;
+  const bool is_any_seen = std::any_of(
+      told.begin(), told.end(), [](const features::TrackedFeature& each) { return each.state == State::kTracking; });
+  if (processed.repeats.whole == 0 && (processed.motion_error.empty() || is_any_seen))
+    last_stamp_ = processed.header.stamp;
 }
 
 void FeatureSession::expectMotion(ProcessedFeatures& processed, features::FeaturePrior& prior) const {

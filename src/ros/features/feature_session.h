@@ -85,7 +85,7 @@ class FeatureSession {
   bool time_began_again_ = false;  // since the last selection
   CameraMotion camera_motion_;
   double depth_;                         // m, see setCameraMotion()
-  std::optional<ros::Time> last_stamp_;  // of the last new picture; empty: none, or time has begun again
+  std::optional<ros::Time> last_stamp_;  // from which the motion is asked for; empty: nothing was seen yet
   image::RepeatWatch repeats_;
   tracking::FrozenFeed feed_;
 };
