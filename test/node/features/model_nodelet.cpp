@@ -5,6 +5,7 @@
 #include <ros/ros.h>
 #include <sensor_msgs/CameraInfo.h>
 #include <tf2_msgs/TFMessage.h>
+#include <tf2_ros/transform_broadcaster.h>
 
 #include <map>
 #include <memory>
@@ -163,6 +164,37 @@ TEST_F(ModelNodelet, WithoutBeingAskedItSaysNothingOnTf) {
   ASSERT_TRUE(bench().quiet_poses.waitFor(told->header.stamp));
   const std::lock_guard<std::mutex> lock(bench().mutex);
   EXPECT_EQ(bench().transforms.count("scope/quiet/box"), 0u);
+}
+
+// The object rests, and the camera turns about its axis to and fro, from one image to the next by more than the tracker
+// follows by itself (see ModelFeatureTrackerTest). tf and images come over two connections: where tf is late, the turn
+// is made up for with a later image.
+TEST_F(ModelNodelet, FollowsTurnsOfTheCameraThatTfKnows) {
+  const DiagnosticsListener diagnostics(bench().node(), "scope/quiet");
+  tf2_ros::TransformBroadcaster broadcaster;
+  select(kWithoutTf);
+  const auto see = [&broadcaster](bool is_turned) {
+    const Eigen::Isometry3d base_T_camera(Eigen::AngleAxisd(is_turned ? 0.4 : 0.0, Eigen::Vector3d::UnitZ()));
+    const Eigen::Quaterniond turn(base_T_camera.linear());
+    geometry_msgs::TransformStamped transform;
+    transform.header.stamp = FeatureBench::nextStamp();
+    transform.header.frame_id = "base_of_the_test";
+    transform.child_frame_id = "optical_of_the_test";
+    transform.transform.rotation.z = turn.z();
+    transform.transform.rotation.w = turn.w();
+    broadcaster.sendTransform(transform);
+    const test::ModelRenderer renderer(box(), test::ModelScene());
+    const cv::Mat image = renderer.draw(base_T_camera.inverse() * truth(0), bench().nextNumber());
+    return bench().track(kWithoutTf, image, transform.header.stamp);
+  };
+  const auto tracks = [&see](bool is_turned) {
+    const TrackedFeaturesConstPtr told = see(is_turned);
+    return told && told->state == TrackedFeatures::TRACKING;
+  };
+  const auto tfIsThere = [&] { return tracks(false) && diagnostics.value("robot_motion") == "from tf"; };
+  ASSERT_TRUE(waitFor(tfIsThere)) << diagnostics.last();
+  for (const bool is_turned : {true, false, true, false})
+    EXPECT_TRUE(waitFor([&] { return tracks(is_turned); })) << diagnostics.last();
 }
 
 TEST_F(ModelNodelet, WhatIsNotSeenHasNoPose) {
