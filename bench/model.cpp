@@ -258,7 +258,7 @@ int measure(int argc, char** argv) {
   if (!has_images) std::cout << folder << " has no cube.cao: only drawn images\n";
   const struct {
     const char* name;
-    const char* text;
+    std::string text;
     double texture;
   } kScenes[] = {{"cube", test::kCube, 0.0},
                  {"cube, textured", test::kCube, 15.0},

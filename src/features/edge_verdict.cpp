@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "features/chance.h"
 #include "features/edge_association.h"
@@ -18,6 +19,9 @@ constexpr double kMaxSigmaOfFew = 0.7;
 constexpr double kMostlySeen = 0.6;
 constexpr int kLeastSites = 8;
 constexpr double kCorrelation = 8.0;  // px along the curve, over which edges err alike
+// px: within each of them the agreement is compared with chance. Of edges that are not the curve's as many lie in one
+// part of kAgreeDistance as in another, while the curve's own are nearer.
+constexpr double kTolerances[] = {kAgreeDistance, 0.5 * kAgreeDistance, 0.25 * kAgreeDistance};
 
 // px^2, of the curve's displacement along the site's normal.
 double variance(const Site& site, const Eigen::MatrixXd& covariance) {
@@ -30,6 +34,22 @@ double variance(const Site& site, const Eigen::MatrixXd& covariance) {
     }
   }
   return sum;
+}
+
+// The most for any of the tolerances. Each gives a bound of the probability; the smallest of three bounds, times three,
+// is one, too.
+double mostEvidence(const FitOutcome& fit, Agreement agreement) {
+  double most = 0.0;
+  for (const double tolerance : kTolerances) {
+    agreement.tolerance = tolerance;
+    agreement.agree = static_cast<int>(
+        std::count_if(fit.findings.begin(), fit.findings.end(), [tolerance](const SiteFinding& finding) {
+          return !finding.probe && finding.inside && finding.weight >= kAgreeWeight &&
+                 (finding.edge - finding.point).norm() <= tolerance;
+        }));
+    most = std::max(most, evidence(agreement) - std::log(static_cast<double>(std::size(kTolerances))));
+  }
+  return most;
 }
 
 }  // namespace
@@ -57,7 +77,7 @@ void judge(const FitOutcome& fit, const EdgeConfig& config, double min_share, Ed
   agreement.range = fit.range;
   agreement.freedoms = fit.parameters;
   agreement.independent = std::min(1.0, config.spacing / kCorrelation);
-  report.evidence = evidence(agreement);
+  report.evidence = mostEvidence(fit, agreement);
   if (report.inside < kLeastSites) {
     report.reason = Reason::kOutside;
   } else if (!(report.share >= min_share) || report.used < kLeastSites) {

@@ -6,6 +6,7 @@
 
 #include "laparoscope_servo/geometry/se3.h"
 #include "laparoscope_servo/validation/error_report.h"
+#include "model/convex_hull.h"
 
 namespace laparoscope_servo::model {
 
@@ -44,10 +45,11 @@ const features::TrackedFeatures& ModelFeatureTracker::select(const cv::Mat& imag
   trackers_ = std::move(trackers);
   camera_ = *prior.camera;
   features::begin(told_, selection);
+  points_.reserve(static_cast<std::size_t>(config_.edges.max_sites));
   for (features::TrackedFeature& told : told_.features) {
     told.parameters.setZero(kParameters);
     told.covariance.setZero(kParameters, kParameters);
-    told.outline.reserve(static_cast<std::size_t>(config_.edges.max_sites));
+    told.outline.reserve(static_cast<std::size_t>(config_.edges.max_sites) + 1);
     told.sites.reserve(static_cast<std::size_t>(config_.edges.max_sites));
   }
   tell();
@@ -60,7 +62,7 @@ const features::TrackedFeatures& ModelFeatureTracker::track(const cv::Mat& image
     end("the camera is another one than that of the selection");
     return told_;
   }
-  for (ModelTracker& tracker : trackers_) tracker.track(image, stamp);
+  for (ModelTracker& tracker : trackers_) tracker.track(image, stamp, prior.camera_motion);
   tell();
   return told_;
 }
@@ -93,8 +95,9 @@ void ModelFeatureTracker::tell() {
     told.share = result.share;
     told.expected_error = result.expected_error;
     const std::vector<features::SiteFinding>& findings = trackers_[k].findings();
-    told.outline.clear();
-    for (const features::SiteFinding& finding : findings) told.outline.push_back(finding.point);
+    points_.clear();
+    for (const features::SiteFinding& finding : findings) points_.push_back(finding.point);
+    convexHull(points_, told.outline);
     features::tellSites(findings, told.sites);
   }
   if (!trackers_.empty()) features::summarise(told_, "");

@@ -178,11 +178,8 @@ class ModelTracker::Implementation {
     result_.expected_error = std::numeric_limits<double>::infinity();
   }
 
-  // Of the twist to that of the pose: the point at the object's origin t moves by -v + t x w, all turns by -w.
   geometry::Matrix6d poseCovariance(const Outline& outline) const {
-    geometry::Matrix6d motion;
-    motion << -Eigen::Matrix3d::Identity(), geometry::skew(outline.pose().translation()), Eigen::Matrix3d::Zero(),
-        -Eigen::Matrix3d::Identity();
+    const geometry::Matrix6d motion = poseInteraction(outline.pose());
     return motion * geometry::Matrix6d(fit_.covariance()) * motion.transpose();
   }
 

@@ -191,6 +191,14 @@ void Outline::sites(double spacing, int most, std::vector<features::Site>& resul
   }
 }
 
+// The object's origin t moves by -v + t x w, and it turns by -w.
+geometry::Matrix6d poseInteraction(const Eigen::Isometry3d& camera_T_object) {
+  geometry::Matrix6d result;
+  result << -Eigen::Matrix3d::Identity(), geometry::skew(camera_T_object.translation()), Eigen::Matrix3d::Zero(),
+      -Eigen::Matrix3d::Identity();
+  return result;
+}
+
 void Outline::move(const Eigen::VectorXd& step) {
   camera_T_object_ = geometry::se3Exp(geometry::Vector6d(step)).inverse() * camera_T_object_;
 }

@@ -21,6 +21,9 @@ namespace laparoscope_servo::model {
 
 // Of a point of the scene in the camera's frame: how its image, px, moves by the camera's twist; survey, eq. (7).
 Eigen::Matrix<double, 2, 6> pointInteraction(const geometry::PinholeCamera& camera, const Eigen::Vector3d& point);
+// How an object's pose moves by the camera's twist: translation of the object's origin, m, then rotation vector, rad,
+// both along the camera's axes, which is the order and the kind of geometry_msgs/PoseWithCovariance.
+geometry::Matrix6d poseInteraction(const Eigen::Isometry3d& camera_T_object);
 
 // Where it is seen, px; the point's z has to be positive.
 Eigen::Vector2d project(const geometry::PinholeCamera& camera, const Eigen::Vector3d& point);

@@ -35,6 +35,8 @@ void FeatureNodelet::start() {
   features_publisher_ = private_node.advertise<TrackedFeatures>("features", 10);
   overlay_publisher_ = private_node.advertise<sensor_msgs::Image>("overlay", 2);
   if (session_->givesMask()) mask_publisher_ = private_node.advertise<sensor_msgs::Image>("mask", 2);
+  if (session_->givesPoses()) poses_ = std::make_unique<PosePublisher>(private_node, input_.publish_tf);
+  if (input_.robot_motion.enabled) session_->setCameraMotion(followRobot(input_.robot_motion));
   reset_server_ = private_node.advertiseService("reset", &FeatureNodelet::reset, this);
   request_thread_ = std::make_unique<ServiceThread>(private_node);
   request_thread_->advertiseService("select_features", &FeatureNodelet::select, this);
@@ -61,6 +63,7 @@ void FeatureNodelet::process(const sensor_msgs::ImageConstPtr& message) {
   last_ = processed.result;
   selection_error_ = processed.selection_error;
   camera_error_ = processed.camera_error;
+  motion_error_ = processed.motion_error;
   statistics_.processed(steadyNow(), processed.period, processed.processing_time, processed.repeats.whole > 0);
   publish(processed);
   statistics_.answered(steadyNow(), (ros::Time::now() - processed.header.stamp).toSec());
@@ -71,6 +74,7 @@ void FeatureNodelet::publish(const ProcessedFeatures& processed) {
     features_publisher_.publish(
         boost::make_shared<TrackedFeatures>(featuresMessage(processed.header, processed.result)));
   }
+  if (poses_) poses_->publish(processed.header, processed.result);
   if (mask_publisher_ && mask_publisher_.getNumSubscribers() > 0)
     mask_publisher_.publish(imageMessage(processed.header, session_->mask()));
   if (overlay_publisher_.getNumSubscribers() > 0) {
@@ -88,6 +92,7 @@ void FeatureNodelet::diagnose(double now, const FeedPublishers& publishers,
   statistics_.setPublishers(publishers);
   fillFeatureDiagnostics(now, last_, selection_error_, statistics_, status);
   status.add("intrinsics", camera_error_.empty() ? "from camera_info" : camera_error_);
+  if (input_.robot_motion.enabled) status.add("robot_motion", motion_error_.empty() ? "from tf" : motion_error_);
 }
 
 bool FeatureNodelet::reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {

@@ -14,6 +14,7 @@
 #include "ros/common/image_request.h"
 #include "ros/features/feature_parameters.h"
 #include "ros/features/feature_session.h"
+#include "ros/features/pose_publisher.h"
 #include "ros/tracker/feed_statistics.h"
 
 namespace laparoscope_servo::nodelets {
@@ -53,11 +54,13 @@ class FeatureNodelet : public ImageNodelet {
   features::TrackedFeatures last_;
   std::string selection_error_;
   std::string camera_error_;
+  std::string motion_error_;
   Request request_;
   std::unique_ptr<ServiceThread> request_thread_;
   ros::Publisher features_publisher_;
   ros::Publisher overlay_publisher_;
-  ros::Publisher mask_publisher_;  // where the tracker has one
+  ros::Publisher mask_publisher_;         // where the tracker has one
+  std::unique_ptr<PosePublisher> poses_;  // where the tracker may have some
   ros::ServiceServer reset_server_;
 };
 

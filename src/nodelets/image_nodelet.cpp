@@ -54,6 +54,15 @@ void ImageNodelet::subscribe() {
   transport_subscriber_ = transport_->subscribe("image", 1, &ImageNodelet::imageCallback, this, hints);
 }
 
+CameraMotion ImageNodelet::followRobot(const RobotMotionConfig& config) {
+  robot_ = std::make_unique<RobotFollower>(config, getNodeHandle());
+  return [this](const std::string& frame, const ros::Time& from, const ros::Time& to, std::string& why) {
+    const auto motion = robot_->motion(frame, from, to, why);
+    if (!robot_->complaint().empty()) NODELET_WARN_THROTTLE(kThrottle, "%s", robot_->complaint().c_str());
+    return motion;
+  };
+}
+
 void ImageNodelet::cameraInfoCallback(const ros::MessageEvent<const sensor_msgs::CameraInfo>& event) {
   if (!camera_info_owner_.counts(event.getPublisherName(), steadyNow())) return;
   takeCameraInfo(*event.getConstMessage());

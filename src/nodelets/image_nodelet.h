@@ -17,6 +17,7 @@
 #include "ros/tracker/feed_statistics.h"
 #include "ros/tracker/image_backlog.h"
 #include "ros/tracker/image_conversion.h"
+#include "ros/tracker/robot_motion.h"
 
 namespace laparoscope_servo::nodelets {
 
@@ -42,6 +43,8 @@ class ImageNodelet : public nodelet::Nodelet {
                         diagnostic_updater::DiagnosticStatusWrapper& status) = 0;
 
   void subscribe();
+  // The camera's motion by the robot's tf; what others say on tf goes to the log. Holds as long as the nodelet.
+  CameraMotion followRobot(const RobotMotionConfig& config);
   // For process(), before the image is used. Throws ImageError, see checkStamp of ros/tracker/image_gate.h.
   void checkTime(const ros::Time& stamp, double max_ahead);
   // For checkStamp; zero in simulated time, which comes on its own topic, before or after what is stamped.
@@ -61,6 +64,7 @@ class ImageNodelet : public nodelet::Nodelet {
   std::unique_ptr<diagnostic_updater::Updater> diagnostics_;
   bool started_ = false;
   std::string why_aside_;
+  std::unique_ptr<RobotFollower> robot_;  // only with robot_motion
   FeedOwner image_owner_;
   ImageBacklog backlog_;
   sensor_msgs::ImageConstPtr left_;  // the last one that was not taken, until another one comes

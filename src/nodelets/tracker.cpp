@@ -18,7 +18,6 @@ namespace laparoscope_servo::nodelets {
 
 namespace {
 
-constexpr double kAhead = 1.0;        // s, by which tf may be ahead of this machine's clock
 constexpr double kStatePeriod = 0.2;  // s between two checks for images
 
 template <class Message>
@@ -60,7 +59,7 @@ void Tracker::start() {
   desk_ = std::make_unique<RegionDesk>(parameters);
   statistics_ = std::make_unique<TrackerDiagnostics>(parameters.tracking, parameters.robot_motion.enabled,
                                                      parameters.external_mask.enabled);
-  if (parameters.robot_motion.enabled) followRobot(parameters.robot_motion);
+  if (parameters.robot_motion.enabled) session_->setCameraMotion(followRobot(parameters.robot_motion));
   if (parameters.external_mask.enabled) followMasks(parameters.external_mask);
 
   ros::NodeHandle& node = getNodeHandle();
@@ -90,27 +89,6 @@ void Tracker::start() {
   subscribe();
   request_thread_->start();
   view_thread_->start();
-}
-
-void Tracker::followRobot(const RobotMotionConfig& config) {
-  const std::string fixed_frame = fixedFrame(config, getNodeHandle().getNamespace());
-  TransformGateConfig gate;
-  if (!config.owner.empty()) gate.owner = getNodeHandle().resolveName(config.owner, false);
-  gate.parameter = "robot_motion/owner";
-  gate.frames = {fixed_frame};
-  gate.max_ahead = kAhead;
-  transforms_ = std::make_unique<OwnedTransforms>(gate);
-  session_->setCameraMotion([this, fixed_frame](const std::string& frame, const ros::Time& from, const ros::Time& to,
-                                                std::string& why) -> std::optional<Eigen::Isometry3d> {
-    transforms_->use(frame);
-    const OwnedTransforms::Word word = transforms_->step(false, steadyNow());
-    if (!word.complaint.empty()) NODELET_WARN_THROTTLE(kThrottle, "%s", word.complaint.c_str());
-    why = word.problem;
-    if (!why.empty()) return std::nullopt;
-    const auto motion = cameraMotion(*transforms_->buffer(), fixed_frame, frame, from, to, why);
-    if (!motion && !word.complaint.empty()) why += "; " + word.complaint;
-    return motion;
-  });
 }
 
 void Tracker::followMasks(MaskInputConfig config) {

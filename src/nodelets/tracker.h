@@ -18,7 +18,6 @@
 
 #include "nodelets/image_nodelet.h"
 #include "nodelets/service_thread.h"
-#include "ros/common/owned_transforms.h"
 #include "ros/common/reconfigure_server.h"
 #include "ros/tracker/mask_input.h"
 #include "ros/tracker/preview.h"
@@ -39,7 +38,6 @@ class Tracker : public ImageNodelet {
   std::vector<std::string> configure() override;
   void start() override;
   void notStarted(const std::string& why) override;
-  void followRobot(const RobotMotionConfig& config);
   void followMasks(MaskInputConfig config);
 
   // The functions below run in the nodelet's own single-threaded queue.
@@ -64,8 +62,7 @@ class Tracker : public ImageNodelet {
   bool listViews(ListViews::Request& request, ListViews::Response& response);
   TrackerRequest::Answer ask(const TrackerRequest::Question& question);
 
-  std::unique_ptr<OwnedTransforms> transforms_;  // only with robot_motion
-  std::unique_ptr<MaskInput> masks_;             // only with external_mask
+  std::unique_ptr<MaskInput> masks_;  // only with external_mask
   ros::Subscriber mask_subscriber_;
   std::unique_ptr<TrackerSession> session_;
   TrackerParameters parameters_;  // as read, then buffer for live_.take()

@@ -14,10 +14,8 @@
 
 namespace laparoscope_servo::test {
 
-// The cube of ViSP's images, 84 mm wide.
-constexpr const char* kCube = R"(V1
-8
- 0 0 0
+// The parts of the cube of ViSP's images, 84 mm wide.
+inline const std::string kCubePoints = R"( 0 0 0
 -0.084 0 0
 -0.084 0.084 0
  0 0.084 0
@@ -25,7 +23,8 @@ constexpr const char* kCube = R"(V1
 -0.084 0 0.084
 -0.084 0.084 0.084
  0 0.084 0.084
-0
+)";
+inline const std::string kCubeFaces = R"(0
 0
 6
 4 0 4 5 1
@@ -34,35 +33,16 @@ constexpr const char* kCube = R"(V1
 4 3 7 4 0
 4 0 1 2 3
 4 7 6 5 4
-0
-0
 )";
 
+inline const std::string kCube = "V1\n8\n" + kCubePoints + kCubeFaces + "0\n0\n";
+
 // The same with a tube beside it, and the circle at the tube's upper end.
-constexpr const char* kCubeAndTube = R"(V1
-12
- 0 0 0
--0.084 0 0
--0.084 0.084 0
- 0 0.084 0
- 0 0 0.084
--0.084 0 0.084
--0.084 0.084 0.084
- 0 0.084 0.084
--0.15 -0.03 0
+inline const std::string kCubeAndTube = "V1\n12\n" + kCubePoints + R"(-0.15 -0.03 0
 -0.15 -0.03 0.11
 -0.11 -0.03 0.11
 -0.15 0.01 0.11
-0
-0
-6
-4 0 4 5 1
-4 1 5 6 2
-4 6 7 3 2
-4 3 7 4 0
-4 0 1 2 3
-4 7 6 5 4
-1
+)" + kCubeFaces + R"(1
 8 9 0.04
 1
 0.04 9 10 11

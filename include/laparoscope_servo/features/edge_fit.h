@@ -21,7 +21,8 @@ struct EdgeReport {
   double sigma = 0.0;                        // px, robust standard deviation of the edges about the curve
   // px along the normal, standard deviation at the worst site; of a curve that deforms, at the worst one that agrees.
   double expected_error = 0.0;
-  // Minus the logarithm of how probable it is at most that, by chance, as many agree: to compare curves of one image.
+  // Minus the logarithm of how probable it is at most that, by chance, as many agree as closely: to compare curves of
+  // one image.
   double evidence = 0.0;
 };
 

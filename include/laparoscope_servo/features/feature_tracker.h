@@ -19,6 +19,8 @@ namespace laparoscope_servo::features {
 struct FeaturePrior {
   // Takes pixels of the last image to pixels of this one. One that is no homography is ignored.
   std::optional<Eigen::Matrix3d> motion;
+  // Takes coordinates in the camera's frame of the last image to those in this one's, of what is at rest.
+  std::optional<Eigen::Isometry3d> camera_motion;
   // Of this image, without distortion; trackers in pixels do not need it.
   std::optional<geometry::PinholeCamera> camera;
   // CV_8UC1 of the image's size: what is not 0 lies in front of the tissue. Empty: nothing is known. Used by trackers
@@ -50,6 +52,9 @@ class FeatureTracker {
   virtual bool findsByItself() const { return false; }
   // Something can be selected.
   virtual bool takesSelection() const { return !findsByItself(); }
+
+  // Whether poses may be among its features.
+  virtual bool givesPoses() const { return false; }
 
   // Whether mask() tells something. CV_8UC1 of the last image's size: 255 where something lies in front of the tissue,
   // else 0; empty before the first image.

@@ -25,6 +25,7 @@ class InstrumentFeatureTracker : public features::FeatureTracker {
   void reset() override;
   const features::TrackedFeatures& features() const override { return told_; }
   bool findsByItself() const override { return true; }
+  bool givesPoses() const override { return true; }
   bool givesMask() const override { return true; }
   cv::Mat mask() const override { return tracker_.result().mask; }
 

@@ -27,6 +27,8 @@ void describe(parameters::Table& table, FeatureInput& input) {
   table.number("select_timeout", input.select_timeout, {0.1, 60}, "s", "for which select_features waits for an image");
   table.group("image", "how pixels are stored", [&] { describe(table, input.image); });
   table.group("input", "which images are accepted", [&] { describeInput(table, input.input); });
+  table.group("robot_motion", "in the nodelet: the camera's motion in tf, from which the search of each image starts",
+              [&] { describe(table, input.robot_motion); });
 }
 
 std::vector<std::string> validate(const FeatureInput& input) {

@@ -5,6 +5,7 @@
 
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "laparoscope_servo/features/dots.h"
@@ -16,7 +17,9 @@
 #include "laparoscope_servo/parameters/table.h"
 #include "laparoscope_servo/tracking/input_config.h"
 #include "ros/common/parameters.h"
+#include "ros/features/model_file_config.h"
 #include "ros/tracker/image_conversion.h"
+#include "ros/tracker/robot_motion.h"
 
 namespace laparoscope_servo {
 
@@ -26,6 +29,8 @@ struct FeatureInput {
   double select_timeout = 5.0;    // s
   ImageFormat image{0, YuvRange::kLimited};
   tracking::InputConfig input;
+  RobotMotionConfig robot_motion;
+  bool publish_tf = false;  // of trackers that give poses
 };
 
 // `Config`: of the tracker, with describe() and validate().
@@ -40,6 +45,11 @@ using PointsParameters = FeatureParameters<features::PointsConfig>;
 using EdgesParameters = FeatureParameters<features::EdgeConfig>;
 using InstrumentParameters = FeatureParameters<model::InstrumentConfig>;
 using MotionParameters = FeatureParameters<motion::MotionConfig>;
+using ModelParameters = FeatureParameters<ModelFileConfig>;
+
+// Whether poses may be among the features of the tracker that is made from `Config`.
+template <class Config>
+constexpr bool kGivesPoses = std::is_same_v<Config, model::InstrumentConfig> || std::is_same_v<Config, ModelFileConfig>;
 
 void describe(parameters::Table& table, FeatureInput& input);
 std::vector<std::string> validate(const FeatureInput& input);
@@ -47,6 +57,9 @@ std::vector<std::string> validate(const FeatureInput& input);
 template <class Config>
 void describe(parameters::Table& table, FeatureParameters<Config>& parameters) {
   describe(table, parameters.common);
+  if constexpr (kGivesPoses<Config>)
+    table.flag("publish_tf", parameters.common.publish_tf,
+               "each pose is also on tf, from the image's frame to NODE/ID; ~pose is there in any case");
   table.group("tracking", "", [&] { describe(table, parameters.tracking); });
 }
 

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "laparoscope_servo/geometry/homography.h"
 #include "laparoscope_servo/validation/error_report.h"
 #include "ros/features/selection_text.h"
 
@@ -50,6 +51,7 @@ FeatureSession::FeatureSession(const FeatureInput& input, std::unique_ptr<featur
     : tracker_(std::move(tracker)),
       intake_(input.image, input.input),
       intrinsics_(input.rectified_images ? ImageKind::kRectified : ImageKind::kRaw),
+      depth_(input.robot_motion.depth),
       feed_(input.input) {
   validation::throwErrors("input", validate(input));
   if (input.selection.empty()) return;
@@ -89,12 +91,35 @@ void FeatureSession::complete(ProcessedFeatures& processed, const std::optional<
     time_began_again_ = tracker_->features().state != State::kIdle;
     tracker_->reset();
     file_pending_ = file_pending_ || file_selected_;
+    last_stamp_.reset();
   }
   const bool idle = tracker_->features().state == State::kIdle;
   intrinsics_.update(processed.image.size(), idle || request || file_pending_);
   processed.camera_error = intrinsics_.error();
   track(processed, request);
   watchPicture(processed);
+  // A motion that tf does not know yet is a part of the next one, unless the features were seen without it.
+  const auto& told = processed.result.features;
+  const bool is_any_seen = std::any_of(
+      told.begin(), told.end(), [](const features::TrackedFeature& each) { return each.state == State::kTracking; });
+  if (processed.repeats.whole == 0 && (processed.motion_error.empty() || is_any_seen))
+    last_stamp_ = processed.header.stamp;
+}
+
+void FeatureSession::expectMotion(ProcessedFeatures& processed, features::FeaturePrior& prior) const {
+  const ros::Time& stamp = processed.header.stamp;
+  if (!camera_motion_ || !last_stamp_ || !(stamp > *last_stamp_)) return;
+  prior.camera_motion = camera_motion_(processed.header.frame_id, *last_stamp_, stamp, processed.motion_error);
+  if (!prior.camera_motion) return;
+  if (!prior.camera) {
+    processed.motion_error = "no intrinsics: " + intrinsics_.error();
+    return;
+  }
+  try {
+    prior.motion = geometry::pixelsFromPlane(*prior.camera_motion, Eigen::Vector3d::UnitZ(), depth_, *prior.camera);
+  } catch (const std::invalid_argument& error) {
+    processed.motion_error = error.what();
+  }
 }
 
 void FeatureSession::track(ProcessedFeatures& processed, const std::optional<features::FeatureSelection>& request) {
@@ -113,6 +138,7 @@ void FeatureSession::track(ProcessedFeatures& processed, const std::optional<fea
       processed.selection_error = error.what();
     }
   }
+  expectMotion(processed, prior);
   processed.result = tracker_->track(processed.image, time, prior);
   if (processed.result.state != State::kIdle) time_began_again_ = false;
   if (time_began_again_) processed.result.reason = "time jumped back";

@@ -17,6 +17,7 @@
 #include "ros/features/feature_parameters.h"
 #include "ros/tracker/camera_info.h"
 #include "ros/tracker/image_intake.h"
+#include "ros/tracker/robot_motion.h"
 
 namespace laparoscope_servo {
 
@@ -28,6 +29,7 @@ struct ProcessedFeatures {
   bool selected_now = false;
   std::string selection_error;   // why what was requested, or is in the file, was not selected; else empty
   std::string camera_error;      // why there are no intrinsics; else empty
+  std::string motion_error;      // why the camera's motion is not known, where it was asked for; else empty
   image::Repeats repeats;        // repeats of the picture
   double period = 0.0;           // s since the last image
   double processing_time = 0.0;  // s, from the decoded image to the result
@@ -42,6 +44,10 @@ class FeatureSession {
   // Holds for the following images.
   void setCameraInfo(const sensor_msgs::CameraInfo& info) { intrinsics_.set(info); }
 
+  // The camera's motion for the prediction. Pixels move with it as those of a plane parallel to the image, at the depth
+  // that the input's robot_motion has.
+  void setCameraMotion(const CameraMotion& motion) { camera_motion_ = motion; }
+
   // Processes the next image; `request` is selected in it. Throws ImageError or std::invalid_argument if the image
   // cannot be used, or does not continue the sequence (see ImageGate); the session is then unchanged. The message must
   // outlive the result's image. If the feed is frozen (see FrozenFeed), TRACKING is lowered to SEARCHING. If time
@@ -53,6 +59,7 @@ class FeatureSession {
                             const std::optional<features::FeatureSelection>& request = std::nullopt);
 
   // See features::FeatureTracker.
+  bool givesPoses() const { return tracker_->givesPoses(); }
   bool findsByItself() const { return tracker_->findsByItself(); }
   bool takesSelection() const { return tracker_->takesSelection(); }
   bool givesMask() const { return tracker_->givesMask(); }
@@ -66,6 +73,7 @@ class FeatureSession {
  private:
   void complete(ProcessedFeatures& processed, const std::optional<features::FeatureSelection>& request);
   void track(ProcessedFeatures& processed, const std::optional<features::FeatureSelection>& request);
+  void expectMotion(ProcessedFeatures& processed, features::FeaturePrior& prior) const;
   void watchPicture(ProcessedFeatures& processed);
 
   std::unique_ptr<features::FeatureTracker> tracker_;
@@ -75,6 +83,9 @@ class FeatureSession {
   bool file_pending_ = false;      // it is to be selected in the next image
   bool file_selected_ = false;     // what is tracked was selected by it
   bool time_began_again_ = false;  // since the last selection
+  CameraMotion camera_motion_;
+  double depth_;                         // m, see setCameraMotion()
+  std::optional<ros::Time> last_stamp_;  // from which the motion is asked for; empty: nothing was seen yet
   image::RepeatWatch repeats_;
   tracking::FrozenFeed feed_;
 };

@@ -5,7 +5,9 @@
 #include "laparoscope_servo/features/dot_feature_tracker.h"
 #include "laparoscope_servo/features/edge_feature_tracker.h"
 #include "laparoscope_servo/features/point_feature_tracker.h"
+#include "laparoscope_servo/model/cad_model.h"
 #include "laparoscope_servo/model/instrument_feature_tracker.h"
+#include "laparoscope_servo/model/model_feature_tracker.h"
 #include "laparoscope_servo/motion/motion_feature_tracker.h"
 
 namespace laparoscope_servo {
@@ -25,6 +27,20 @@ std::unique_ptr<features::FeatureTracker> make(const XmlRpc::XmlRpcValue& tree, 
   return std::make_unique<Tracker>(parameters.tracking);
 }
 
+std::unique_ptr<features::FeatureTracker> makeModel(const XmlRpc::XmlRpcValue& tree, const std::string& name,
+                                                    FeatureInput& input, std::vector<std::string>& errors) {
+  const ModelParameters parameters = readFeatureParameters<ModelFileConfig>(tree, name, errors);
+  if (!errors.empty()) return nullptr;
+  input = parameters.common;
+  try {
+    return std::make_unique<model::ModelFeatureTracker>(model::readCadModel(parameters.tracking.file),
+                                                        parameters.tracking.tracker);
+  } catch (const model::CadFileError& error) {
+    errors.push_back(name + "/tracking/file: " + error.what());
+    return nullptr;
+  }
+}
+
 const struct {
   const char* name;
   Maker maker;
@@ -32,6 +48,7 @@ const struct {
                  {"edges", make<features::EdgeFeatureTracker, features::EdgeConfig>},
                  {"points", make<features::PointFeatureTracker, features::PointsConfig>},
                  {"instrument", make<model::InstrumentFeatureTracker, model::InstrumentConfig>},
+                 {"model", makeModel},
                  {"motion", make<motion::MotionFeatureTracker, motion::MotionConfig>}};
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "laparoscope_servo/geometry/se3.h"
 #include "laparoscope_servo/validation/error_report.h"
 
 namespace laparoscope_servo {
@@ -19,11 +20,11 @@ namespace {
 using features::FeatureKind;
 using features::SelectedFeature;
 
-constexpr std::array<FeatureKind, 5> kWrittenKinds = {FeatureKind::kPoint, FeatureKind::kLine, FeatureKind::kEllipse,
-                                                      FeatureKind::kSpline, FeatureKind::kMotion};
-constexpr char kShapes[] = "one of point, corners, line, ellipse, spline, motion";
+constexpr std::array<FeatureKind, 6> kWrittenKinds = {FeatureKind::kPoint,  FeatureKind::kLine,   FeatureKind::kEllipse,
+                                                      FeatureKind::kSpline, FeatureKind::kMotion, FeatureKind::kPose};
+constexpr char kShapes[] = "one of point, corners, line, ellipse, spline, motion, pose";
 constexpr char kKeys[] =
-    "id, one of point, corners, line, ellipse, spline, motion, and arc, closed, range, stored, desired";
+    "id, one of point, corners, line, ellipse, spline, motion, pose, and arc, closed, range, stored, desired";
 
 constexpr int kFarthest = 100000;  // px
 
@@ -145,6 +146,19 @@ class Reader {
     if (feature_.picture.empty()) refuse(node, "stored", "a picture that can be read: PNG, JPEG, ...");
   }
 
+  // As the parameters of TrackedFeature.
+  void readPose(const YAML::Node& node) {
+    if (!node.IsSequence() || node.size() != 6)
+      return refuse(node, "pose", "six numbers: [x, y, z, and a rotation vector], m and rad");
+    geometry::Vector6d numbers;
+    for (Eigen::Index k = 0; k < 6; ++k) numbers[k] = number(node[static_cast<std::size_t>(k)], "pose");
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.translation() = numbers.head<3>();
+    if (numbers.allFinite()) pose.linear() = geometry::so3Exp(numbers.tail<3>());
+    feature_.pose = pose;
+    if (!numbers.allFinite()) refuse(node, "pose", "finite numbers");
+  }
+
   void readShape() {
     int shapes = 0;
     if (node_["corners"]) {
@@ -158,6 +172,8 @@ class Reader {
       feature_.kind = kind;
       if (kind == FeatureKind::kPoint) {
         feature_.points.push_back(pair(shape, "point", "[x, y], px"));
+      } else if (kind == FeatureKind::kPose) {
+        readPose(shape);
       } else if (kind == FeatureKind::kEllipse && shape.IsMap()) {
         readEllipse(shape);
       } else {

@@ -8,6 +8,7 @@
 //   - {id: tissue, corners: {region: [100, 50, 200, 150], count: 40}}  chosen in the image, or in the picture `stored`
 //   - {id: liver, corners: {count: 60}, stored: /home/me/liver.png}
 //   - {id: view, motion: [[100, 80], [300, 240]]}                      two corners of a region; []: all of the image
+//   - {id: clamp, pose: [0.01, 0, 0.12, 0.1, -0.4, 0]}                 m and a rotation vector, rad: camera_T_object
 #pragma once
 
 #include <string>

@@ -1,12 +1,11 @@
 #include "ros/tracker/tracker_parameters.h"
 
-#include <ros/names.h>
-
 #include <algorithm>
 #include <cstdlib>
 #include <sstream>
 #include <stdexcept>
 
+#include "ros/common/parameter_names.h"
 #include "ros/common/parameters.h"
 
 namespace laparoscope_servo {
@@ -18,30 +17,11 @@ namespace {
 
 constexpr double kMaxPixel = 65535.0;
 
-bool isFrame(const std::string& name) {
-  return !name.empty() && name[0] != '/';
-}
-
-bool isNodeOrNothing(const std::string& name) {
-  std::string why;
-  return name.empty() || (name[0] != '~' && ros::names::validate(name, why));
-}
-
-void describe(Table& table, RobotMotionConfig& config) {
-  table.flag("enabled", config.enabled, "the motion of the robot is used; not in track_bag");
-  table.text("fixed_frame", config.fixed_frame, "frame in which the tissue is at rest")
-      .accepting("the name of a tf frame, without a leading slash", isFrame);
-  table.text("frame_prefix", config.frame_prefix,
-             "text in front of fixed_frame, unless that has a slash; auto: the namespace, nothing in the root");
-  table.text("owner", config.owner, "whose tf is accepted; empty: the first publisher of a frame")
-      .accepting("the name of a node, e.g. aesop or /aesop, or nothing", isNodeOrNothing);
-  table.number("depth", config.depth, {0.005, 1}, "m", "of the tissue in front of the camera");
-}
-
 void describe(Table& table, MaskInputConfig& config) {
   table.flag("enabled", config.enabled, "masks on ~external_mask are used; in track_bag by --instruments");
   table.text("owner", config.owner, "whose masks are accepted; empty: those of the first that publishes")
-      .accepting("the name of a node, e.g. instrument or /manager, or nothing", isNodeOrNothing);
+      .accepting("the name of a node, e.g. instrument or /manager, or nothing",
+                 [](const std::string& name) { return name.empty() || isNodeName(name); });
   table.number("max_age", config.max_age, {0, 1}, "s",
                "while the mask of an image is not there, an earlier one is used as predicted, up to this age; 0: none");
 }

@@ -28,11 +28,6 @@
 
 namespace laparoscope_servo {
 
-// The camera's motion for the tracker's prediction: that of `frame` from the image at `from` to that at `to`, or why it
-// is not known.
-using CameraMotion = std::function<std::optional<Eigen::Isometry3d>(const std::string& frame, const ros::Time& from,
-                                                                    const ros::Time& to, std::string& why)>;
-
 // What is known to cover the tissue in an image; the mask is empty where nothing is known.
 using MaskSource = std::function<tracking::ExternalMask(const cv::Mat& image, const ros::Time& stamp)>;
 

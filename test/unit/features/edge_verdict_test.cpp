@@ -67,6 +67,29 @@ TEST(EdgeVerdict, theErrorOfACurveThatDeformsIsThatOfWhatIsSeen) {
   }
 }
 
+// As many edges agree with both curves, with one of them more closely.
+TEST(EdgeVerdict, edgesThatAgreeMoreCloselyAreMoreEvidence) {
+  std::vector<Site> sites(60);
+  std::vector<SiteFinding> findings(sites.size());
+  const Eigen::MatrixXd covariance = Eigen::MatrixXd::Constant(1, 1, 0.01);
+  const auto evidenceAt = [&](double distance) {
+    for (std::size_t i = 0; i < sites.size(); ++i) {
+      sites[i].count = 1;
+      findings[i].inside = true;
+      findings[i].weight = i < 45 ? 1.0 : 0.0;
+      findings[i].edge = findings[i].point + Eigen::Vector2d(0.0, i % 2 == 0 ? distance : -distance);
+    }
+    EdgeReport report;
+    report.sigma = distance;
+    judge({sites, findings, covariance, 1, false, 6.0, 2.0}, EdgeConfig(), 0.3, report);
+    EXPECT_EQ(report.used, 45);
+    return report.evidence;
+  };
+  EXPECT_GT(evidenceAt(0.1), evidenceAt(0.4) + 10.0);
+  EXPECT_GT(evidenceAt(0.4), evidenceAt(0.9) + 10.0);
+  EXPECT_GT(evidenceAt(0.9), 0.0);
+}
+
 TEST(EdgeVerdict, edgesOfNeighbouringSitesErrAlike) {
   EXPECT_EQ(correlation(4.0), 2.0);
   EXPECT_EQ(correlation(20.0), 1.0);

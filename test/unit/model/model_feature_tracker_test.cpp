@@ -55,7 +55,13 @@ TEST_F(ModelFeatureTrackerTest, tellsThePoseWithItsCovarianceAndAnOutline) {
   EXPECT_LT((cube.parameters.tail<3>() - geometry::so3Log(truth_.linear())).norm(), 1e-2);
   EXPECT_GT(cube.covariance.diagonal().minCoeff(), 0.0);
   EXPECT_LT(cube.expected_error, 1.0);
-  EXPECT_GT(cube.outline.size(), 30u);
+  EXPECT_GT(cube.sites.size(), 30u);
+  ASSERT_GE(cube.outline.size(), 7u);  // a cube that shows three faces has six corners around it
+  EXPECT_EQ(cube.outline.front(), cube.outline.back());
+  cv::Rect2d around(cube.outline.front().x(), cube.outline.front().y(), 0.0, 0.0);
+  for (const Eigen::Vector2d& point : cube.outline) around |= cv::Rect2d(point.x() - 0.5, point.y() - 0.5, 1.0, 1.0);
+  for (const features::TrackedSite& site : cube.sites)
+    EXPECT_TRUE(around.contains({site.point.x(), site.point.y()})) << site.point.transpose();
 }
 
 TEST_F(ModelFeatureTrackerTest, nothingIsKnownOfWhatIsNotSeen) {
@@ -65,6 +71,18 @@ TEST_F(ModelFeatureTrackerTest, nothingIsKnownOfWhatIsNotSeen) {
   EXPECT_EQ(told.state, State::kSearching);
   EXPECT_EQ(told.reason.rfind("cube: ", 0), 0u) << told.reason;
   EXPECT_TRUE(std::isinf(told.features[0].covariance(0, 0)));
+}
+
+TEST_F(ModelFeatureTrackerTest, theCamerasMotionInSpaceIsExpected) {
+  Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
+  motion.linear() = geometry::so3Exp({0.0, 0.0, 0.4});  // turns the image by 23 degrees
+  const cv::Mat turned = test::ModelRenderer(*model_, scene_).draw(motion * truth_, 2);
+  tracker_.select(image_, 0.0, selection_, prior_);
+  EXPECT_NE(tracker_.track(turned, 0.04, prior_).state, State::kTracking);
+  tracker_.select(image_, 0.0, selection_, prior_);
+  features::FeaturePrior known = prior_;
+  known.camera_motion = motion;
+  EXPECT_EQ(tracker_.track(turned, 0.04, known).state, State::kTracking) << tracker_.features().reason;
 }
 
 TEST_F(ModelFeatureTrackerTest, whatCannotBeIsRefusedByNameAndTrackingGoesOn) {

@@ -89,6 +89,22 @@ TEST(Outline, theParametersAreTheTwistOfTheCamera) {
   EXPECT_LT(project(kCamera, after(4).centre()).x(), before.x() - 2.0);
 }
 
+// Translation of the object's origin and rotation about the camera's fixed axes, by the poses themselves.
+TEST(Outline, poseInteractionHoldsByDifferences) {
+  Outline outline = outlineOf(test::kCube);
+  const Eigen::Isometry3d before = outline.pose();
+  const geometry::Matrix6d interaction = poseInteraction(before);
+  constexpr double kStep = 1e-6;
+  for (Eigen::Index k = 0; k < 6; ++k) {
+    outline.setPose(before);
+    outline.move(kStep * Eigen::VectorXd::Unit(6, k));
+    geometry::Vector6d moved;
+    moved << outline.pose().translation() - before.translation(),
+        geometry::so3Log(outline.pose().linear() * before.linear().transpose());
+    EXPECT_LT((moved / kStep - interaction.col(k)).norm(), 1e-4) << k;
+  }
+}
+
 TEST(Outline, pointInteractionHoldsByDifferences) {
   const Eigen::Vector3d point(0.1, -0.07, 0.6);
   const auto l = pointInteraction(kCamera, point);

@@ -50,6 +50,31 @@ TEST(InstrumentTracker, FollowsAShaftFromTheFirstImageOn) {
   EXPECT_NEAR(i.trocar->y(), 350.0, 15.0);
 }
 
+// The same scene in 1920x1080: found as soon, covered as well, and its edges lie as near to those that are drawn.
+TEST(InstrumentTracker, FollowsAShaftInLargeImages) {
+  constexpr double kScale = 1920.0 / 640.0;
+  InstrumentTracker tracker;
+  for (int k = 0; k < 8; ++k) {
+    ShaftScene scene = at(k);
+    scene.size = {1920, 1080};
+    scene.entry = kScale * scene.entry;
+    scene.tip = kScale * scene.tip;
+    scene.entry_width *= kScale;
+    scene.tip_width *= kScale;
+    const auto picture = drawShaft(scene);
+    const InstrumentsResult& result = tracker.track(picture.image, k * kPeriod);
+    ASSERT_EQ(result.instruments.size(), 1u) << k;
+    const Instrument& i = result.instruments[0];
+    EXPECT_EQ(i.state, State::kTracking) << k;
+    EXPECT_NEAR(i.axis.dot(Eigen::Vector2d(scene.tip.x, scene.tip.y) - i.tip), 0.0, kScale * 6.0) << k;
+    EXPECT_LT(i.expected_error, 3.0) << k;
+    ASSERT_EQ(result.mask.size(), scene.size);
+    const double covered = cv::countNonZero(result.mask & picture.mask);
+    EXPECT_GT(covered, 0.98 * cv::countNonZero(picture.mask)) << k;
+    EXPECT_LT(cv::countNonZero(result.mask), 1.2 * cv::countNonZero(picture.mask)) << k;
+  }
+}
+
 TEST(InstrumentTracker, TheSameImagesGiveTheSameNumbers) {
   InstrumentTracker a, b;
   for (int k = 0; k < 10; ++k) {

@@ -47,6 +47,20 @@ class FeatureSessionTest : public testing::TestWithParam<const char*> {
     return session.process(*imageAt(featureScene(0.0, ++seed_), time_), parseSelection(selectionText()));
   }
 
+  static constexpr double kJump = 30.0;  // px, further than edges and dots are searched by themselves
+
+  static sensor_msgs::CameraInfo info() {
+    sensor_msgs::CameraInfo info;
+    info.width = 320;
+    info.height = 240;
+    info.K = {300.0, 0.0, 160.0, 0.0, 300.0, 120.0, 0.0, 0.0, 1.0};
+    return info;
+  }
+  // Of the camera, when pixels jump by kJump.
+  static Eigen::Isometry3d jump() {
+    return Eigen::Isometry3d(Eigen::Translation3d(kJump / 300.0 * FeatureInput().robot_motion.depth, 0.0, 0.0));
+  }
+
   double time_ = 1000.0;
   unsigned seed_ = 0;
   const test_support::TemporaryFolder folder_;
@@ -63,6 +77,47 @@ TEST_P(FeatureSessionTest, SelectsAndTracks) {
   EXPECT_EQ(tracked.header.frame_id, "optical_of_the_test");
   EXPECT_NEAR(tracked.period, kPeriod, 1e-6);
   EXPECT_EQ(tracked.result.features.size(), 2u);
+}
+
+TEST_P(FeatureSessionTest, StartsFromWhereTheCamerasMotionPuts) {
+  for (const bool knows : {false, true}) {
+    FeatureSession session = this->session();
+    session.setCameraInfo(info());
+    select(session);
+    std::vector<std::pair<ros::Time, ros::Time>> asked;
+    const auto motion = [&](const std::string& frame, const ros::Time& from, const ros::Time& to, std::string& why) {
+      EXPECT_EQ(frame, "optical_of_the_test");
+      asked.emplace_back(from, to);
+      if (!knows) why = "tf does not know";
+      return knows ? std::make_optional(jump()) : std::nullopt;
+    };
+    session.setCameraMotion(motion);
+    const ProcessedFeatures jumped = next(session, kJump);
+    ASSERT_EQ(asked.size(), 1u);
+    EXPECT_NEAR((asked[0].second - asked[0].first).toSec(), kPeriod, 1e-6);
+    EXPECT_EQ(jumped.motion_error, knows ? "" : "tf does not know");
+    EXPECT_EQ(jumped.result.state == State::kTracking, knows) << jumped.result.reason;
+  }
+}
+
+// tf knows of the jump an image too late: it is asked for since the image before the jump.
+TEST_P(FeatureSessionTest, AMotionThatIsKnownLateIsMadeUpFor) {
+  FeatureSession session = this->session();
+  session.setCameraInfo(info());
+  select(session);
+  const double before = time_;
+  bool knows = false;
+  session.setCameraMotion([&](const std::string&, const ros::Time& from, const ros::Time&, std::string& why) {
+    if (!knows) why = "tf does not know";
+    const bool jumps = std::abs(from.toSec() - before) < 0.5 * kPeriod;
+    return knows ? std::make_optional(jumps ? jump() : Eigen::Isometry3d::Identity()) : std::nullopt;
+  });
+  EXPECT_NE(next(session, kJump).result.state, State::kTracking);
+  EXPECT_NE(next(session, kJump).result.state, State::kTracking);
+  knows = true;
+  ProcessedFeatures later;
+  for (int k = 0; k < features::StateConfig().confirmations; ++k) later = next(session, kJump);
+  EXPECT_EQ(later.result.state, State::kTracking) << later.result.reason;
 }
 
 TEST_P(FeatureSessionTest, GoesOnWhenASelectionIsRefused) {

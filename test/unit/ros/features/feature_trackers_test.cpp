@@ -2,18 +2,29 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <stdexcept>
+
+#include "support/temporary_folder.h"
 
 namespace laparoscope_servo {
 namespace {
 
 using XmlRpc::XmlRpcValue;
 
+// A triangle.
+constexpr char kModel[] = "V1\n3\n0 0 0\n0.1 0 0\n0 0.1 0\n0\n0\n1\n3 0 1 2\n0\n0\n";
+
 TEST(FeatureTrackers, MakesEachOfThem) {
+  const test_support::TemporaryFolder folder;
+  std::ofstream(folder.file("object.cao")) << kModel;
   for (const std::string& kind : featureTrackers()) {
+    XmlRpcValue tree;
+    tree["select_timeout"] = 5.0;
+    if (kind == "model") tree["tracking"]["file"] = folder.file("object.cao");
     FeatureInput input;
     std::vector<std::string> errors;
-    EXPECT_NE(makeFeatureTracker(kind, {}, "/" + kind, input, errors), nullptr) << kind;
+    EXPECT_NE(makeFeatureTracker(kind, tree, "/" + kind, input, errors), nullptr) << kind;
     EXPECT_TRUE(errors.empty()) << kind;
   }
 }
@@ -25,8 +36,29 @@ TEST(FeatureTrackers, RefusesAKindThatIsNone) {
     makeFeatureTracker("lines", {}, "", input, errors);
     FAIL();
   } catch (const std::invalid_argument& error) {
-    EXPECT_STREQ(error.what(), "tracker 'lines', expected one of dots, edges, points, instrument, motion");
+    EXPECT_STREQ(error.what(), "tracker 'lines', expected one of dots, edges, points, instrument, model, motion");
   }
+}
+
+TEST(FeatureTrackers, RefusesAModelThatCannotBeReadWithFileAndLine) {
+  const test_support::TemporaryFolder folder;
+  const std::string file = folder.file("object.cao");
+  std::string text = kModel;
+  std::ofstream(file) << text.replace(text.find("3 0 1 2"), 7, "3 0 1 7");
+  const auto errorOf = [](const XmlRpcValue& tree) {
+    FeatureInput input;
+    std::vector<std::string> errors;
+    EXPECT_EQ(makeFeatureTracker("model", tree, "/model", input, errors), nullptr);
+    return errors.empty() ? std::string() : errors.front();
+  };
+  XmlRpcValue tree;
+  tree["tracking"]["file"] = file;
+  EXPECT_EQ(errorOf(tree).rfind("/model/tracking/file: " + file + ", line 9: ", 0), 0u) << errorOf(tree);
+  tree["tracking"]["file"] = "/nowhere/object.cao";
+  EXPECT_NE(errorOf(tree).find("/nowhere/object.cao"), std::string::npos) << errorOf(tree);
+  tree["tracking"]["file"] = "object.cao";
+  EXPECT_NE(errorOf(tree).find("a path that begins with a slash"), std::string::npos) << errorOf(tree);
+  EXPECT_NE(errorOf({}).find("/model/tracking/file"), std::string::npos) << "it has to be given";
 }
 
 TEST(FeatureTrackers, TakesTheParametersThatAllShare) {

@@ -33,11 +33,16 @@ TEST(SelectionText, ReadsEveryShape) {
 - {id: outline, spline: [[20, 30], [60, 40], [70, 80], [50, 90]], closed: true}
 - {id: view, motion: []}
 - {id: liver, motion: [[60, 40], [260, 200]]}
+- {id: clamp, pose: [0.01, -0.02, 0.12, 0, 0, 1.5707963267948966]}
 )");
-  ASSERT_EQ(selection.size(), 7u);
+  ASSERT_EQ(selection.size(), 8u);
   EXPECT_EQ(selection[5].kind, FeatureKind::kMotion);
   EXPECT_TRUE(selection[5].points.empty());
   EXPECT_EQ(selection[6].points.size(), 2u);
+  EXPECT_EQ(selection[7].kind, FeatureKind::kPose);
+  ASSERT_TRUE(selection[7].pose);
+  EXPECT_EQ(selection[7].pose->translation(), Eigen::Vector3d(0.01, -0.02, 0.12));
+  EXPECT_LT((selection[7].pose->linear() * Eigen::Vector3d::UnitX() - Eigen::Vector3d::UnitY()).norm(), 1e-12);
   EXPECT_EQ(selection[0].id, "shaft");
   EXPECT_EQ(selection[0].kind, FeatureKind::kLine);
   EXPECT_EQ(selection[0].points[1], Eigen::Vector2d(300.0, 80.5));
@@ -117,6 +122,9 @@ TEST(SelectionText, NamesFeatureLineValueAndExpectation) {
   EXPECT_NE(errorOf("- {id: a, spline: [[1, 2], [3, 4]], closed: round}").find("closed = round"), std::string::npos);
   EXPECT_NE(errorOf("- {id: a, point: [1, 2], range: far}").find("range = far"), std::string::npos);
   EXPECT_NE(errorOf("- {id: a, point: [1, 2], desired: 5}").find("desired = 5"), std::string::npos);
+  EXPECT_NE(errorOf("- {id: a, pose: [1, 2, 3]}").find("six numbers"), std::string::npos);
+  EXPECT_NE(errorOf("- {id: a, pose: [1, 2, 3, 4, 5, up]}").find("pose = up"), std::string::npos);
+  EXPECT_NE(errorOf("- {id: a, pose: [1, 2, .nan, 4, 5, 6]}").find("finite numbers"), std::string::npos);
   EXPECT_NE(errorOf("- seven").find("a feature = seven"), std::string::npos);
 }
 

@@ -13,6 +13,7 @@
 
 #include "ros/features/selection_text.h"
 #include "support/feature_scene.h"
+#include "support/synthetic_model.h"
 #include "support/synthetic_motion.h"
 #include "support/temporary_folder.h"
 
@@ -144,6 +145,58 @@ TEST(FeatureOffline, TellsMotionWithoutASelection) {
   std::string line;
   for (int k = 0; k < 4; ++k) std::getline(file, line);
   EXPECT_NE(line.find("\"motion\",motion,1,"), std::string::npos) << line;
+}
+
+// An object of known shape, from a pose that is some degrees off.
+TEST(ModelOffline, TellsThePosesOfAnObject) {
+  const test_support::TemporaryFolder in, out;
+  const auto model = test::modelOf(test::kCube);
+  const test::ModelScene scene;
+  const test::ModelRenderer renderer(*model, scene);
+  const auto truth = [&](int k) { return test::viewOf(*model, 0.45, 0.6 + 0.01 * k); };
+  for (int k = 0; k < 4; ++k)
+    cv::imwrite(in.file(std::to_string(k) + ".png"), renderer.draw(truth(k), static_cast<unsigned>(k + 1)));
+  std::ofstream(out.file("cube.cao")) << test::kCube;
+  std::ofstream(out.file("params.yaml")) << "tracking: {file: " << out.file("cube.cao") << "}\n";
+  FeatureOfflineOptions options;
+  options.common.inputs = {in.path()};
+  options.common.csv = out.file("out.csv");
+  options.tracker = "model";
+  options.params = out.file("params.yaml");
+  options.selection.resize(1);
+  options.selection[0].id = "cube";
+  options.selection[0].kind = features::FeatureKind::kPose;
+  options.selection[0].pose = truth(0) * Eigen::Translation3d(model->centre) *
+                              Eigen::AngleAxisd(0.08, Eigen::Vector3d::UnitY()) * Eigen::Translation3d(-model->centre);
+  const auto run = [&options] {
+    return trackFeaturesOffline(
+        options, [](const OfflineSummary&, std::size_t) {}, [](std::size_t, const std::string&) {});
+  };
+  EXPECT_THROW(run(), std::invalid_argument) << "without the camera's intrinsics";
+  std::ofstream(out.file("camera.yaml")) << R"(image_width: 320
+image_height: 240
+camera_name: drawn
+camera_matrix: {rows: 3, cols: 3, data: [300, 0, 160, 0, 300, 120, 0, 0, 1]}
+distortion_model: plumb_bob
+distortion_coefficients: {rows: 1, cols: 5, data: [0, 0, 0, 0, 0]}
+rectification_matrix: {rows: 3, cols: 3, data: [1, 0, 0, 0, 1, 0, 0, 0, 1]}
+projection_matrix: {rows: 3, cols: 4, data: [300, 0, 160, 0, 0, 300, 120, 0, 0, 0, 1, 0]}
+)";
+  options.common.camera_info = out.file("camera.yaml");
+  EXPECT_EQ(run().by_state[1], 4u);
+  std::ifstream table(options.common.csv);
+  std::string row;
+  for (int k = 0; k < 5; ++k) ASSERT_TRUE(std::getline(table, row));
+  std::vector<std::string> cells;
+  std::istringstream text(row);
+  for (std::string cell; std::getline(text, cell, ',');) cells.push_back(cell);
+  ASSERT_GE(cells.size(), 12u);
+  EXPECT_EQ(cells[4], "\"cube\"");
+  EXPECT_EQ(cells[5], "pose");
+  std::istringstream numbers(cells[9]);
+  Eigen::Vector3d position;
+  numbers >> position.x() >> position.y() >> position.z();
+  EXPECT_LT((position - truth(3).translation()).norm(), 2e-3);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, FeatureOfflineTest, testing::Values("dots", "edges"));
