@@ -1,4 +1,4 @@
-// Parameters of the leash, with the defaults that config/controller.yaml repeats. doc/leash.md says how they were
+// Parameters of the leash, with the defaults that config/controller.yaml repeats. doc/effect.md says how they were
 // measured.
 #pragma once
 
@@ -16,7 +16,8 @@ struct LeashConfig {
   double insertion = 0.012;        // m
   double quick_insertion = 0.006;  // m, from its mean over the last `quick_time`
   double quick_time = 2.0;         // s, time constant of that mean
-  // As a share of what is left to go: how much more is allowed on the way, where the depths may be wrong.
+  // Share of what is left to go, by which wrong depths may shift the place: the leash is at least as long on the way,
+  // along the shaft longer by that.
   double approach = 1.0;
 };
 

@@ -10,9 +10,9 @@ namespace laparoscope_servo::servo {
 namespace {
 
 constexpr double kHalf = 0.5;  // of the way, after which the target is taken anew
-// Of what is left to go otherwise, beside the own share: with both depths wrong by two, 20 starts each, 0.12 are
+// Of what is left to go in any way, on top along the shaft: with both depths wrong by two, 50 starts each, 0.25 are
 // needed.
-constexpr double kAside = 0.2;
+constexpr double kAside = 0.3;
 constexpr double kReached = 0.05;  // share of the leash; with less left to go it is not worth taking the target anew
 constexpr double kReleased = 0.9;  // share of the leash, below which a target that had wandered is back
 
@@ -76,7 +76,11 @@ void Leash::observe(const LeashObservation& image) {
     turn = geometry::so3Log(anchor_.insertion_point_R_shaft->transpose() * *target.insertion_point_R_shaft);
   const Shares wandered = shares(turn, target.d2 - anchor_.d2, target.d2 - mean_d2_);
   mean_d2_ = target.d2 + kept * (mean_d2_ - target.d2);
-  const Shares most = Shares::Ones() + config_.approach * (to_go_.array() + kAside * to_go_.maxCoeff()).matrix();
+  // Along the shaft, depths that are wrong by two err by all that is left to go, beside what the tissue does meanwhile.
+  // Sideways and about the shaft they err by less, which mostly lies within the leash.
+  Shares most = (config_.approach * to_go_).cwiseMax(1.0);
+  const double aside = kAside * to_go_.maxCoeff();
+  for (Eigen::Index k = 2; k < 4; ++k) most[k] = 1.0 + config_.approach * (to_go_[k] + aside);
   Eigen::Index furthest = 0;
   used_ = wandered.cwiseQuotient(most).maxCoeff(&furthest);
   if (used_ < (words_.empty() ? 1.0 : kReleased)) {

@@ -5,8 +5,8 @@
 // change its distance quickly by much. So the place of the scope from which the region is seen as it has to be, the
 // target, is compared with where it was first. It is known by the scope's pose and by the displacement to the target,
 // also before the scope has gone there; tissue at rest leaves it where it is, whatever the scope does. While the scope
-// is on its way, wrong depths shift the target, by a share of what is left to go: so it is taken anew each time that
-// half of the way is done, and the leash is longer until the view is reached.
+// is on its way, wrong depths shift the target, by up to what is left to go: so it is taken anew each time that half of
+// the way is done, and the leash is as long as that, along the shaft longer by that.
 //
 // Another region, another desired view, or restart() take it anew, too.
 #pragma once

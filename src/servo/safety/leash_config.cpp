@@ -13,7 +13,7 @@ void describe(parameters::Table& table, LeashConfig& c) {
                "along the shaft, by which the place may differ from its mean over quick_time");
   table.number("quick_time", c.quick_time, {0.1, 60}, "s", "time constant of that mean");
   table.number("approach", c.approach, {0, 10}, "share",
-               "of what is left to go, by which the leash is longer on the way to the view");
+               "of what is left to go: the leash is at least as long, along the shaft longer by that");
 }
 
 }  // namespace laparoscope_servo::servo

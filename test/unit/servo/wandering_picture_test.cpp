@@ -78,16 +78,16 @@ struct Row {
 
 std::vector<Row> rows() {
   return {
-      {"running down by 2 px", running(0.0, 2.0), {9.6, 4.3}, {12.0, 6.5}},
-      {"running up by 3 px", running(0.0, -3.0), {9.6, 4.3}, {13.6, 7.8}},
-      {"running to the right by 3 px", running(3.0, 0.0), {9.6, 4.3}, {8.5, 5.0}},
-      {"running to the right by 1 px", running(1.0, 0.0), {9.6, 4.3}, {7.0, 5.0}},
+      {"running down by 2 px", running(0.0, 2.0), {9.4, 4.1}, {11.9, 6.1}},
+      {"running up by 3 px", running(0.0, -3.0), {9.4, 4.1}, {13.6, 7.8}},
+      {"running to the right by 3 px", running(3.0, 0.0), {9.4, 4.1}, {8.0, 4.7}},
+      {"running to the right by 1 px", running(1.0, 0.0), {9.4, 4.1}, {6.6, 4.4}},
       {"zoomed in by 1.3 a second", zoomed(1.3, 2.0), {0.3, 4.3}, {3.3, 3.0}},
       {"zoomed out by 1.3 a second", zoomed(1.3, 0.5), {0.3, 4.3}, {3.3, 3.0}},
       {"zoomed in by 1.1 a second", zoomed(1.1, 2.0), {0.3, 9.0}, {3.6, 6.0}},
       {"zoomed out by 1.1 a second", zoomed(1.1, 0.5), {0.3, 9.0}, {3.6, 6.0}},
       {"turned by 20 degrees a second", turned(20.0, 150.0), {1.4, 0.2}, {3.1, 1.0}},
-      {"turned by 5 degrees a second", turned(5.0, 150.0), {6.0, 0.5}, {8.9, 1.0}},
+      {"turned by 5 degrees a second", turned(5.0, 150.0), {5.6, 0.5}, {7.2, 1.0}},
       {"turned by 90 degrees a second", turned(90.0, 150.0), {0.3, 0.2}, {1.8, 1.0}},
   };
 }
