@@ -63,6 +63,7 @@ class Stopping {
     if (!ended && s.state != servo::ControllerState::kIdle) {
       run.evidence = robust::largest(run.evidence, s.evidence);
       run.unconfirmed = robust::largest(run.unconfirmed, s.unconfirmed);
+      run.leash = robust::largest(run.leash, s.leash);
     }
     before_ = s.state;
     const Eigen::Vector4d place = place_ + s.moved;
@@ -183,7 +184,7 @@ void writeRuns(const std::vector<RunSummary>& runs, std::ostream& stream) {
   stream << "seed,start_pan,start_tilt,start_spin,start_insertion,refused_starts,settled,settled_centre,settled_scale,"
             "settled_orientation,left_image,centre_rms,scale_rms,orientation_rms,moving_share,reversals,"
             "max_commanded_lateral_speed,max_lateral_speed,max_lateral_offset,final_state,stopped,holds,"
-            "turned,inserted,turned_away,inserted_away,evidence,unconfirmed\n";
+            "turned,inserted,turned_away,inserted_away,evidence,unconfirmed,leash\n";
   stream.precision(9);
   for (const RunSummary& r : runs) {
     const scope::Velocity& start = r.drawn.start;
@@ -193,7 +194,7 @@ void writeRuns(const std::vector<RunSummary>& runs, std::ostream& stream) {
            << r.orientation_rms << ',' << r.moving_share << ',' << r.reversals << ',' << r.max_commanded_lateral_speed
            << ',' << r.max_lateral_speed << ',' << r.max_lateral_offset << ',' << name(r.final_state) << ','
            << r.stopped << ',' << r.holds << ',' << r.turned << ',' << r.inserted << ',' << r.turned_away << ','
-           << r.inserted_away << ',' << r.evidence << ',' << r.unconfirmed << '\n';
+           << r.inserted_away << ',' << r.evidence << ',' << r.unconfirmed << ',' << r.leash << '\n';
   }
 }
 
@@ -235,6 +236,7 @@ void printRuns(const std::vector<RunSummary>& runs, const RunBounds& bounds, std
   printSpread("  evidence of a fault", all([](const RunSummary& r) { return r.evidence; }), "", stream);
   printSpread("  share of the motion allowed unseen", all([](const RunSummary& r) { return r.unconfirmed; }), "",
               stream);
+  printSpread("  share of the leash", all([](const RunSummary& r) { return r.leash; }), "", stream);
   stream << "at the insertion point\n";
   printSpread("  commanded lateral speed", all([](const RunSummary& r) { return r.max_commanded_lateral_speed; }),
               " m/s", stream);

@@ -196,6 +196,7 @@ class Loop {
     const servo::ControllerFigures figures = controller_.figures();
     s.evidence = figures.evidence;
     s.unconfirmed = figures.unconfirmed;
+    s.leash = figures.leash;
     const Eigen::Matrix3d h = seenHomography(time);
     const Eigen::Vector2d centre =
         geometry::apply(geometry::pixelsFromNormalised(h, config_.camera), config_.roi.centre());

@@ -201,6 +201,8 @@ void describe(Table& table, ControllerConfig& c) {
               [&] { describeInsertionPoint(table, c.insertion_point); });
   table.group("effect", "whether the picture moves as the scope's motion makes it move",
               [&] { describe(table, c.effect); });
+  table.group("leash", "how far the scope follows the region from where it was brought to it",
+              [&] { describe(table, c.leash); });
   table.group("horizon", "which way is up, for the spin upright", [&] {
     table.numbers("up", c.horizon.up, 3, Range::finite(), "", "direction in the insertion point's frame; not all zero");
   });

@@ -54,6 +54,7 @@ Controller::Implementation::Implementation(const ControllerConfig& config)
       repeats_(config.safety.max_repeated_errors),
       effect_(config.effect, {config.target.centre_noise, config.target.depth_noise, config.target.orientation_noise}),
       opposed_(config.dead_zone.width),
+      leash_(config.leash),
       insertion_point_(config.insertion_point.estimator, priorOf(config.insertion_point)),
       d2_correction_(config.insertion_point.correction_rate) {}
 
@@ -68,6 +69,7 @@ SafetyFacts Controller::Implementation::facts(const ControllerInput& input) cons
                 std::abs(d2_correction_.wanted())};
   facts.dead_man = input.dead_man;
   if (engaged() && config_.effect.enabled) facts.effect = effectFacts();
+  if (engaged()) facts.wandered = leash_.words();
   if (task_ == Task::kManual) {
     facts.tracker = nothingMissing();
     return facts;
@@ -107,11 +109,17 @@ void Controller::Implementation::correctDepth(const ControllerInput& input) {
   d2_correction_.update(input.time, wanted);
 }
 
+// Whether picture and pose may be compared.
+bool Controller::Implementation::isUsable(const ControllerInput& input) const {
+  const TaskErrorInput& task = input.task_error;
+  return task_ == Task::kHoldView && task.problem.empty() && task.valid && task.image_time &&
+         implausible(task).empty() && input.depth.problem.empty() && input.depth.d2 > 0.0;
+}
+
 // Images are observed also before engaging, so that the tissue's own motion is known by then.
 void Controller::Implementation::watchEffect(const ControllerInput& input) {
+  if (!isUsable(input)) return;
   const TaskErrorInput& task = input.task_error;
-  if (task_ != Task::kHoldView || !task.problem.empty() || !task.valid || !task.image_time) return;
-  if (!implausible(task).empty() || !input.depth.problem.empty() || !(input.depth.d2 > 0.0)) return;
   EffectObservation image;
   image.time = *task.image_time;
   image.error = task.error;
@@ -120,6 +128,16 @@ void Controller::Implementation::watchEffect(const ControllerInput& input) {
   image.corner_error = task.corner_error;
   image.breath_known = servo_.breathingRate() > 0.0;
   effect_.observe(image, servo_.history(), servo_.delay());
+}
+
+// It begins where somebody engages, or presses the dead-man switch, and looks.
+void Controller::Implementation::watchLeash(const ControllerInput& input) {
+  if (machine_.state() == SafetyState::kArmed || !engaged() || task_ != Task::kHoldView) leash_.restart();
+  if (!isUsable(input)) return;
+  const ServoInput servo = servoInput(input);
+  const TaskErrorInput& task = input.task_error;
+  leash_.observe({*task.image_time, task.region, task.error, servo_.toTarget(servo), servo_.sinceImage(servo),
+                  input.depth.d2, servo.insertion_point_T_tip});
 }
 
 std::string Controller::Implementation::engage(const ControllerInput& input) {
@@ -131,6 +149,7 @@ std::string Controller::Implementation::engage(const ControllerInput& input) {
   machine_.step(request);
   effect_.rearm();
   opposed_.restart();
+  leash_.restart();
   has_time_ = false;  // the pause since the last step is not a period
   last_time_ = input.time;
   servo_.reset();
@@ -177,6 +196,7 @@ ControllerOutput Controller::Implementation::update(const ControllerInput& input
   correctDepth(input);
   watchRepetition(input.task_error);
   watchEffect(input);
+  watchLeash(input);
   // A non-finite time is ignored here, and the budget stays; the state machine stops the scope.
   const bool has_clock = std::isfinite(input.time);
   const double told_for = std::clamp(input.time - last_time_, 0.0, config_.predictor.command_lifetime);
@@ -220,6 +240,7 @@ ControllerFigures Controller::Implementation::figures() const {
   figures.gain_factor = servo_.gainFactor();
   figures.evidence = effect_.evidence();
   figures.unconfirmed = effect_.budget().spent();
+  figures.leash = leash_.used();
   return figures;
 }
 

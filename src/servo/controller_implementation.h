@@ -7,6 +7,7 @@
 #include "laparoscope_servo/servo/controller.h"
 #include "servo/prediction/slow_correction.h"
 #include "servo/safety/effect_guard.h"
+#include "servo/safety/leash.h"
 #include "servo/safety/manual_stick.h"
 #include "servo/safety/opposed_motion.h"
 #include "servo/safety/repeat_watch.h"
@@ -37,7 +38,9 @@ class Controller::Implementation {
   SafetyFacts facts(const ControllerInput& input) const;
   double d2(const ControllerInput& input) const;
   void correctDepth(const ControllerInput& input);
+  bool isUsable(const ControllerInput& input) const;
   void watchEffect(const ControllerInput& input);
+  void watchLeash(const ControllerInput& input);
   EffectFacts effectFacts() const;
   ServoLimits limits(const SafetyOutput& safety, double time) const;
   ServoInput servoInput(const ControllerInput& input) const;
@@ -54,6 +57,7 @@ class Controller::Implementation {
   RepeatWatch repeats_;
   EffectGuard effect_;
   OpposedMotion opposed_;
+  Leash leash_;
   std::optional<double> moves_since_;  // s; empty: the command is within the dead zone
   InsertionPointEstimator insertion_point_;
   SlowCorrection d2_correction_;                    // m

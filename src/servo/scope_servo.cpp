@@ -7,7 +7,6 @@
 #include "servo/shaping/dead_zone.h"
 #include "servo/shaping/workspace.h"
 #include "servo/task/horizon.h"
-#include "servo/task/scope_displacement.h"
 
 namespace laparoscope_servo::servo {
 
@@ -117,6 +116,12 @@ void ScopeServo::report(double time, const scope::Velocity& velocity) {
   blocked_ = time - blocked_since_ > kBlocked;
 }
 
+// One of the two spans is empty.
+Eigen::Vector4d ScopeServo::sinceImage(const ServoInput& input) const {
+  return history_.displacement(input.image_time, input.pose_time, delay()) -
+         history_.displacement(input.pose_time, input.image_time, delay());
+}
+
 // The task error, with the ROI's orientation replaced by the horizon's (kUpright) or by zero (kReleased).
 TaskError ScopeServo::oriented(const ServoInput& input) const {
   TaskError error = input.error;
@@ -125,10 +130,8 @@ TaskError ScopeServo::oriented(const ServoInput& input) const {
   error.e_w.setZero();
   if (config_.spin == SpinMode::kReleased || !input.insertion_point_T_tip) return error;
   const Eigen::Vector3d up(config_.horizon.up[0], config_.horizon.up[1], config_.horizon.up[2]);
-  // Takes the pose to the time of the image by the scope's motion between both.
-  const Eigen::Vector4d since = history_.displacement(input.image_time, input.pose_time, delay()) -
-                                history_.displacement(input.pose_time, input.image_time, delay());
-  const Eigen::Matrix3d pose_R_image = geometry::so3Exp(-scope::angularVelocity(scope::Velocity::fromVector(since)));
+  const auto since = scope::Velocity::fromVector(sinceImage(input));
+  const Eigen::Matrix3d pose_R_image = geometry::so3Exp(-scope::angularVelocity(since));
   const Eigen::Matrix3d base_R_shaft = input.insertion_point_T_tip->linear() * pose_R_image;
   error.alpha = horizonError(input.scope.camera_R_shaft * base_R_shaft.transpose() * up);
   return error;

@@ -19,6 +19,7 @@
 #include "servo/shaping/hysteresis_band.h"
 #include "servo/shaping/oscillation_guard.h"
 #include "servo/shaping/slew_limiter.h"
+#include "servo/task/scope_displacement.h"
 
 namespace laparoscope_servo::servo {
 
@@ -49,6 +50,15 @@ class ScopeServo {
 
   // The command by the law; not finite if the law's velocity is not.
   scope::Velocity command(const ServoInput& input, const ServoLimits& limits);
+
+  // From the scope's place when the image was taken to where the task error is zero, as a displacement (pan, tilt, spin
+  // [rad], insertion [m]); not finite if that is not known.
+  Eigen::Vector4d toTarget(const ServoInput& input) const {
+    return displacementToTarget(oriented(input), input.scope, config_.features.desired_depth);
+  }
+
+  // The scope's displacement from the time of the image to that of its pose, by the commands.
+  Eigen::Vector4d sinceImage(const ServoInput& input) const;
 
   // The command for a given finite velocity: no law, but the same limits, workspace and dead zone. The image part of
   // `input` is not used.

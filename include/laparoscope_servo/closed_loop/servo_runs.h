@@ -55,6 +55,7 @@ struct RunSummary {
   double inserted_away = 0.0;
   double evidence = 0.0;     // largest evidence of the effect guard while engaged; see src/servo/safety/effect_guard.h
   double unconfirmed = 0.0;  // largest used share of the effect budget
+  double leash = 0.0;        // largest used share of the leash
 };
 
 RunSummary summariseRun(const std::vector<SimulationSample>& samples, const SimulationConfig& config,

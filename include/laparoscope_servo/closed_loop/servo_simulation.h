@@ -94,6 +94,7 @@ struct SimulationSample {
   Eigen::Vector4d moved = Eigen::Vector4d::Zero();
   double evidence = 0.0;     // evidence of the effect guard
   double unconfirmed = 0.0;  // used share of the effect budget
+  double leash = 0.0;        // used share of the leash
   servo::ControllerState state = servo::ControllerState::kIdle;
 };
 

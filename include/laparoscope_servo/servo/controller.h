@@ -78,6 +78,7 @@ struct ControllerFigures {
   double gain_factor = 1.0;               // factor on the gains, below 1 after an oscillation of the loop
   double evidence = 0.0;                  // log likelihood ratio of the best fault hypothesis over none
   double unconfirmed = 0.0;               // used share of the motion that is allowed before its effect is confirmed
+  double leash = 0.0;                     // used share of the leash, see src/servo/safety/leash.h
 };
 
 class Controller {

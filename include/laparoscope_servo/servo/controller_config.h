@@ -7,6 +7,7 @@
 #include "laparoscope_servo/servo/effect_config.h"
 #include "laparoscope_servo/servo/insertion_point_config.h"
 #include "laparoscope_servo/servo/law_config.h"
+#include "laparoscope_servo/servo/leash_config.h"
 #include "laparoscope_servo/servo/prediction_config.h"
 #include "laparoscope_servo/servo/safety_config.h"
 #include "laparoscope_servo/servo/shaping_config.h"
@@ -46,6 +47,7 @@ struct ControllerConfig {
   InsertionPointUse insertion_point;
   HorizonConfig horizon;
   EffectConfig effect;
+  LeashConfig leash;
   SafetyConfig safety;
 };
 

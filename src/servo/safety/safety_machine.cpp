@@ -99,6 +99,7 @@ const std::vector<SafetyTransition>& safetyTransitions() {
       {kEngaged, Condition::kTrackerInvalid, State::kHold, by_itself},
       {kEngaged, Condition::kOccluded, State::kHold, by_itself},
       {kEngaged, Condition::kEffectDoubted, State::kHold, by_itself},
+      {kEngaged, Condition::kWandered, State::kHold, by_itself},
       {kIdle | kLost, Condition::kEngagedReleased, State::kArmed, dead_man},
       {kIdle | kLost, Condition::kEngaged, State::kServo, stop},
       {kEngaged, Condition::kDeadManReleased, State::kArmed, dead_man},
@@ -179,6 +180,8 @@ std::string SafetyMachine::cause(SafetyCondition condition, const SafetyFacts& f
       return when(facts.effect.effect == Effect::kWrong, facts.effect.words);
     case Condition::kEffectDoubted:
       return when(facts.effect.effect == Effect::kDoubted, facts.effect.words);
+    case Condition::kWandered:
+      return facts.wandered;
     case Condition::kHeldTooLong:
       return when(facts.time - hold_since_ >= c.resume_time, text("held for ", c.resume_time, " s: ", reason_));
     case Condition::kRegionChanged:

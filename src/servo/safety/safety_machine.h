@@ -54,6 +54,7 @@ struct SafetyFacts {
   PoseFacts pose;
   TrackerFacts tracker;
   EffectFacts effect;
+  std::string wandered;  // which way the view has wandered too far; empty: it has not
   DeadManFacts dead_man;
 };
 
@@ -91,6 +92,7 @@ enum class SafetyCondition {
   kTrackerInvalid,
   kOccluded,
   kEffectDoubted,
+  kWandered,
   kEngagedReleased,
   kEngaged,
   kDeadManReleased,

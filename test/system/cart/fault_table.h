@@ -28,6 +28,7 @@ struct FaultRow {
   double watched = 0.0;        // s, where its effect needs time to show; 0: as long as the others
   double degrees = 3.0;        // allowed after the fault
   double millimetres = 5.0;
+  bool bounded = false;  // also where it goes on to its task
 };
 
 const std::vector<FaultRow>& faultTable();

@@ -24,7 +24,9 @@ FaultRow either(const std::string& name, double seconds, const std::function<Ima
   return watched(image(name, 0, Outcome::kEither, kDoubted, fault), seconds);
 }
 
+// It looks like tissue that moves, and is followed as far as the leash reaches.
 FaultRow upTo(double degrees, double millimetres, FaultRow row) {
+  row.bounded = true;
   row.degrees = degrees;
   row.millimetres = millimetres;
   return row;
@@ -59,9 +61,8 @@ std::vector<FaultRow> ofPictures() {
   return {
       either("torn", 3.0, torn),  // jvdillon/p3-ir-camera#5, morefigs/pymba#90
       either("interlaced", 3.0, interlaced),
-      // Not noticed: tissue that slides looks like that. The scope follows until the region leaves the picture.
-      upTo(25.0, 70.0, either("running through, down by 2 px", 8.0, [] { return runningThrough(0, 2); })),
-      upTo(25.0, 70.0, either("running through, to the right by 3 px", 8.0, [] { return runningThrough(3, 0); })),
+      upTo(22.0, 9.0, either("running through, down by 2 px", 8.0, [] { return runningThrough(0, 2); })),
+      upTo(9.0, 7.5, either("running through, to the right by 3 px", 8.0, [] { return runningThrough(3, 0); })),
       either("running through, down by 25 px", 3.0, [] { return runningThrough(0, 25); }),
       either("red for blue", 3.0, swappedColours),  // tentone/tello-ros2#12
       either("with another gamma", 3.0, [] { return gamma(2.2); }),
@@ -70,11 +71,10 @@ std::vector<FaultRow> ofPictures() {
       either("side by side", 3.0, sideBySide),
       image("behind a menu", 0, Outcome::kStands, kLost, menu),
       image("the grabber's test picture", 0, Outcome::kStands, kDoubted, testPicture),
-      // The scope goes on to the region, and turns with the camera head, until the turn shows.
-      upTo(30.0, 10.0, either("turned by hand", 12.0, [] { return turning(20.0, 150.0); })),
-      // Not noticed: tissue that comes nearer, or goes away, looks like that.
-      upTo(12.0, 70.0, either("zoomed in by hand", 8.0, [] { return zooming(1.3, 2.0); })),
-      upTo(12.0, 70.0, either("zoomed out by hand", 8.0, [] { return zooming(1.3, 0.5); })),
+      upTo(3.5, 4.5, either("turned by hand", 8.0, [] { return turning(20.0, 150.0); })),
+      // What it pans towards the region meanwhile is in it.
+      upTo(6.0, 16.0, either("zoomed in by hand", 8.0, [] { return zooming(1.3, 2.0); })),
+      upTo(5.0, 5.0, either("zoomed out by hand", 8.0, [] { return zooming(1.3, 0.5); })),
       either("stabilised by the camera", 8.0, stabilised),
   };
 }

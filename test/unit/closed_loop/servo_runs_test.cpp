@@ -196,11 +196,11 @@ TEST(SummariseRun, WhatIsNoNumberIsNotSmall) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   std::vector<SimulationSample> samples = still(10);
   samples[3].lateral_speed = samples[3].lateral_offset = samples[3].commanded_lateral_speed = nan;
-  samples[3].evidence = samples[3].unconfirmed = nan;
+  samples[3].evidence = samples[3].unconfirmed = samples[3].leash = nan;
   samples[3].moved.setConstant(nan);
   const RunSummary run = summarised(samples);
   for (const double figure : {run.max_lateral_speed, run.max_lateral_offset, run.max_commanded_lateral_speed,
-                              run.evidence, run.unconfirmed, run.turned, run.inserted})
+                              run.evidence, run.unconfirmed, run.leash, run.turned, run.inserted})
     EXPECT_TRUE(std::isnan(figure)) << figure;
   const SimulationSummary summary = summarise(samples, SimulationConfig());
   EXPECT_TRUE(std::isnan(summary.max_lateral_speed));
@@ -215,6 +215,7 @@ TEST(SummariseRun, TellsWhereTheScopeWentAndWhatStoppedIt) {
   for (const std::size_t k : {3u, 5u, 6u}) samples[k].state = servo::ControllerState::kHold;
   samples[5].evidence = 7.0;
   samples[5].unconfirmed = 0.6;
+  samples[5].leash = 0.7;
   for (const std::size_t k : {7u, 8u, 9u}) samples[k].state = servo::ControllerState::kFault;
   samples[8].evidence = 50.0;  // nobody is engaged any more
   const RunSummary run = summarised(samples);
@@ -224,6 +225,7 @@ TEST(SummariseRun, TellsWhereTheScopeWentAndWhatStoppedIt) {
   EXPECT_EQ(run.stopped, samples[7].t);
   EXPECT_EQ(run.evidence, 7.0);
   EXPECT_EQ(run.unconfirmed, 0.6);
+  EXPECT_EQ(run.leash, 0.7);
 }
 
 TEST(SummariseRun, CountsTheWayFromWhenThePictureFroze) {
@@ -277,14 +279,15 @@ TEST(WriteRuns, AColumnForEachFigure) {
   run.inserted_away = 25.0;
   run.evidence = 26.0;
   run.unconfirmed = 27.0;
+  run.leash = 28.0;
   std::ostringstream stream;
   writeRuns({run}, stream);
   EXPECT_EQ(stream.str(),
             "seed,start_pan,start_tilt,start_spin,start_insertion,refused_starts,settled,settled_centre,settled_scale,"
             "settled_orientation,left_image,centre_rms,scale_rms,orientation_rms,moving_share,reversals,"
             "max_commanded_lateral_speed,max_lateral_speed,max_lateral_offset,final_state,stopped,holds,"
-            "turned,inserted,turned_away,inserted_away,evidence,unconfirmed\n"
-            "2,3,4,5,6,7,8,9,10,11,1,12,13,14,15,16,17,18,19,HOLD,20,21,22,23,24,25,26,27\n");
+            "turned,inserted,turned_away,inserted_away,evidence,unconfirmed,leash\n"
+            "2,3,4,5,6,7,8,9,10,11,1,12,13,14,15,16,17,18,19,HOLD,20,21,22,23,24,25,26,27,28\n");
 }
 
 TEST(PrintRuns, NamesTheSeedsThatDidNotSettle) {

@@ -71,6 +71,7 @@ inline std::vector<Fact> holds() {
       {"no task error", [](SafetyFacts& f) { f.tracker = TrackerFacts(); }, "no task error"},
       {"tracker's problem", [](SafetyFacts& f) { f.tracker.problem = "task error is not finite"; }, "not finite"},
       {"tracker lost", [](SafetyFacts& f) { f.tracker.valid = false; }, "not valid"},
+      {"wandered", [](SafetyFacts& f) { f.wandered = "the view has wandered"; }, "the view has wandered"},
   };
   for (const double d2 : {0.019, 0.251, -0.1, 0.0, 1e300, kNan, kInfinity, -kInfinity}) {
     all.push_back({"d2 " + std::to_string(d2), [=](SafetyFacts& f) { f.pose.d2 = d2; }, "not between"});

@@ -107,6 +107,8 @@ std::map<Condition, Fact> conditions() {
           f.effect = {Effect::kDoubted, "the picture moves as if"};
         },
         "the picture moves as if"}},
+      {Condition::kWandered,
+       {"", [](SafetyFacts& f) { f.wandered = "the view has wandered"; }, "the view has wandered"}},
       {Condition::kEffectWrong,
        {"",
         [](SafetyFacts& f) {
@@ -198,7 +200,7 @@ bool mayMove(const SafetyFacts& f) {
          within(f.pose.d2, 0.02, 0.25) && within(f.pose.lateral_offset, 0.0, 0.015) && f.tracker.problem.empty() &&
          within(f.tracker.age, 0.0, 0.25) && within(f.tracker.image_age, 0.0, 0.25) && f.tracker.valid &&
          f.tracker.visible_fraction >= 0.2 && f.dead_man.pressed && within(f.dead_man.age, 0.0, 0.2) &&
-         f.request != EngageRequest::kOff;
+         f.wandered.empty() && f.request != EngageRequest::kOff;
 }
 
 TEST(SafetyMachine, WhateverComesItMovesOnlyWhenItMay) {
@@ -209,7 +211,7 @@ TEST(SafetyMachine, WhateverComesItMovesOnlyWhenItMay) {
   double hold_since = 0.0;
   std::set<std::pair<State, State>> changes;
   int moved = 0;
-  for (int k = 0; k < 100000; ++k) {
+  for (int k = 0; k < 200000; ++k) {
     time += 0.04 * chance.uniform();
     const SafetyFacts facts = chance.next(time);
     const bool was_engaged = isEngaged(before);
