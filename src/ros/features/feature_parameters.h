@@ -12,6 +12,7 @@
 #include "laparoscope_servo/features/feature_selection.h"
 #include "laparoscope_servo/model/instruments.h"
 #include "laparoscope_servo/parameters/table.h"
+#include "laparoscope_servo/tracking/contour_texture.h"
 #include "laparoscope_servo/tracking/input_config.h"
 #include "ros/common/parameters.h"
 #include "ros/tracker/image_conversion.h"
@@ -34,6 +35,7 @@ struct FeatureParameters {
 };
 
 using DotsParameters = FeatureParameters<features::DotsConfig>;
+using ContourParameters = FeatureParameters<tracking::ContourTextureConfig>;
 using EdgesParameters = FeatureParameters<features::EdgeConfig>;
 using InstrumentParameters = FeatureParameters<model::InstrumentConfig>;
 

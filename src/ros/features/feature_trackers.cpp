@@ -5,6 +5,7 @@
 #include "laparoscope_servo/features/dot_feature_tracker.h"
 #include "laparoscope_servo/features/edge_feature_tracker.h"
 #include "laparoscope_servo/model/instrument_feature_tracker.h"
+#include "laparoscope_servo/tracking/contour_texture.h"
 
 namespace laparoscope_servo {
 
@@ -28,6 +29,7 @@ const struct {
   Maker maker;
 } kTrackers[] = {{"dots", make<features::DotFeatureTracker, features::DotsConfig>},
                  {"edges", make<features::EdgeFeatureTracker, features::EdgeConfig>},
+                 {"contour", make<tracking::ContourTextureTracker, tracking::ContourTextureConfig>},
                  {"instrument", make<model::InstrumentFeatureTracker, model::InstrumentConfig>}};
 
 }  // namespace
