@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <opencv2/videoio.hpp>
 #include <string>
 #include <vector>
 
@@ -70,6 +71,13 @@ std::vector<Case> cases() {
           {"outline covered", both, ring}, {"edges beside", both, parallel}, {"half covered", both, half}};
 }
 
+struct Way {
+  const char* name;
+  bool texture, contour;
+};
+constexpr Way kWays[] = {
+    {"contour and texture", true, true}, {"texture (ESM)", true, false}, {"contour (edges)", false, true}};
+
 struct Row {
   int kept = 0, lies = 0;
   std::vector<double> errors, times;
@@ -98,18 +106,61 @@ Row run(const ContourScene& scene, const Case& each, bool texture, bool contour)
   return row;
 }
 
+// A film, for which there is no truth: images TRACKING, and the error that is expected.
+bool film(const std::string& path, const laparoscope_servo::features::SelectedFeature& selected) {
+  for (const Way& way : kWays) {
+    cv::VideoCapture video(path);
+    const double rate = std::max(1.0, video.get(cv::CAP_PROP_FPS));
+    ContourTextureConfig config;
+    config.texture = way.texture;
+    config.contour = way.contour;
+    ContourTextureTracker tracker(config);
+    Row row;
+    int images = 0;
+    for (cv::Mat image; video.read(image); ++images) {
+      const double begin = cpuTime();
+      const auto& told =
+          images == 0 ? tracker.select(image, 0.0, {selected}, {}) : tracker.track(image, images / rate, {});
+      row.times.push_back(1e3 * (cpuTime() - begin));
+      if (told.state != State::kTracking) continue;
+      ++row.kept;
+      row.errors.push_back(told.features.at(0).expected_error);
+    }
+    if (images == 0) {
+      std::fprintf(stderr, "%s: no images\n", path.c_str());
+      return false;
+    }
+    std::printf("%-20s TRACKING in %d of %d images, expected error %.2f px, %.2f ms\n", way.name, row.kept, images,
+                row.errors.empty() ? NAN : robust::nearestRank(row.errors, 0.5), robust::nearestRank(row.times, 0.5));
+  }
+  return true;
+}
+
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
   cv::setNumThreads(1);
+  if (argc > 1) {
+    laparoscope_servo::features::SelectedFeature selected;
+    selected.id = "outline";
+    selected.kind = laparoscope_servo::features::FeatureKind::kSpline;
+    selected.closed = true;
+    selected.range = 12.0;
+    for (int k = 2; k < argc; ++k) {
+      double x = 0.0, y = 0.0;
+      if (std::sscanf(argv[k], "%lf,%lf", &x, &y) != 2) {
+        std::fprintf(stderr,
+                     "usage: bench_contour [FILM x,y x,y ...], points on a closed outline in its first image, px\n");
+        return 2;
+      }
+      selected.points.emplace_back(x, y);
+    }
+    return film(argv[1], selected) ? 0 : 1;
+  }
   std::printf("%-16s %-20s %5s %5s %10s %10s %8s\n", "sequence", "by", "kept", "lies", "error px", "95 % px", "ms");
   for (const Case& each : cases()) {
     const ContourScene scene(each.look);
-    const struct {
-      const char* name;
-      bool texture, contour;
-    } ways[] = {{"contour and texture", true, true}, {"texture (ESM)", true, false}, {"contour (edges)", false, true}};
-    for (const auto& way : ways) {
+    for (const Way& way : kWays) {
       Row row = run(scene, each, way.texture, way.contour);
       const bool any = !row.errors.empty();
       std::printf("%-16s %-20s %5d %5d %10.3f %10.3f %8.3f\n", each.name.c_str(), way.name, row.kept, row.lies,
