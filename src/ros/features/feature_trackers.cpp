@@ -7,6 +7,7 @@
 #include "laparoscope_servo/features/point_feature_tracker.h"
 #include "laparoscope_servo/model/instrument_feature_tracker.h"
 #include "laparoscope_servo/motion/motion_feature_tracker.h"
+#include "laparoscope_servo/tracking/contour_texture.h"
 
 namespace laparoscope_servo {
 
@@ -31,6 +32,7 @@ const struct {
 } kTrackers[] = {{"dots", make<features::DotFeatureTracker, features::DotsConfig>},
                  {"edges", make<features::EdgeFeatureTracker, features::EdgeConfig>},
                  {"points", make<features::PointFeatureTracker, features::PointsConfig>},
+                 {"contour", make<tracking::ContourTextureTracker, tracking::ContourTextureConfig>},
                  {"instrument", make<model::InstrumentFeatureTracker, model::InstrumentConfig>},
                  {"motion", make<motion::MotionFeatureTracker, motion::MotionConfig>}};
 

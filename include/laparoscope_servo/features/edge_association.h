@@ -6,9 +6,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "features/coarse_motion.h"
-#include "features/edge_search.h"
+#include "laparoscope_servo/features/coarse_motion.h"
 #include "laparoscope_servo/features/curve.h"
+#include "laparoscope_servo/features/edge_search.h"
 #include "laparoscope_servo/robust/irls.h"
 
 namespace laparoscope_servo::features {
