@@ -108,8 +108,8 @@ int program(int argc, char** argv) {
   std::string seeds = "1:40", only;
   bool verbose = false;
   po::options_description options("bench_contour [options]\n\nContour and texture in one, on drawn sequences");
-  options.add_options()("help,h", "this text")(
-      "seeds", po::value(&seeds)->default_value(seeds), "of the sequences, FROM:TO")(
+  options.add_options()("help,h", "this text")("seeds", po::value(&seeds)->default_value(seeds),
+                                               "of the sequences, FROM:TO")(
       "only", po::value(&only), "the sequence of this name alone")("verbose", po::bool_switch(&verbose),
                                                                    "every image of every sequence");
   const auto complete = [] { return true; };

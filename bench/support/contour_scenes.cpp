@@ -39,8 +39,8 @@ std::vector<cv::Point> arc(const ContourScene& scene, double k, double scale, do
 std::vector<cv::Point> band(double angle, double from, double to) {
   const Eigen::Vector2d n = direction(angle), along(-n.y(), n.x());
   const Eigen::Vector2d c = ContourScene::kCentre;
-  return {pixel(c + from * n - 400.0 * along), pixel(c + from * n + 400.0 * along),
-          pixel(c + to * n + 400.0 * along), pixel(c + to * n - 400.0 * along)};
+  return {pixel(c + from * n - 400.0 * along), pixel(c + from * n + 400.0 * along), pixel(c + to * n + 400.0 * along),
+          pixel(c + to * n - 400.0 * along)};
 }
 
 void paint(const std::vector<cv::Point>& shape, const cv::Mat1f& with, cv::Mat1f& picture) {
@@ -70,7 +70,7 @@ std::vector<ContourCase> contourCases(unsigned seed) {
   fast.speed = 2.5;
   blurred.speed = 2.0;
   blurred.exposure = 0.8;
-  bending.bend = 3.0;
+  bending.bend = 1.5;
   // Half of the inside, up to close to the outline.
   const auto inside = [=](const ContourScene& scene, int k, cv::Mat1f& picture) {
     if (isCovered(k)) paint(arc(scene, k, 0.88, angle, M_PI), front, picture);
@@ -104,12 +104,14 @@ std::vector<ContourCase> contourCases(unsigned seed) {
     const double at = 130.0 * std::cos(0.06 * k + other);
     for (int stripe = 0; stripe < 9; ++stripe) {  // round: brighter in its middle
       const double level = 60.0 + 12.0 * (4 - std::abs(stripe - 4));
-      paint(band(angle, at + 4.0 * stripe - 18.0, at + 4.0 * stripe - 14.0), cv::Mat1f(picture.size(), static_cast<float>(level)), picture);
+      paint(band(angle, at + 4.0 * stripe - 18.0, at + 4.0 * stripe - 14.0),
+            cv::Mat1f(picture.size(), static_cast<float>(level)), picture);
     }
   };
   // Gain, bias, and a shade across the image that wanders.
   const auto light = [=](const ContourScene&, int k, cv::Mat1f& picture) {
-    const double gain = 1.0 + 0.3 * std::sin(0.11 * k + other) - 0.3 * std::sin(other), bias = 20.0 * std::sin(0.07 * k);
+    const double gain = 1.0 + 0.3 * std::sin(0.11 * k + other) - 0.3 * std::sin(other),
+                 bias = 20.0 * std::sin(0.07 * k);
     const Eigen::Vector2d slope = 0.12 * std::sin(0.05 * k) * direction(angle);
     picture.forEach([&](float& level, const int* at) {
       const double shade = slope.x() * (at[1] - 160.0) + slope.y() * (at[0] - 120.0);

@@ -1,5 +1,5 @@
-// Drawn sequences in which contour, texture or both of a thing are covered in part, change or move fast; what is true is
-// known.
+// Drawn sequences in which contour, texture or both of a thing are covered in part, change or move fast; what is true
+// is known.
 #pragma once
 
 #include <functional>

@@ -53,7 +53,9 @@ class ContourScene {
   // Shift, turn, scale and perspective, from the image 0 to `k`.
   Eigen::Matrix3d motion(double k) const {
     const double t = 0.09 * look_.speed * k;
-    const auto swing = [&](double rate, std::size_t i) { return std::sin(rate * t + phases_[i]) - std::sin(phases_[i]); };
+    const auto swing = [&](double rate, std::size_t i) {
+      return std::sin(rate * t + phases_[i]) - std::sin(phases_[i]);
+    };
     const geometry::Quadrilateral box = geometry::Rectangle{85.0, 50.0, 150.0, 140.0}.corners();
     geometry::Quadrilateral moved = box;
     const double turn = 0.12 * swing(0.7, 0), scale = 1.0 + 0.08 * swing(0.9, 1);
@@ -70,7 +72,9 @@ class ContourScene {
   }
 
   // Where a point of the image 0 is in the image `k`, px.
-  Eigen::Vector2d place(const Eigen::Vector2d& p, double k) const { return geometry::apply(motion(k), p + bending(p, k)); }
+  Eigen::Vector2d place(const Eigen::Vector2d& p, double k) const {
+    return geometry::apply(motion(k), p + bending(p, k));
+  }
 
   // CV_8UC1, of the time `k` in images; `cover` is painted over it before blur and noise, `seed` is of the noise.
   cv::Mat image(double k, unsigned seed, const Cover& cover = nullptr) const {
@@ -101,49 +105,46 @@ class ContourScene {
     return {selected};
   }
 
-  // px, mean distance of the outline's points under H from where they are in the image `k`; less, where the thing
-  // bends, what the best homography leaves.
+  // px, mean distance of the outline's points under H from where they are in the image `k`; where the thing bends, from
+  // where the homography puts them that fits its points best, those inside and those of the outline.
   double error(const Eigen::VectorXd& parameters, double k) const {
     Eigen::Matrix3d h;
     h << parameters[0], parameters[1], parameters[2], parameters[3], parameters[4], parameters[5], parameters[6],
         parameters[7], 1.0;
-    std::vector<cv::Point2d> from, to;
-    for (int i = 0; i < kChecked; ++i) {
-      const Eigen::Vector2d p = at(2.0 * M_PI * i / kChecked), q = place(p, k);
-      from.emplace_back(p.x(), p.y());
-      to.emplace_back(q.x(), q.y());
+    const Eigen::Matrix3d truth = look_.bend > 0.0 ? fitted(k) : motion(k);
+    constexpr int kPoints = 36;
+    double sum = 0.0;
+    for (int i = 0; i < kPoints; ++i) {
+      const Eigen::Vector2d p = at(2.0 * M_PI * i / kPoints);
+      sum += (geometry::apply(h, p) - geometry::apply(truth, p)).norm();
     }
-    double error = meanDistance(h, from, to);
-    if (look_.bend > 0.0) {
-      const cv::Matx33d best = cv::findHomography(from, to, 0);
-      Eigen::Matrix3d g;
-      g << best(0, 0), best(0, 1), best(0, 2), best(1, 0), best(1, 1), best(1, 2), best(2, 0), best(2, 1), best(2, 2);
-      error -= meanDistance(g, from, to);
-    }
-    return error;
+    return sum / kPoints;
   }
 
   static inline const cv::Size kSize{320, 240};
   static inline const Eigen::Vector2d kCentre{160.0, 120.0};
 
  private:
-  static constexpr int kChecked = 36;
-
-  static double meanDistance(const Eigen::Matrix3d& h, const std::vector<cv::Point2d>& from,
-                             const std::vector<cv::Point2d>& to) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < from.size(); ++i) {
-      sum += (geometry::apply(h, Eigen::Vector2d(from[i].x, from[i].y)) - Eigen::Vector2d(to[i].x, to[i].y)).norm();
+  Eigen::Matrix3d fitted(double k) const {
+    std::vector<cv::Point2d> from, to;
+    for (const double scale : {0.3, 0.55, 0.7, 0.85, 1.0}) {  // rings of about equal areas
+      for (double angle = 0.0; angle < 2.0 * M_PI; angle += M_PI / 18.0) {
+        const Eigen::Vector2d p = kCentre + scale * (at(angle) - kCentre), q = place(p, k);
+        from.emplace_back(p.x(), p.y());
+        to.emplace_back(q.x(), q.y());
+      }
     }
-    return sum / static_cast<double>(from.size());
+    const cv::Matx33d best = cv::findHomography(from, to, 0);
+    Eigen::Matrix3d g;
+    g << best(0, 0), best(0, 1), best(0, 2), best(1, 0), best(1, 1), best(1, 2), best(2, 0), best(2, 1), best(2, 2);
+    return g;
   }
 
   // px of the image 0, waves as long as the thing is wide.
   Eigen::Vector2d bending(const Eigen::Vector2d& p, double k) const {
     if (!(look_.bend > 0.0)) return Eigen::Vector2d::Zero();
     const double t = std::sin(0.09 * look_.speed * k);
-    return look_.bend * t *
-           Eigen::Vector2d(std::sin(0.05 * p.y() + phases_[0]), std::sin(0.05 * p.x() + phases_[1]));
+    return look_.bend * t * Eigen::Vector2d(std::sin(0.05 * p.y() + phases_[0]), std::sin(0.05 * p.x() + phases_[1]));
   }
 
   cv::Mat1f sharp(double k) const {

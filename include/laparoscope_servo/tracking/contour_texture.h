@@ -18,7 +18,7 @@ struct ContourTextureConfig {
   bool contour = true;            // the edges along it count; one of the two has to
   double min_block_share = 0.35;  // of the blocks with texture, that correlate with the reference
   double min_correlation = 0.6;   // of a block that does
-  double max_corner_error = 4.0;  // px: expected standard deviation of the worst corner of the contour's box
+  double max_corner_error = 1.5;  // px: expected standard deviation of the worst corner of the contour's box
   features::EdgeConfig edges;
 };
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "laparoscope_servo/features/coarse_motion.h"
+#include "laparoscope_servo/features/edge_association.h"
 #include "laparoscope_servo/features/edge_config.h"
 #include "laparoscope_servo/features/edge_fit.h"
 #include "laparoscope_servo/features/edge_memory.h"
@@ -38,23 +39,23 @@ class EdgeTerm : public ExtraTerm {
   // none does.
   features::CoarseResult coarse(double range) { return coarse_.find(sites_, candidates_, range); }
 
-  // Whether the edges that the last look() found agree with the contour at `g`, whose G has the covariance
-  // `covariance` (of x, see MotionPrior).
-  features::EdgeReport judge(const Eigen::Matrix3d& g, const Matrix8d& covariance, double min_share);
+  // Takes the say from sites whose neighbours do not agree with the contour at `g`: it is covered there. True when so
+  // many of those that agreed lost it that the contour should be aligned again.
+  bool gate(const Eigen::Matrix3d& g);
+  // No site is covered.
+  void forget() { association_.forgetLonely(); }
+
+  // Whether the edges that the last gate() found agree with the contour there, whose G has the covariance `covariance`
+  // (of x, see MotionPrior).
+  features::EdgeReport judge(const Matrix8d& covariance, double min_share);
 
   // Takes the looks of the sites that agreed into the memory.
   void remember();
 
-  const std::vector<features::SiteFinding>& findings() const { return findings_; }
-  double sigma() const { return sigma_; }  // px, robust scale of the last add()
+  const std::vector<features::SiteFinding>& findings() const { return association_.findings(); }
+  double sigma() const { return sigma_; }  // px, robust scale of the last add() or gate()
 
  private:
-  struct Chosen {
-    int candidate = -1;  // of the site; -1: none
-    double error = 0.0;  // px along the normal, from the contour to the edge
-    double weight = 0.0;
-  };
-
   void choose(const Eigen::Matrix3d& g);
 
   features::EdgeConfig config_;
@@ -62,12 +63,15 @@ class EdgeTerm : public ExtraTerm {
   features::EdgeSearch search_;
   features::EdgeMemory memory_;
   features::CoarseMotion coarse_;
-  double range_ = 0.0;  // px, of the last look()
-  std::vector<features::Site> sites_, moved_;
+  features::EdgeAssociation association_;
+  double range_ = 0.0;     // px, of the last look()
+  double matching_ = 0.0;  // edges per site within it, that could be the contour's
+  std::vector<features::Site> sites_;
   std::vector<features::WeightedCandidates> candidates_;
-  std::vector<Chosen> chosen_;
-  std::vector<double> errors_;
-  std::vector<features::SiteFinding> findings_;
+  std::vector<double> moved_;    // px, of the contour from each site along its normal
+  std::vector<double> errors_;   // px, of the rows of the association that have a say
+  std::vector<double> weights_;  // Tukey's, of each row
+  Eigen::VectorXd no_step_ = Eigen::VectorXd::Zero(8);
   Eigen::MatrixXd covariance_;
   double sigma_ = 0.0;
   double expected_gain_ = 1.0;

@@ -24,9 +24,11 @@ using test_support::waitFor;
 // As the service takes it.
 std::string selectionText(double aside = 0.0) {
   std::ostringstream text;
-  text << "[{id: thing, closed: true, spline: [";
-  for (const Eigen::Vector2d& point : ContourScene::selection()[0].points)
-    text << '[' << point.x() + aside << ", " << point.y() << "], ";
+  const char* before = "[{id: thing, closed: true, spline: [";
+  for (const Eigen::Vector2d& point : ContourScene::selection()[0].points) {
+    text << before << '[' << point.x() + aside << ", " << point.y() << ']';
+    before = ", ";
+  }
   text << "]}]";
   return text.str();
 }

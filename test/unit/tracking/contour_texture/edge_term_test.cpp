@@ -67,7 +67,8 @@ TEST_F(EdgeTermTest, AStepUndoesASmallDisplacement) {
     const Eigen::Matrix3d g = steps_.plus(Eigen::Matrix3d::Identity(), away);
     term_.look(image, g, 6.0, 200);
     const auto offset = [&](const Eigen::Matrix3d& at) {
-      term_.judge(at, Matrix8d::Zero(), 0.3);
+      term_.gate(at);
+      term_.forget();
       double sum = 0.0;
       for (const features::SiteFinding& finding : term_.findings()) sum += (finding.edge - finding.point).norm();
       return sum / static_cast<double>(term_.findings().size());
@@ -97,16 +98,42 @@ TEST_F(EdgeTermTest, JudgesWhetherTheContourIsThere) {
   const Matrix8d exact = 1e-8 * Matrix8d::Identity();
   const cv::Mat image = scene_.image(0, 2);
   term_.look(image, Eigen::Matrix3d::Identity(), 3.0, 200);
-  const features::EdgeReport there = term_.judge(Eigen::Matrix3d::Identity(), exact, 0.3);
+  term_.gate(Eigen::Matrix3d::Identity());
+  const features::EdgeReport there = term_.judge(exact, 0.3);
   EXPECT_EQ(there.reason, features::Reason::kNone);
   EXPECT_GT(there.share, 0.9);
   const cv::Mat empty(ContourScene::kSize, CV_8UC1, cv::Scalar(100));
   term_.look(empty, Eigen::Matrix3d::Identity(), 3.0, 200);
-  EXPECT_NE(term_.judge(Eigen::Matrix3d::Identity(), exact, 0.3).reason, features::Reason::kNone);
+  term_.gate(Eigen::Matrix3d::Identity());
+  EXPECT_NE(term_.judge(exact, 0.3).reason, features::Reason::kNone);
   Eigen::Matrix3d aside = Eigen::Matrix3d::Identity();
   aside(0, 2) = 12.0;
   term_.look(image, aside, 3.0, 200);
-  EXPECT_LT(term_.judge(aside, exact, 0.3).share, 0.5);
+  term_.gate(aside);
+  EXPECT_LT(term_.judge(exact, 0.3).share, 0.5);
+}
+
+// Edges of what covers a part of the contour that lie on it here and there.
+TEST_F(EdgeTermTest, SitesWhoseNeighboursDoNotAgreeLoseTheirSay) {
+  const auto cover = [](cv::Mat1f& picture) {
+    const cv::Rect left(0, 0, 150, 240);
+    test::texture(picture.size(), 110.0, 20.0, 2.0, 9)(left).copyTo(picture(left));
+  };
+  term_.look(scene_.image(0, 2, cover), Eigen::Matrix3d::Identity(), 6.0, 200);
+  for (int k = 0; k < 3; ++k) term_.gate(Eigen::Matrix3d::Identity());
+  int believed = 0, covered = 0, in_sight = 0;
+  for (const features::SiteFinding& finding : term_.findings()) {
+    const bool has_say = finding.weight >= features::kAgreeWeight;
+    if (finding.point.x() < 140.0) {
+      ++covered;
+      believed += has_say ? 1 : 0;
+    } else if (finding.point.x() > 160.0) {
+      in_sight += has_say ? 0 : 1;
+    }
+  }
+  EXPECT_GT(covered, 30);
+  EXPECT_LT(believed, covered / 6);
+  EXPECT_EQ(in_sight, 0);
 }
 
 TEST_F(EdgeTermTest, SaysNothingWithoutEdges) {
