@@ -23,9 +23,10 @@ using test_support::waitFor;
 
 // As the service takes it.
 std::string selectionText(double aside = 0.0) {
+  const features::FeatureSelection selection = ContourScene::selection();
   std::ostringstream text;
   const char* before = "[{id: thing, closed: true, spline: [";
-  for (const Eigen::Vector2d& point : ContourScene::selection()[0].points) {
+  for (const Eigen::Vector2d& point : selection[0].points) {
     text << before << '[' << point.x() + aside << ", " << point.y() << ']';
     before = ", ";
   }

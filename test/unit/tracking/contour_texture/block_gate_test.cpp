@@ -79,18 +79,19 @@ TEST_F(BlockGateTest, WhatIsCoveredHasNoWeightUntilItIsSeenAgain) {
   EXPECT_EQ(cv::countNonZero(gate_.weights()), 120 * 96);
 }
 
-// Blocks of which a third is covered still correlate a little: that counts for less beside one that is covered.
-TEST_F(BlockGateTest, BesideACoveredBlockLessIsBelieved) {
+// Two of twelve columns of eight blocks are covered: that counts beside blocks that are covered in whole, and not by
+// itself.
+TEST_F(BlockGateTest, BesideACoveredBlockMoreCorrelationIsExpected) {
   const auto correlated = [&](const cv::Rect& covered) {
     show();
     cover(covered, 90.0f);
     gate_.forget();
-    gate_.look(level_, 0.1);
+    gate_.look(level_, 0.3);
     return gate_.correlated();
   };
-  const int third = correlated({60, 0, 4, 96}), all_before = correlated({0, 0, 60, 96});
-  EXPECT_GE(third, 76) << "by themselves";
-  EXPECT_LT(correlated({0, 0, 64, 96}), all_before - (80 - third));
+  EXPECT_EQ(correlated({60, 0, 2, 96}), 80);
+  EXPECT_EQ(correlated({0, 0, 60, 96}), 40);
+  EXPECT_LT(correlated({0, 0, 62, 96}), 40);
 }
 
 TEST_F(BlockGateTest, WhatWasCoveredIsForgotten) {
