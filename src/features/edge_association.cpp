@@ -1,4 +1,4 @@
-#include "features/edge_association.h"
+#include "laparoscope_servo/features/edge_association.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,13 +12,14 @@ constexpr int kNeighbours = 4;
 constexpr double kLeastNeighbours = 0.33;
 constexpr double kMostNeighbours = 0.7;
 
-// The candidate with the largest weight, that of one at the end of the range being 0; -1 where none has any.
-int bestOf(const WeightedCandidates& candidates, double range) {
+// The candidate with the largest weight, that of one at the end of the range being 0; -1 where none has any. The curve
+// lies `moved` px from the site.
+int bestOf(const WeightedCandidates& candidates, double range, double moved) {
   int best = -1;
   double best_value = 0.0;
   for (int k = 0; k < candidates.found.count; ++k) {
     const std::size_t at = static_cast<std::size_t>(k);
-    const double t = static_cast<double>(candidates.found.at[at].offset) / (range + 1.0);
+    const double t = (static_cast<double>(candidates.found.at[at].offset) - moved) / (range + 1.0);
     const double value = static_cast<double>(candidates.weight[at]) * (1.0 - t * t);
     if (value > best_value) {
       best_value = value;
@@ -53,15 +54,17 @@ void EdgeAssociation::forgetLonely() {
 }
 
 void EdgeAssociation::choose(const std::vector<Site>& sites, const std::vector<WeightedCandidates>& candidates,
-                             double range) {
+                             double range, const std::vector<double>& moved) {
   findings_.resize(sites.size());
   rows_.clear();
   row_site_.clear();
   for (std::size_t i = 0; i < sites.size(); ++i) {
     const Site& site = sites[i];
     const EdgeCandidates& found = candidates[i].found;
-    findings_[i] = {site.point, site.point, 0.0, found.inside, site.probe, site.slot};
-    const int best = bestOf(candidates[i], range);
+    const double left = moved.empty() ? 0.0 : moved[i];
+    const Eigen::Vector2d point = site.point + left * site.normal;
+    findings_[i] = {point, point, 0.0, found.inside, site.probe, site.slot};
+    const int best = bestOf(candidates[i], range, left);
     if (best < 0) continue;
     const EdgeCandidate& candidate = found.at[static_cast<std::size_t>(best)];
     looks_[i] = candidate.looks;
@@ -70,7 +73,7 @@ void EdgeAssociation::choose(const std::vector<Site>& sites, const std::vector<W
     row.first = site.first;
     row.count = site.count;
     row.a = site.jacobian;
-    row.b = static_cast<double>(candidate.offset);
+    row.b = static_cast<double>(candidate.offset) - left;
     row.weight = site.probe || lonely_[static_cast<std::size_t>(site.slot)] ? 0.0 : 1.0;
     rows_.push_back(row);
     row_site_.push_back(i);

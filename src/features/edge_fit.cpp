@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <iterator>
 
-#include "features/coarse_motion.h"
-#include "features/edge_association.h"
-#include "features/edge_memory.h"
-#include "features/edge_search.h"
-#include "features/edge_verdict.h"
+#include "laparoscope_servo/features/coarse_motion.h"
+#include "laparoscope_servo/features/edge_association.h"
+#include "laparoscope_servo/features/edge_memory.h"
+#include "laparoscope_servo/features/edge_search.h"
+#include "laparoscope_servo/features/edge_verdict.h"
 #include "laparoscope_servo/robust/irls.h"
 
 namespace laparoscope_servo::features {

@@ -1,4 +1,4 @@
-#include "features/edge_memory.h"
+#include "laparoscope_servo/features/edge_memory.h"
 
 #include <algorithm>
 #include <cmath>

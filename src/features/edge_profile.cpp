@@ -1,4 +1,4 @@
-#include "features/edge_profile.h"
+#include "laparoscope_servo/features/edge_profile.h"
 
 #include <algorithm>
 #include <cmath>

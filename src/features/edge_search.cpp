@@ -1,4 +1,4 @@
-#include "features/edge_search.h"
+#include "laparoscope_servo/features/edge_search.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,11 @@
-#include "features/edge_verdict.h"
+#include "laparoscope_servo/features/edge_verdict.h"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 
 #include "features/chance.h"
-#include "features/edge_association.h"
+#include "laparoscope_servo/features/edge_association.h"
 #include "laparoscope_servo/robust/largest.h"
 
 namespace laparoscope_servo::features {

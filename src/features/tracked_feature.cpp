@@ -18,6 +18,8 @@ const char* kindName(FeatureKind kind) {
       return "pose";
     case FeatureKind::kMotion:
       return "motion";
+    case FeatureKind::kHomography:
+      return "homography";
   }
   return "";
 }

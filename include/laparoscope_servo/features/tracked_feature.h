@@ -21,6 +21,8 @@ enum class FeatureKind {
   kSpline = 3,   // x, y of each control point: px
   kPose = 4,     // x, y, z m, rotation vector rad: takes the object's coordinates to the camera's
   kMotion = 5,   // a0 to a1, a5 or a7 of eq. (8), from the last image to this one: see motion/motion_feature_tracker.h
+  // h00 h01 h02 h10 h11 h12 h20 h21 of H with h22 = 1: takes px of the image of the selection to px of this one
+  kHomography = 6,
 };
 
 // "point", "line", ..., as people write it.

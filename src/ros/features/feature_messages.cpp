@@ -21,6 +21,7 @@ static_assert(isSame(FeatureKind::kEllipse, TrackedFeature::ELLIPSE));
 static_assert(isSame(FeatureKind::kSpline, TrackedFeature::SPLINE));
 static_assert(isSame(FeatureKind::kPose, TrackedFeature::POSE));
 static_assert(isSame(FeatureKind::kMotion, TrackedFeature::MOTION));
+static_assert(isSame(FeatureKind::kHomography, TrackedFeature::HOMOGRAPHY));
 static_assert(isSame(State::kIdle, TrackedFeatures::IDLE));
 static_assert(isSame(State::kTracking, TrackedFeatures::TRACKING));
 static_assert(isSame(State::kSearching, TrackedFeatures::SEARCHING));

@@ -15,6 +15,7 @@
 #include "laparoscope_servo/model/instruments.h"
 #include "laparoscope_servo/motion/motion_config.h"
 #include "laparoscope_servo/parameters/table.h"
+#include "laparoscope_servo/tracking/contour_texture.h"
 #include "laparoscope_servo/tracking/input_config.h"
 #include "ros/common/parameters.h"
 #include "ros/features/model_file_config.h"
@@ -42,6 +43,7 @@ struct FeatureParameters {
 
 using DotsParameters = FeatureParameters<features::DotsConfig>;
 using PointsParameters = FeatureParameters<features::PointsConfig>;
+using ContourParameters = FeatureParameters<tracking::ContourTextureConfig>;
 using EdgesParameters = FeatureParameters<features::EdgeConfig>;
 using InstrumentParameters = FeatureParameters<model::InstrumentConfig>;
 using MotionParameters = FeatureParameters<motion::MotionConfig>;

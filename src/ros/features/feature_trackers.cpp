@@ -9,6 +9,7 @@
 #include "laparoscope_servo/model/instrument_feature_tracker.h"
 #include "laparoscope_servo/model/model_feature_tracker.h"
 #include "laparoscope_servo/motion/motion_feature_tracker.h"
+#include "laparoscope_servo/tracking/contour_texture.h"
 
 namespace laparoscope_servo {
 
@@ -47,6 +48,7 @@ const struct {
 } kTrackers[] = {{"dots", make<features::DotFeatureTracker, features::DotsConfig>},
                  {"edges", make<features::EdgeFeatureTracker, features::EdgeConfig>},
                  {"points", make<features::PointFeatureTracker, features::PointsConfig>},
+                 {"contour", make<tracking::ContourTextureTracker, tracking::ContourTextureConfig>},
                  {"instrument", make<model::InstrumentFeatureTracker, model::InstrumentConfig>},
                  {"model", makeModel},
                  {"motion", make<motion::MotionFeatureTracker, motion::MotionConfig>}};

@@ -49,7 +49,7 @@ std::vector<double> spreadAlong(const FeatureFact& feature) {
       if (feature.covariance.empty() || feature.parameters.size() != (line ? kLineParameters : kEllipseParameters))
         return {};
       variance = line ? spreadOfLine(feature, at) : spreadOfEllipse(feature, at);
-    } else if (feature.kind != TrackedFeature::SPLINE) {
+    } else if (feature.kind != TrackedFeature::SPLINE && feature.kind != TrackedFeature::HOMOGRAPHY) {
       return {};
     }
     if (!(variance >= 0.0) || !std::isfinite(variance)) return {};

@@ -9,8 +9,8 @@
 
 namespace laparoscope_servo::screen {
 
-// Of a LINE, an ELLIPSE or a SPLINE: the standard deviation along the normal at each point of the outline. That of a
-// spline is its expected error everywhere. Empty when it is not known.
+// Of a LINE, an ELLIPSE, a SPLINE or a HOMOGRAPHY: the standard deviation along the normal at each point of the
+// outline. That of the last two is their expected error everywhere. Empty when it is not known.
 std::vector<double> spreadAlong(const FeatureFact& feature);
 
 // Of a POINT: twice the standard deviations, as the columns of a matrix that takes the unit circle to the ellipse.

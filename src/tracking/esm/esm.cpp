@@ -129,6 +129,13 @@ bool Esm::solve(EsmLevel& level, const MotionPrior* prior, bool shift_only, EsmR
     a.topLeftCorner<8, 8>() += unit * prior->information;
     b.head<8>() += unit * (prior->information * deviation_);
   }
+  if (extra_ != nullptr) {
+    // Both are divided by their own variances, that of the texture being no less than in the images before.
+    const double unit = std::max(result.sigma * result.sigma, prior != nullptr ? prior->noise : 0.0);
+    askExtra(result.state);
+    a += unit * extra_information_;
+    b += unit * extra_score_;
+  }
   if (shift_only) {
     a.block<6, 10>(2, 0).setZero();
     a.block<10, 6>(0, 2).setZero();
@@ -174,9 +181,19 @@ void Esm::takeStep(EsmLevel& level, const Vector10d& x, EsmState& state) {
   if (weight > 0.0) state.bias = bias / weight;
 }
 
-void Esm::judge(const MotionPrior* prior, EsmResult& result) const {
+void Esm::askExtra(const EsmState& state) {
+  extra_information_.setZero();
+  extra_score_.setZero();
+  if (extra_ != nullptr) extra_->add(state.g, state.gain, extra_information_, extra_score_);
+}
+
+void Esm::judge(const MotionPrior* prior, EsmResult& result) {
   Matrix8d known = Matrix8d::Zero();
   if (prior != nullptr) known = credibility(*prior, deviation_) * prior->information;
+  if (extra_ != nullptr) {
+    askExtra(result.state);
+    known += extra_information_.topLeftCorner<8, 8>();
+  }
   const EstimateCovariance found = estimateCovariance(equations_.matrix(), equations_.blocks(), result.sigma, known);
   result.noise = found.noise;
   if (!found.covariance) return;
@@ -287,8 +304,9 @@ EsmStatus Esm::alignLevel(const image::RegionPyramid& current, int l, bool first
 }
 
 EsmResult Esm::align(const image::RegionPyramid& current, const EsmState& start, const MotionPrior* prior, int coarsest,
-                     int finest) {
+                     int finest, ExtraTerm* extra) {
   EsmResult result;
+  extra_ = extra;
   result.state = start;
   result.corner_error = result.centre_error = std::numeric_limits<double>::infinity();
   deviation_.setZero();

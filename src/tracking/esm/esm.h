@@ -31,6 +31,7 @@
 #include "laparoscope_servo/image/pyramid.h"
 #include "laparoscope_servo/tracking/tracker_config.h"
 #include "tracking/esm/esm_level.h"
+#include "tracking/esm/extra_term.h"
 #include "tracking/esm/normal_equations.h"
 #include "tracking/esm/residual.h"
 
@@ -98,9 +99,9 @@ class Esm {
   void forgetLight();
 
   // Aligns from level `coarsest` (by default the coarsest there is) down to level `finest`. The members of the result
-  // on uncertainty are valid only if `finest` is 0.
+  // on uncertainty are valid only if `finest` is 0. `extra`: minimised together with the residuals, null: nothing.
   EsmResult align(const image::RegionPyramid& current, const EsmState& start, const MotionPrior* prior = nullptr,
-                  int coarsest = 1000, int finest = 0);
+                  int coarsest = 1000, int finest = 0, ExtraTerm* extra = nullptr);
 
   // px, standard deviation of the worst corner if the reference were seen with independent noise of `sigma` grey levels
   // in reference and image, by the reference's own gradients and the weights; infinite where they do not determine it.
@@ -137,7 +138,9 @@ class Esm {
   EsmStatus alignLevel(const image::RegionPyramid& current, int l, bool first, const MotionPrior* prior,
                        EsmResult& result);
   // Fills in covariance, noise and expected errors of the final estimate.
-  void judge(const MotionPrior* prior, EsmResult& result) const;
+  void judge(const MotionPrior* prior, EsmResult& result);
+  // What `extra_` says at the state; the score is 0 and so is the information where there is none.
+  void askExtra(const EsmState& state);
 
   EsmConfig config_;
   std::shared_ptr<const image::Lens> lens_;
@@ -149,6 +152,9 @@ class Esm {
   std::vector<float> scratch_;
   // the last step on this level, see accelerated(); empty after a step that was lengthened
   std::optional<Vector10d> last_step_;
+  ExtraTerm* extra_ = nullptr;  // of the present alignment
+  Matrix10d extra_information_ = Matrix10d::Zero();
+  Vector10d extra_score_ = Vector10d::Zero();
   bool light_known_ = false;
   std::uint64_t alignments_ = 0;  // number of alignments of a level so far
   // unknowns of the illumination in the equations of this iteration

@@ -1,4 +1,4 @@
-#include "features/coarse_motion.h"
+#include "laparoscope_servo/features/coarse_motion.h"
 
 #include <gtest/gtest.h>
 

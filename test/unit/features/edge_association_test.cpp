@@ -1,4 +1,4 @@
-#include "features/edge_association.h"
+#include "laparoscope_servo/features/edge_association.h"
 
 #include <gtest/gtest.h>
 

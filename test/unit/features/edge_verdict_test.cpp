@@ -1,4 +1,4 @@
-#include "features/edge_verdict.h"
+#include "laparoscope_servo/features/edge_verdict.h"
 
 #include <gtest/gtest.h>
 

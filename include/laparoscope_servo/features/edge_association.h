@@ -6,9 +6,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "features/coarse_motion.h"
-#include "features/edge_search.h"
+#include "laparoscope_servo/features/coarse_motion.h"
 #include "laparoscope_servo/features/curve.h"
+#include "laparoscope_servo/features/edge_search.h"
 #include "laparoscope_servo/robust/irls.h"
 
 namespace laparoscope_servo::features {
@@ -24,8 +24,12 @@ class EdgeAssociation {
   void forgetLonely();
 
   // Of the edges near a site, the one that looks most like it, the nearer the better. `range`, px, was searched.
-  void choose(const std::vector<Site>& sites, const std::vector<WeightedCandidates>& candidates, double range);
+  // `moved`: px along its normal, how far the curve has left each site since; empty: the sites lie on it.
+  void choose(const std::vector<Site>& sites, const std::vector<WeightedCandidates>& candidates, double range,
+              const std::vector<double>& moved = {});
   const std::vector<robust::Row>& rows() const { return rows_; }
+  // The site that a row belongs to.
+  std::size_t siteOf(std::size_t row) const { return row_site_[row]; }
 
   // Weights of the sites after the fit; returns how far the step moves the curve, px along the normal of any site.
   double settle(const std::vector<Site>& sites, const Eigen::VectorXd& step, const std::vector<double>& weights,

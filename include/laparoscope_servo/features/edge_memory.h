@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "features/edge_search.h"
+#include "laparoscope_servo/features/edge_search.h"
 
 namespace laparoscope_servo::features {
 

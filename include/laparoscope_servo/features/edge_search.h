@@ -5,8 +5,8 @@
 #include <array>
 #include <opencv2/core.hpp>
 
-#include "features/edge_profile.h"
 #include "laparoscope_servo/features/curve.h"
+#include "laparoscope_servo/features/edge_profile.h"
 
 namespace laparoscope_servo::features {
 

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "features/edge_search.h"
+#include "laparoscope_servo/features/edge_search.h"
 
 namespace laparoscope_servo::features {
 
