@@ -15,6 +15,7 @@
 #include "ros/features/feature_parameters.h"
 #include "ros/features/feature_session.h"
 #include "ros/tracker/feed_statistics.h"
+#include "ros/tracker/preview.h"
 
 namespace laparoscope_servo::nodelets {
 
@@ -57,6 +58,8 @@ class FeatureNodelet : public ImageNodelet {
   std::unique_ptr<ServiceThread> request_thread_;
   ros::Publisher features_publisher_;
   ros::Publisher overlay_publisher_;
+  ros::Publisher preview_publisher_;  // for a screen where no region tracker runs
+  Preview preview_;
   ros::Publisher mask_publisher_;  // where the tracker has one
   ros::ServiceServer reset_server_;
 };

@@ -132,6 +132,35 @@ TEST_F(ScreenWindow, ARegionIsJudgedWhileItIsDrawnAndNothingIsSelectedByIt) {
   EXPECT_TRUE(nodes_.regions().empty()) << "the right button gives it up";
 }
 
+TEST_F(ScreenWindow, ARegionThatTheTrackerOffersIsTakenByAClickInIt) {
+  drag(onDisplay(kOriginal, {300, 200}), onDisplay(kOriginal, {360, 400}));
+  ASSERT_TRUE(waitFor([this] { return nodes_.regions().size() == 1; }));
+  const auto isOffered = [this] {
+    image().setMouseTracking(true);
+    hands(moveTo(onDisplay(kOriginal, {400, 300})) + "mousemove_relative 1 1");
+    return image().cursor().shape() == Qt::PointingHandCursor;
+  };
+  ASSERT_TRUE(waitFor(isOffered)) << "what was drawn was refused, with another one that would do";
+  hands("click 1");
+  ASSERT_TRUE(waitFor([this] { return nodes_.regions().size() == 2; }));
+  EXPECT_EQ(nodes_.regions()[1].width, 100u);
+  EXPECT_TRUE(waitFor([&] { return !isOffered(); })) << "it was taken";
+
+  // Lost in its first second: cut from the picture in which it was selected.
+  nodes_.change([](TrackerState& tracker, ControllerState&, OperatingState&) {
+    tracker.state = TrackerState::SEARCHING;
+    tracker.reason = "correlation 0.2; it was not held in its first second; 350,250,100,100 would do";
+    tracker.reference_stamp = ros::Time(5.0);
+    tracker.proposal.x_offset = 350;
+    tracker.proposal.y_offset = 250;
+    tracker.proposal.width = tracker.proposal.height = 100;
+  });
+  ASSERT_TRUE(waitFor(isOffered));
+  hands("key Return");
+  ASSERT_TRUE(waitFor([this] { return nodes_.frozenRegions().size() == 1; }));
+  EXPECT_EQ(nodes_.frozenRegions()[0].x_offset, 350u);
+}
+
 TEST_F(ScreenWindow, ARegionIsDrawnInAFrozenPicture) {
   click("freeze");
   const auto amber = [this] {
@@ -180,6 +209,9 @@ TEST_F(ScreenWindow, ACameraThatDiesIsSeen) {
 TEST_F(ScreenWindow, StopsByItsButtonAndByKeysFromAnyFocus) {
   click("stop");
   EXPECT_TRUE(isStopped(1)) << nodes_.robot_stops << nodes_.controller_stops << nodes_.disables << nodes_.disengages;
+  const auto answer = [this] { return find<QLabel>("answer").text().toStdString(); };
+  EXPECT_TRUE(waitFor([&] { return answer() == "STOP: done. The arm is disabled. The controller is disengaged."; }))
+      << answer();
   hands("key Escape");
   EXPECT_TRUE(isStopped(2));
   const auto other = otherWindow();
