@@ -137,6 +137,7 @@ TEST_F(ScreenTracker, TimeThatJumpsBackAndIntrinsicsOfZeroDoNoHarm) {
 }
 
 TEST_F(ScreenTracker, StopSaysThatThereIsNoArm) {
+  ASSERT_TRUE(waitFor([this] { return word("Tracker") == "NO IMAGE"; })) << "there is a master";
   hands("key Escape");
   EXPECT_TRUE(waitFor([this] {
     return answer() == "STOP: done. There is no arm and no controller here: nothing had to be stopped.";
