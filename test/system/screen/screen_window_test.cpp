@@ -161,7 +161,7 @@ TEST_F(ScreenWindow, ARegionThatTheTrackerOffersIsTakenByAClickInIt) {
     tracker.proposal.y_offset = 250;
     tracker.proposal.width = tracker.proposal.height = 100;
   });
-  ASSERT_TRUE(takes("key Return", [this] { return nodes_.frozenRegions().size() == 1; }));
+  ASSERT_TRUE(takes("click 1", [this] { return nodes_.frozenRegions().size() == 1; }));
   EXPECT_EQ(nodes_.frozenRegions()[0].x_offset, 350u);
 }
 
