@@ -20,7 +20,7 @@ namespace {
 constexpr int kBeat = 50;            // ms
 constexpr double kMinuteBeat = 0.5;  // s between two updates of the last minute
 constexpr int kColumnWidth = 410;    // px
-constexpr int kAnswerHeight = 58;    // px, three lines
+constexpr int kAnswerHeight = 40;    // px
 
 const char* const kStyle = R"(
   laparoscope_servo--screen--ScreenWidget { background: #10131a; }
