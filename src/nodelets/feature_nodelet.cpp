@@ -34,6 +34,7 @@ void FeatureNodelet::start() {
   ros::NodeHandle& private_node = getPrivateNodeHandle();
   features_publisher_ = private_node.advertise<TrackedFeatures>("features", 10);
   overlay_publisher_ = private_node.advertise<sensor_msgs::Image>("overlay", 2);
+  preview_publisher_ = private_node.advertise<sensor_msgs::Image>("preview", 2);
   if (session_->givesMask()) mask_publisher_ = private_node.advertise<sensor_msgs::Image>("mask", 2);
   if (session_->givesPoses()) poses_ = std::make_unique<PosePublisher>(private_node, input_.publish_tf);
   if (input_.robot_motion.enabled) session_->setCameraMotion(followRobot(input_.robot_motion));
@@ -71,12 +72,14 @@ void FeatureNodelet::process(const sensor_msgs::ImageConstPtr& message) {
 
 void FeatureNodelet::publish(const ProcessedFeatures& processed) {
   if (features_publisher_.getNumSubscribers() > 0) {
-    features_publisher_.publish(
-        boost::make_shared<TrackedFeatures>(featuresMessage(processed.header, processed.result)));
+    features_publisher_.publish(boost::make_shared<TrackedFeatures>(
+        featuresMessage(processed.header, processed.image.size(), processed.result)));
   }
   if (poses_) poses_->publish(processed.header, processed.result);
   if (mask_publisher_ && mask_publisher_.getNumSubscribers() > 0)
     mask_publisher_.publish(imageMessage(processed.header, session_->mask()));
+  if (preview_publisher_.getNumSubscribers() > 0 && preview_.due(steadyNow()))
+    preview_publisher_.publish(imageMessage(processed.header, preview_.of(processed.image, nullptr)));
   if (overlay_publisher_.getNumSubscribers() > 0) {
     overlay_publisher_.publish(
         imageMessage(processed.header, drawFeatures(processed.image, processed.result, session_->mask())));

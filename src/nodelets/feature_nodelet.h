@@ -16,6 +16,7 @@
 #include "ros/features/feature_session.h"
 #include "ros/features/pose_publisher.h"
 #include "ros/tracker/feed_statistics.h"
+#include "ros/tracker/preview.h"
 
 namespace laparoscope_servo::nodelets {
 
@@ -59,6 +60,8 @@ class FeatureNodelet : public ImageNodelet {
   std::unique_ptr<ServiceThread> request_thread_;
   ros::Publisher features_publisher_;
   ros::Publisher overlay_publisher_;
+  ros::Publisher preview_publisher_;  // for a screen where no region tracker runs
+  Preview preview_;
   ros::Publisher mask_publisher_;         // where the tracker has one
   std::unique_ptr<PosePublisher> poses_;  // where the tracker may have some
   ros::ServiceServer reset_server_;

@@ -137,7 +137,7 @@ void Tracker::process(const sensor_msgs::ImageConstPtr& message) {
     const std::string error = session_->recall(*route);
     guard.set({error.empty(), error});
   } else if (questionOf<WantSnapshot>(guard) != nullptr) {
-    guard.set({true, "", std::make_shared<const Snapshot>(session_->snapshot(processed))});
+    guard.set({true, "", std::make_shared<const Snapshot>(session_->snapshot(processed)), session_->reference()});
   }
   if (!processed.selection_error.empty()) {
     NODELET_ERROR_THROTTLE(kThrottle, "the ROI could not be selected: %s", processed.selection_error.c_str());

@@ -61,6 +61,10 @@ class Tracker : public ImageNodelet {
   bool recallView(StoredView::Request& request, StoredView::Response& response);
   bool listViews(ListViews::Request& request, ListViews::Response& response);
   TrackerRequest::Answer ask(const TrackerRequest::Question& question);
+  TrackerRequest::Answer askSnapshot();  // throws std::runtime_error if no image comes
+  // The picture with this stamp in which a region is drawn: the frozen one, or the one in which the present region was
+  // selected. Throws std::invalid_argument if it is neither. `now`: answer of askSnapshot.
+  std::shared_ptr<const Snapshot> pictureOf(const ros::Time& stamp, const TrackerRequest::Answer& now) const;
 
   std::unique_ptr<MaskInput> masks_;  // only with external_mask
   ros::Subscriber mask_subscriber_;

@@ -4,21 +4,13 @@
 #include <stdexcept>
 
 #include "nodelets/tracker.h"
+#include "ros/common/clocks.h"
 #include "ros/tracker/region_proposal.h"
 #include "ros/tracker/result_messages.h"
 
 namespace laparoscope_servo::nodelets {
 
 namespace {
-
-sensor_msgs::RegionOfInterest roiMessage(const geometry::Rectangle& roi) {
-  sensor_msgs::RegionOfInterest message;
-  message.x_offset = static_cast<std::uint32_t>(roi.x);
-  message.y_offset = static_cast<std::uint32_t>(roi.y);
-  message.width = static_cast<std::uint32_t>(roi.width);
-  message.height = static_cast<std::uint32_t>(roi.height);
-  return message;
-}
 
 geometry::Rectangle rectangleOf(const sensor_msgs::RegionOfInterest& roi) {
   return {static_cast<double>(roi.x_offset), static_cast<double>(roi.y_offset), static_cast<double>(roi.width),
@@ -44,25 +36,30 @@ bool Tracker::selectRoi(SelectRoi::Request& request, SelectRoi::Response& respon
 bool Tracker::checkRoi(CheckRoi::Request& request, CheckRoi::Response& response) {
   response.success = static_cast<std::uint8_t>(false);
   const geometry::Rectangle roi = rectangleOf(request.roi);
-  std::shared_ptr<const Snapshot> live;
-  const Snapshot* snapshot = nullptr;
+  std::shared_ptr<const Snapshot> picture;
   try {
-    if (request.stamp.isZero()) {
-      const TrackerRequest::Answer answer = ask(WantSnapshot());
-      live = answer.snapshot;
-      if (!live) throw std::runtime_error(answer.message);
-    }
-    snapshot = live ? live.get() : &desk_->kept(request.stamp);
-    desk_->check(*snapshot, roi);
+    const bool frozen = desk_->holds(request.stamp);  // then no image has to come
+    const TrackerRequest::Answer now = frozen ? TrackerRequest::Answer() : askSnapshot();
+    picture = request.stamp.isZero() ? now.snapshot : pictureOf(request.stamp, now);
+    desk_->check(*picture, roi);
     response.success = static_cast<std::uint8_t>(true);
   } catch (const std::exception& error) {
-    response.message = error.what();
-    const auto proposal = snapshot != nullptr ? desk_->propose(*snapshot, roi) : std::nullopt;
-    response.message += proposalText(proposal);
-    // Rectified pixels may be negative, which the message cannot say.
-    if (proposal && proposal->x >= 0.0 && proposal->y >= 0.0) response.proposal = roiMessage(*proposal);
+    const auto proposal = picture ? desk_->propose(*picture, roi) : std::nullopt;
+    response.message = error.what() + proposalText(proposal);
+    response.proposal = proposalMessage(proposal);
   }
   return true;
+}
+
+TrackerRequest::Answer Tracker::askSnapshot() {
+  TrackerRequest::Answer answer = ask(WantSnapshot());
+  if (!answer.snapshot) throw std::runtime_error(answer.message);
+  return answer;
+}
+
+std::shared_ptr<const Snapshot> Tracker::pictureOf(const ros::Time& stamp, const TrackerRequest::Answer& now) const {
+  const bool selected = now.reference && now.reference->stamp == stamp;
+  return selected && !desk_->holds(stamp) ? now.reference : desk_->kept(stamp, steadyNow());
 }
 
 bool Tracker::freezeImage(FreezeImage::Request&, FreezeImage::Response& response) {
@@ -70,7 +67,7 @@ bool Tracker::freezeImage(FreezeImage::Request&, FreezeImage::Response& response
   response.success = static_cast<std::uint8_t>(answer.snapshot != nullptr);
   response.message = answer.message;
   if (!answer.snapshot) return true;
-  desk_->keep(answer.snapshot);
+  desk_->keep(answer.snapshot, steadyNow());
   std_msgs::Header header;
   header.stamp = answer.snapshot->stamp;
   response.preview = *imageMessage(header, desk_->preview());
@@ -82,9 +79,10 @@ bool Tracker::freezeImage(FreezeImage::Request&, FreezeImage::Response& response
 bool Tracker::selectFrozenRoi(CheckRoi::Request& request, CheckRoi::Response& response) {
   response.success = static_cast<std::uint8_t>(false);
   try {
-    TrackerRequest::Answer answer = ask(WantSnapshot());
-    if (!answer.snapshot) throw std::runtime_error(answer.message);
-    answer = ask(desk_->route(request.stamp, rectangleOf(request.roi), *answer.snapshot));
+    if (request.stamp.isZero()) throw std::invalid_argument("stamp is 0, expected that of the picture");
+    const TrackerRequest::Answer now = askSnapshot();
+    const std::shared_ptr<const Snapshot> before = pictureOf(request.stamp, now);
+    const TrackerRequest::Answer answer = ask(desk_->route(*before, rectangleOf(request.roi), *now.snapshot));
     response.success = static_cast<std::uint8_t>(answer.success);
     response.message = answer.message;
   } catch (const std::exception& error) {

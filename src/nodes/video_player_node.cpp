@@ -1,4 +1,6 @@
 // Node `video_player`: see ros/playback/video_player.h.
+#include <filesystem>
+
 #include "nodes/configured_node.h"
 #include "ros/playback/video_player.h"
 
@@ -6,6 +8,7 @@ using namespace laparoscope_servo;
 
 int main(int argc, char** argv) {
   const auto run = [](ros::NodeHandle& node, ros::NodeHandle&, VideoPlayerConfig& config) {
+    if (!config.folder.empty()) std::filesystem::current_path(config.folder);
     VideoPlayer player(node, config);
     player.run();
     // Publishing is asynchronous: the last images must be sent before the connections close.

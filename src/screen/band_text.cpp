@@ -56,15 +56,19 @@ std::string percent(double share) {
   return std::isfinite(share) ? std::to_string(std::lround(100.0 * share)) + " %" : "?";
 }
 
-// No camera has failed where a recording stands.
-void explainRecording(BandText& band, const std::string& playback) {
-  if (playback == "ENDED") {
-    band.sentence = "The recording has ended.";
-    band.cure = "\"Again\" plays it once more.";
-  } else if (playback == "PAUSED" || playback == "HOLDING") {
-    band.sentence = "The recording stands.";
-    band.cure = "Draw a region, or play on.";
-  }
+// No camera has failed where a recording does not play. Empty while it plays, and without one.
+BandText standingRecording(const PlaybackFacts& playback) {
+  if (!playback.connected) return {};
+  if (playback.state == "ENDED")
+    return {"ENDED", "The recording has ended.", "Press \"Again\", or take the slider below the picture to a place.",
+            "", Level::kResting};
+  if (playback.state == "HOLDING")
+    return {"HOLDS", "The recording holds its first picture.", "Draw a region in it, or press \"Play\".", "",
+            Level::kResting};
+  if (playback.state == "PAUSED")
+    return {"PAUSED", "The recording is paused.", "Press \"Play\" or \"Step\".", "", Level::kResting};
+  if (playback.state == "WAITING") return {"WAITING", "The recording has not begun yet.", "Wait.", "", Level::kResting};
+  return {};
 }
 
 // Of the feature that is known worst.
@@ -96,7 +100,11 @@ BandText trackerBand(const Facts& facts, double now) {
   for (char& letter : band.word) letter = letter == '_' ? ' ' : letter;
   explainTo(band, Speaker::kTracker, tracker.reason);
   band.level = Level::kBad;
-  if (tracker.state == "NO_IMAGE" && facts.playback.connected) explainRecording(band, facts.playback.state);
+  if (tracker.state == "NO_IMAGE" && tracker.reason.find("image refused: ") == std::string::npos) {
+    BandText recording = standingRecording(facts.playback);
+    recording.detail = tracker.reason;
+    if (!recording.word.empty()) return recording;
+  }
   if (tracker.state == "IDLE") band.level = Level::kResting;
   if (tracker.state == "SEARCHING") band.level = Level::kWaiting;
   if (tracker.state == "TRACKING") {
@@ -114,6 +122,7 @@ BandText trackerBand(const Facts& facts, double now) {
 BandText featureBand(const Facts& facts, const FeatureTrackerFacts& tracker, double now) {
   BandText band = absence(facts, "tracker " + tracker.name, tracker.connected, tracker.heard_at, kTrackerSilence, now);
   if (band.word == "SILENT") {
+    if (const BandText recording = standingRecording(facts.playback); !recording.word.empty()) return recording;
     band.sentence = "It has said nothing for " + std::to_string(std::lround(now - tracker.heard_at)) + " s.";
     band.cure = "Does the camera send? If so, look at the tracker's terminal.";
   }

@@ -7,6 +7,7 @@
 
 #include "screen/features/feature_result.h"
 #include "screen/preview_image.h"
+#include "screen/region_message.h"
 
 namespace laparoscope_servo::screen {
 
@@ -55,12 +56,24 @@ std::optional<Value> at(const std::deque<Value>& values, std::int64_t stamp) {
 }  // namespace
 
 void FactKeeper::take(const sensor_msgs::Image& preview, double age, double now) {
+  show(
+      preview, [] { return QSize(); }, age, now);
+}
+
+void FactKeeper::take(const std::string& tracker, const sensor_msgs::Image& preview, double age, double now) {
+  show(
+      preview, [&] { return features_.imageOf(tracker); }, age, now);
+}
+
+void FactKeeper::show(const sensor_msgs::Image& preview, const std::function<QSize()>& original, double age,
+                      double now) {
   const QImage image = previewImage(preview);
   if (image.isNull()) return;  // the last picture stays, and its age grows
   const std::lock_guard<std::mutex> lock(mutex_);
   Picture& picture = facts_.picture;
   if (picture.image.isNull() || !samePicture(picture.image, image)) picture.changed_at = now;
   picture.image = image;
+  picture.original = original();
   picture.stamp = nanoseconds(preview.header.stamp);
   picture.arrived_at = now;
   picture.age_at_arrival = std::isfinite(age) ? age : 0.0;
@@ -131,6 +144,7 @@ void FactKeeper::take(const TrackerState& state, double now) {
   tracker.height = sane ? static_cast<int>(state.height) : 0;
   tracker.reference_stamp = nanoseconds(state.reference_stamp);
   std::copy(state.region.begin(), state.region.end(), tracker.region.begin());
+  tracker.proposal = pixelsOf(state.proposal);
 }
 
 void FactKeeper::take(const ControllerState& state) {

@@ -26,6 +26,8 @@ class FactKeeper {
  public:
   // `age`: s, of the image by its stamp on arrival; 0 if the clocks cannot be compared.
   void take(const sensor_msgs::Image& preview, double age, double now);
+  // As above, of a tracker of features, where no region tracker runs.
+  void take(const std::string& tracker, const sensor_msgs::Image& preview, double age, double now);
   // `delay`: s, since the image's stamp; NaN if the clocks cannot be compared.
   void take(const Homography& homography, double delay, double now);
   // Of the replay of a recorded case: what was said then.
@@ -46,6 +48,7 @@ class FactKeeper {
 
  private:
   void match();
+  void show(const sensor_msgs::Image& preview, const std::function<QSize()>& original, double age, double now);
 
   mutable std::mutex mutex_;
   Facts facts_;

@@ -29,6 +29,7 @@ struct TrackerFacts {
   int height = 0;
   std::int64_t reference_stamp = 0;
   std::array<double, 8> region{};  // px, in the reference image
+  QRect proposal;                  // px, in the reference image: would do instead of the region; empty: none
 };
 
 struct ControllerFacts {
@@ -72,6 +73,7 @@ struct Picture {
   double arrived_at = kNever;
   double changed_at = kNever;   // when a picture came that differs from the last one
   double age_at_arrival = 0.0;  // s, by its stamp
+  QSize original;               // px, of its image; empty: as the region's tracker says
 };
 
 // The tracker's answer about a region before it is selected.
@@ -81,6 +83,23 @@ struct Verdict {
   bool taken = false;      // it would be accepted
   std::string why;         // why not
   QRect proposal = {};     // px, a region that would be accepted; empty if none is known
+};
+
+// A region that was drawn, and that the tracker was asked to select.
+struct Drawn {
+  QRect region;            // px of the original image
+  std::int64_t stamp = 0;  // as of Verdict
+};
+
+// A region that the tracker names in place of one that was refused or could not be held.
+struct Offer {
+  QRect region;            // px of the image with this stamp
+  std::int64_t stamp = 0;  // 0: the live one
+  bool not_held = false;   // the selected region was lost; otherwise one was refused
+
+  bool operator==(const Offer& other) const {
+    return region == other.region && stamp == other.stamp && not_held == other.not_held;
+  }
 };
 
 // A picture kept by the tracker, in which a region is drawn.
@@ -119,12 +138,12 @@ struct LiveParameter {
   double high = 0.0;
 };
 
-// State of a service call.
+// State of a service call, or of STOP.
+enum class Outcome { kWaiting, kDone, kRefused, kUnanswered };
 struct Answer {
   std::string what;  // e.g. "Engage"
   std::string text;
-  bool success = false;
-  bool waiting = false;  // called, not answered yet
+  Outcome outcome = Outcome::kWaiting;
 };
 
 // rad/s, m/s: velocities at the ends of the sliders.
@@ -144,6 +163,7 @@ struct Facts {
   std::optional<Limits> limits;    // pan, tilt, spin, insertion
   PlaybackFacts playback;
   std::optional<Verdict> verdict;
+  std::optional<Drawn> drawn;  // the newest one, until a region is taken
   std::optional<Frozen> frozen;
   std::shared_ptr<const std::vector<StoredView>> views;          // null: not known
   std::shared_ptr<const std::vector<LiveParameter>> parameters;  // null: not known

@@ -4,9 +4,11 @@
 #include <QMouseEvent>
 #include <QPainter>
 #include <algorithm>
+#include <cmath>
 
 #include "screen/features/feature_painter.h"
 #include "screen/overlay_painter.h"
+#include "screen/region_offer.h"
 #include "screen/region_painter.h"
 
 namespace laparoscope_servo::screen {
@@ -28,8 +30,11 @@ void drawWords(QPainter& painter, const QRectF& area, const QString& words, cons
   painter.setPen(Qt::white);
   painter.setFont(font);
   painter.drawText(box.adjusted(0, 4, 0, -40), Qt::AlignCenter, words);
-  font.setPixelSize(20);
   font.setStretch(100);
+  for (int size = 20; size >= 12; --size) {  // as large as it fits
+    font.setPixelSize(size);
+    if (QFontMetrics(font).horizontalAdvance(detail) <= area.width() - 20) break;
+  }
   painter.setFont(font);
   painter.drawText(box.adjusted(0, 68, 0, -4), Qt::AlignCenter, detail);
 }
@@ -40,6 +45,30 @@ bool sameFeatures(const std::vector<FeatureTrackerFacts>& a, const std::vector<F
                     [](const FeatureTrackerFacts& x, const FeatureTrackerFacts& y) {
                       return x.name == y.name && x.drawn == y.drawn;
                     });
+}
+
+bool sameResults(const Facts& a, const Facts& b) {
+  return a.result.has_value() == b.result.has_value() && a.areas.has_value() == b.areas.has_value() &&
+         a.recorded.has_value() == b.recorded.has_value();
+}
+
+std::int64_t stampOf(const std::optional<Frozen>& frozen) {
+  return frozen ? frozen->stamp : 0;
+}
+
+long secondsFrozen(const Facts& facts, double now) {
+  return facts.frozen ? std::lround(now - facts.frozen->at) : -1;
+}
+
+bool sameVerdict(const std::optional<Verdict>& a, const std::optional<Verdict>& b) {
+  if (!a || !b) return a.has_value() == b.has_value();
+  return a->region == b->region && a->stamp == b->stamp && a->taken == b->taken && a->why == b->why &&
+         a->proposal == b->proposal;
+}
+
+// What is drawn of the region that the user draws, or is offered.
+bool sameDrawing(const Facts& a, const Facts& b) {
+  return stampOf(a.frozen) == stampOf(b.frozen) && sameVerdict(a.verdict, b.verdict) && offerOf(a) == offerOf(b);
 }
 
 }  // namespace
@@ -55,17 +84,13 @@ ImageView::ImageView(const Region& drawn, const Region& changed, QWidget* parent
 // Repaints only if something has changed, since painting takes most of the screen's CPU time.
 void ImageView::show(const Facts& facts, double now) {
   const PictureWords words = pictureWords(facts.picture, now, facts.playback.connected ? facts.playback.state : "");
-  const bool same =
-      facts.master == facts_.master && sameFeatures(facts.features, facts_.features) &&
-      facts.picture.arrived_at == facts_.picture.arrived_at && facts.result.has_value() == facts_.result.has_value() &&
-      facts.areas.has_value() == facts_.areas.has_value() &&
-      facts.recorded.has_value() == facts_.recorded.has_value() &&
-      facts.tracker.reference_stamp == facts_.tracker.reference_stamp && facts.tracker.width == facts_.tracker.width &&
-      facts.tracker.height == facts_.tracker.height && words.words == words_.words && words.detail == words_.detail &&
-      facts.frozen.has_value() == facts_.frozen.has_value() &&
-      facts.verdict.has_value() == facts_.verdict.has_value() &&
-      (!facts.verdict || facts.verdict->region == facts_.verdict->region);
-  if (facts.frozen.has_value() != facts_.frozen.has_value()) cancelDrag();
+  const bool same = facts.master == facts_.master && sameFeatures(facts.features, facts_.features) &&
+                    facts.picture.arrived_at == facts_.picture.arrived_at && sameResults(facts, facts_) &&
+                    facts.tracker.reference_stamp == facts_.tracker.reference_stamp &&
+                    facts.tracker.width == facts_.tracker.width && facts.tracker.height == facts_.tracker.height &&
+                    words.words == words_.words && words.detail == words_.detail && sameDrawing(facts, facts_) &&
+                    secondsFrozen(facts, now) == secondsFrozen(facts_, now_);
+  if (stampOf(facts.frozen) != stampOf(facts_.frozen)) cancelDrag();
   facts_ = facts;
   words_ = words;
   now_ = now;
@@ -83,9 +108,11 @@ void ImageView::cancelDrag() {
   update();
 }
 
-// On an outdated live picture no region can be drawn, since it would be cut from an image with another content or size.
+// On an outdated live picture no region can be drawn, since it would be cut from an image with another content or size;
+// nor on the picture of a tracker of features, since no region tracker runs.
 bool ImageView::canDraw() const {
-  return letterbox().isValid() && (facts_.frozen || (words_.live && facts_.tracker.width > 0));
+  const bool regions = facts_.tracker.width > 0 && facts_.picture.original.isEmpty();
+  return letterbox().isValid() && (facts_.frozen || (words_.live && regions));
 }
 
 std::optional<QRectF> ImageView::present() const {
@@ -96,6 +123,17 @@ std::optional<QRectF> ImageView::present() const {
 std::optional<QRect> ImageView::shown() const {
   const std::optional<QRectF> drag = drag_.shown();
   return drag ? std::optional<QRect>(letterbox().pixelsOf(*drag)) : draft_;
+}
+
+std::optional<Offer> ImageView::offer() const {
+  if (!canDraw() || !offer_taken_ || drag_.isActive() || draft_) return std::nullopt;
+  const std::optional<Offer> offered = offerOf(facts_);
+  return offered == given_up_ ? std::nullopt : offered;
+}
+
+bool ImageView::isOffered(const QPointF& at) const {
+  const std::optional<Offer> offered = offer();
+  return offered && letterbox().fromPixels(offered->region).contains(at);
 }
 
 void ImageView::tellChange() {
@@ -111,9 +149,10 @@ void ImageView::give(const QRect& pixels) {
   if (!pixels.isEmpty()) drawn_(pixels);
 }
 
-// Letterbox of the original image, whose size the tracker publishes; until then of the preview.
+// Letterbox of the original image, whose size the trackers publish; until then of the preview.
 Letterbox ImageView::letterbox() const {
   if (facts_.frozen) return {facts_.frozen->size, QRectF(rect())};
+  if (!facts_.picture.original.isEmpty()) return {facts_.picture.original, QRectF(rect())};
   const bool known = facts_.tracker.width > 0 && facts_.tracker.height > 0;
   const QSize size = known ? QSize(facts_.tracker.width, facts_.tracker.height) : facts_.picture.image.size();
   return {size, QRectF(rect())};
@@ -164,7 +203,7 @@ void ImageView::paintEvent(QPaintEvent*) {
   } else {
     if (box.isValid()) drawPicture(painter, area);
     if (words_.live) drawOverlay(painter, facts_, box);
-    if (words_.live && draws_features_) screen::drawFeatures(painter, facts_, box);
+    if (words_.live && draws_features_) screen::drawFeatures(painter, facts_, box, mouse_);
     if (facts_.master) drawLegend(painter, rect(), facts_.recorded.has_value());
     if (facts_.master && draws_features_ && !facts_.features.empty()) drawFeatureLegend(painter, rect());
   }
@@ -174,12 +213,17 @@ void ImageView::paintEvent(QPaintEvent*) {
     if (told && !facts_.verdict->proposal.isEmpty()) drawProposal(painter, box.fromPixels(facts_.verdict->proposal));
     drawRegion(painter, box.fromPixels(*pixels), *pixels, told ? &*facts_.verdict : nullptr, draft_ == pixels, rect());
   }
+  if (const std::optional<Offer> offered = offer())
+    drawOffer(painter, box.fromPixels(offered->region), *offered, rect());
   if (!words_.live && !facts_.frozen)
     drawWords(painter, area, QString::fromStdString(words_.words), QString::fromStdString(words_.detail));
 }
 
 void ImageView::mousePressEvent(QMouseEvent* event) {
-  if (event->button() != Qt::LeftButton) return cancelDrag();
+  if (event->button() != Qt::LeftButton) {
+    if (const std::optional<Offer> offered = offer()) given_up_ = offered;
+    return cancelDrag();
+  }
   const Letterbox box = letterbox();
   if (!canDraw()) return;
   asked_ = {};
@@ -187,6 +231,7 @@ void ImageView::mousePressEvent(QMouseEvent* event) {
 }
 
 void ImageView::showCursor(const QPointF& at, bool anew) {
+  if (isOffered(at)) return setCursor(Qt::PointingHandCursor);
   switch (RegionDrag::kindAt(at, present(), anew)) {
     case RegionDrag::Kind::kMove:
       return setCursor(Qt::SizeAllCursor);
@@ -198,6 +243,8 @@ void ImageView::showCursor(const QPointF& at, bool anew) {
 }
 
 void ImageView::mouseMoveEvent(QMouseEvent* event) {
+  mouse_ = event->localPos();
+  if (draws_features_ && !facts_.features.empty()) update();  // the name of the feature there
   if (!drag_.isActive()) return showCursor(event->localPos(), (event->modifiers() & Qt::ShiftModifier) != 0);
   if (!(event->buttons() & Qt::LeftButton)) return cancelDrag();  // the release event was lost
   drag_.move(event->localPos());
@@ -208,7 +255,10 @@ void ImageView::mouseReleaseEvent(QMouseEvent* event) {
   if (event->button() != Qt::LeftButton || !drag_.isActive()) return;
   const std::optional<QRectF> region = drag_.release(event->localPos());
   update();
-  if (!region) return;
+  if (!region) {
+    if (isOffered(event->localPos())) offer_taken_(*offer());
+    return;
+  }
   if (!keeps_drafts_) return give(letterbox().pixelsOf(*region));
   const QRect pixels = letterbox().pixelsOf(*region);
   if (pixels.isEmpty()) return;
@@ -216,9 +266,12 @@ void ImageView::mouseReleaseEvent(QMouseEvent* event) {
   tellChange();
 }
 
-// Arrows move the region by one pixel, with Shift by ten; Return sends it to the tracker.
+// Arrows move the region by one pixel, with Shift by ten; Return sends it, or takes the one that is offered.
 void ImageView::keyPressEvent(QKeyEvent* event) {
-  if ((event->key() == Qt::Key_Return || event->key() == Qt::Key_Enter) && draft_) return give(QRect(*draft_));
+  if (event->key() == Qt::Key_Return || event->key() == Qt::Key_Enter) {
+    if (draft_) return give(QRect(*draft_));
+    if (const std::optional<Offer> offered = offer()) return offer_taken_(*offered);
+  }
   const int step = (event->modifiers() & Qt::ShiftModifier) != 0 ? 10 : 1;
   QPoint by;
   if (event->key() == Qt::Key_Left) by = {-step, 0};
@@ -234,6 +287,11 @@ void ImageView::keyPressEvent(QKeyEvent* event) {
   moved.moveTop(std::clamp(moved.top(), 0, std::max(0, image.height() - moved.height())));
   draft_ = moved;
   tellChange();
+}
+
+void ImageView::leaveEvent(QEvent*) {
+  mouse_.reset();
+  update();
 }
 
 void ImageView::hideEvent(QHideEvent*) {

@@ -23,6 +23,8 @@ class ImageView : public QWidget {
   // Whether the features of other trackers are drawn, with their legend.
   void drawFeatures(bool draw);
   void cancelDrag();
+  // `taken`: called when a region that the tracker offers is taken, by a click in it or by Return.
+  void takeOffers(const std::function<void(const Offer&)>& taken) { offer_taken_ = taken; }
   // What was drawn stays, to be moved, until Return gives it.
   void keepDrafts() { keeps_drafts_ = true; }
   QSize sizeHint() const override { return {640, 480}; }
@@ -35,9 +37,12 @@ class ImageView : public QWidget {
   void mouseReleaseEvent(QMouseEvent* event) override;
   void keyPressEvent(QKeyEvent* event) override;
   void hideEvent(QHideEvent* event) override;
+  void leaveEvent(QEvent* event) override;
   bool canDraw() const;
   std::optional<QRectF> present() const;  // the region that can be moved
   std::optional<QRect> shown() const;     // the region being drawn, px of the original image
+  std::optional<Offer> offer() const;     // the region that is offered, while none is being drawn
+  bool isOffered(const QPointF& at) const;
   void tellChange();
   void give(const QRect& pixels);
   Letterbox letterbox() const;
@@ -47,6 +52,8 @@ class ImageView : public QWidget {
 
   Region drawn_;
   Region changed_;
+  std::function<void(const Offer&)> offer_taken_;
+  std::optional<Offer> given_up_;  // by the right button
   Facts facts_;
   double now_ = 0.0;
   PictureWords words_;
@@ -54,6 +61,7 @@ class ImageView : public QWidget {
   std::optional<QRect> draft_;  // region moved by keys, not sent yet
   bool keeps_drafts_ = false;
   bool draws_features_ = true;
+  std::optional<QPointF> mouse_;  // while it is over the picture
   QRect asked_;
 };
 

@@ -127,23 +127,24 @@ void ParameterLink::publish() {
 void ParameterLink::set(const LiveParameter& parameter, const std::string& text) {
   const std::string what = parameter.name + " = " + text;
   const std::optional<dynamic_reconfigure::Config> config = requestOf(parameter, text);
-  if (!config) return told_({what, "'" + text + "' is no value; expected " + parameter.meaning, false, false});
+  if (!config) return told_({what, "'" + text + "' is no value; expected " + parameter.meaning, Outcome::kRefused});
   std::string service;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     service = nodes_[parameter.node].service;
   }
   refusals_->take(parameter.node);
-  told_({what, "", false, true});
+  told_({what, "", Outcome::kWaiting});
   calls_.ask([this, what, config, service, refusals = refusals_, node = parameter.node]() -> std::function<void()> {
     dynamic_reconfigure::Reconfigure call;
     call.request.config = *config;
-    Answer answer{what, "", ros::service::call(service, call), false};
-    for (int look = 0; look < kLooks && !answer.success && answer.text.empty(); ++look) {
+    const bool done = ros::service::call(service, call);
+    Answer answer{what, "", done ? Outcome::kDone : Outcome::kRefused};
+    for (int look = 0; look < kLooks && !done && answer.text.empty(); ++look) {
       std::this_thread::sleep_for(kLookPause);
       answer.text = refusals->take(node);
     }
-    if (!answer.success && answer.text.empty()) answer.text = "the " + node + " does not say why";
+    if (!done && answer.text.empty()) answer.text = "the " + node + " does not say why";
     return [this, answer] { told_(answer); };
   });
 }

@@ -20,6 +20,36 @@ void drawCross(QPainter& painter, const QPointF& at) {
   painter.drawLine(at + QPointF(-6, 6), at + QPointF(6, -6));
 }
 
+enum class Mark { kNone, kTick, kCross };
+
+// Above the outline, or below it, within `canvas`: white in a dark box, as wide as the words need and the canvas
+// allows.
+void drawLabel(QPainter& painter, const QRectF& outline, const QRectF& canvas, const QString& text, Mark mark,
+               const QColor& colour) {
+  QFont font = painter.font();
+  font.setPixelSize(15);
+  font.setBold(true);
+  painter.setFont(font);
+  constexpr double kSides = 14.0, kMark = 26.0, kLine = 20.0, kSpare = 4.0;
+  const double left_of_text = mark == Mark::kNone ? 8.0 : kMark;
+  const double room = std::max(80.0, canvas.width() - left_of_text - kSides);
+  const QRectF wrapped = QFontMetricsF(font).boundingRect(QRectF(0, 0, room, 1e4), Qt::TextWordWrap, text);
+  const double width = std::min(wrapped.width() + left_of_text + kSides, canvas.width());
+  const double height = std::max(kLine, wrapped.height()) + kSpare;
+  const double left = std::clamp(outline.left(), canvas.left(), std::max(canvas.left(), canvas.right() - width));
+  const double above = outline.top() - height - 4.0;
+  const double top = above >= canvas.top() ? above : std::min(outline.bottom() + 4.0, canvas.bottom() - height);
+  const QRectF label(left, top, width, height);
+  painter.fillRect(label, QColor(0, 0, 0, 200));
+  painter.setPen(QPen(colour, 3, Qt::SolidLine, Qt::RoundCap));
+  painter.setBrush(Qt::NoBrush);
+  const QPointF at(label.left() + 14, label.center().y());
+  if (mark == Mark::kTick) drawTick(painter, at);
+  if (mark == Mark::kCross) drawCross(painter, at);
+  painter.setPen(Qt::white);
+  painter.drawText(label.adjusted(left_of_text, 0, -4, 0), Qt::AlignLeft | Qt::AlignVCenter | Qt::TextWordWrap, text);
+}
+
 }  // namespace
 
 QString wordsOf(const Verdict& verdict) {
@@ -50,27 +80,25 @@ void drawRegion(QPainter& painter, const QRectF& outline, const QRect& pixels, c
   const QColor colour = verdict == nullptr ? QColor(Qt::white) : refused ? kRefused : kTaken;
   painter.setPen(QPen(colour, 2, refused ? Qt::DashLine : Qt::SolidLine));
   painter.drawRect(outline);
-  QFont font = painter.font();
-  font.setPixelSize(15);
-  font.setBold(true);
-  painter.setFont(font);
   QString text =
       QString("%1 x %2 px at %3, %4. ").arg(pixels.width()).arg(pixels.height()).arg(pixels.x()).arg(pixels.y());
   text += verdict == nullptr ? "The tracker is asked ..." : wordsOf(*verdict);
   if (by_keys) text += " Return selects it.";
-  constexpr double kHeight = 24.0, kMark = 26.0;
-  const double width = std::min(QFontMetricsF(font).horizontalAdvance(text) + kMark + 14.0, canvas.width());
-  const double left = std::clamp(outline.left(), canvas.left(), std::max(canvas.left(), canvas.right() - width));
-  const double above = outline.top() - kHeight - 4.0;
-  const double top = above >= canvas.top() ? above : std::min(outline.bottom() + 4.0, canvas.bottom() - kHeight);
-  const QRectF label(left, top, width, kHeight);
-  painter.fillRect(label, QColor(0, 0, 0, 200));
-  painter.setPen(QPen(colour, 3, Qt::SolidLine, Qt::RoundCap));
-  painter.setBrush(Qt::NoBrush);
-  const QPointF mark(label.left() + 14, label.center().y());
-  if (verdict != nullptr) refused ? drawCross(painter, mark) : drawTick(painter, mark);
-  painter.setPen(Qt::white);
-  painter.drawText(label.adjusted(kMark, 0, -4, 0), Qt::AlignLeft | Qt::AlignVCenter, text);
+  drawLabel(painter, outline, canvas, text,
+            verdict == nullptr ? Mark::kNone
+            : refused          ? Mark::kCross
+                               : Mark::kTick,
+            colour);
+  painter.restore();
+}
+
+void drawOffer(QPainter& painter, const QRectF& outline, const Offer& offer, const QRectF& canvas) {
+  painter.save();
+  drawProposal(painter, outline);
+  drawLabel(painter, outline, canvas,
+            QString(offer.not_held ? "The region could not be held. This one would do" : "This one would do") +
+                ": click in it, or press Return.",
+            Mark::kTick, kTaken);
   painter.restore();
 }
 

@@ -20,4 +20,7 @@ void drawRegion(QPainter& painter, const QRectF& outline, const QRect& pixels, c
 // One that the tracker would take instead, in the widget.
 void drawProposal(QPainter& painter, const QRectF& outline);
 
+// The same with words, to be taken by a click or a key. The text stays within `canvas`.
+void drawOffer(QPainter& painter, const QRectF& outline, const Offer& offer, const QRectF& canvas);
+
 }  // namespace laparoscope_servo::screen

@@ -102,8 +102,9 @@ void RosLink::renewed() {
   keeper_.change([](Facts& facts) { facts.limits.reset(); });
   bool recorded = false;
   ros::param::get("/use_sim_time", recorded);
-  if (recorded == ros::Time::isSimTime()) return take({"New ROS master", "It knows this screen again.", true, false});
-  take({"New ROS master", "Its time is another one (a recording's): start the screen anew.", false, false});
+  if (recorded == ros::Time::isSimTime())
+    return take({"New ROS master", "It knows this screen again.", Outcome::kDone});
+  take({"New ROS master", "Its time is another one (a recording's): start the screen anew.", Outcome::kRefused});
 }
 
 std::unique_ptr<RosLink::Connection> RosLink::connect() {
@@ -163,7 +164,9 @@ void RosLink::look(Connection& connection) {
     facts.playback.connected = playback;
   });
   if (connection.turns % kMasterTurns == 0) connection.features->find();
-  keeper_.setFeatureTrackers(connection.features->connected());
+  const FeatureLink::Connected features = connection.features->connected();
+  keeper_.setFeatureTrackers(features);
+  choosePicture(connection, tracker, features);
   ++connection.turns;
   if (tracker && connection.turns % kViewTurns == 1) tracker_.listViews();
   if (!tracker) keeper_.change([](Facts& facts) { facts.views.reset(), facts.frozen.reset(); });
@@ -179,20 +182,57 @@ void RosLink::look(Connection& connection) {
   keeper_.change([&](Facts& facts) { facts.limits = limits, facts.max_image_age = max_age; });
 }
 
+// That of the region tracker; where none runs, that of a tracker of features.
+void RosLink::choosePicture(Connection& connection, bool tracker, const FeatureLink::Connected& features) {
+  std::string wanted;
+  for (const auto& [name, connected] : features) {
+    if (!tracker && connected && wanted.empty()) wanted = name;
+  }
+  if (wanted == connection.features_shown) return;
+  connection.features_shown = wanted;
+  connection.features_preview.shutdown();
+  if (wanted.empty()) return;
+  connection.features_preview = listen<sensor_msgs::Image>(
+      connection.node, wanted + "/preview", 1, [this, wanted](const sensor_msgs::Image& image) {
+        keeper_.take(wanted, image, ageOf(image.header.stamp), steadyNow());
+        news_();
+      });
+}
+
 void RosLink::stop() {
   dead_man_.letGo();
   slider_.letGo();
   tracker_.thaw();
+  bool connected = false;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (!connection_) return;
-    connection_->robot_stop.publish(std_msgs::Empty());
-    connection_->controller_stop.publish(std_msgs::Empty());
-    connection_->sender->wake();
+    if (connection_) {
+      connection_->robot_stop.publish(std_msgs::Empty());
+      connection_->controller_stop.publish(std_msgs::Empty());
+      connection_->sender->wake();
+      connected = true;
+    }
   }
-  // Without the lock: the answer of another call may ask for it while calls_ waits for that answer.
-  engage(false, "STOP, disengage");
-  trigger("aesop/disable", "STOP, disable");
+  {
+    const std::lock_guard<std::mutex> lock(stop_mutex_);
+    stop_report_ = connected ? StopReport(keeper_.facts()) : StopReport();
+  }
+  if (!connected) return take(StopReport().answer());
+  // Without a lock: the answer of another call may ask for it while calls_ waits for that answer.
+  calls_.call(resolved("controller/engage"), "STOP", std_srvs::SetBool(), told(StopReport::Node::kController));
+  calls_.call(resolved("aesop/disable"), "STOP", std_srvs::Trigger(), told(StopReport::Node::kArm));
+}
+
+ServiceCalls::Told RosLink::told(StopReport::Node node) {
+  return [this, node](const Answer& answer) {
+    Answer whole;
+    {
+      const std::lock_guard<std::mutex> lock(stop_mutex_);
+      stop_report_.answered(node, answer);
+      whole = stop_report_.answer();
+    }
+    take(whole);
+  };
 }
 
 std::string RosLink::resolved(const std::string& name) const {
@@ -205,11 +245,11 @@ void RosLink::trigger(const std::string& service, const std::string& what) {
   if (!name.empty()) calls_.call(name, what, std_srvs::Trigger());
 }
 
-void RosLink::engage(bool on, const std::string& what) {
+void RosLink::engage(bool on) {
   std_srvs::SetBool request;
   request.request.data = static_cast<std::uint8_t>(on);
   const std::string name = resolved("controller/engage");
-  if (!name.empty()) calls_.call(name, what, request);
+  if (!name.empty()) calls_.call(name, on ? "Engage" : "Disengage", request);
 }
 
 void RosLink::selectTask(const std::string& task) {

@@ -24,6 +24,7 @@
 #include "screen/parameter_link.h"
 #include "screen/registration.h"
 #include "screen/service_calls.h"
+#include "screen/stop_report.h"
 #include "screen/tracker_link.h"
 
 namespace laparoscope_servo::screen {
@@ -52,7 +53,7 @@ class RosLink {
   void resume() { trigger("aesop/resume", "Resume"); }
   void clearFault() { trigger("aesop/clear_fault", "Clear fault"); }
   void clearRegion() { trigger("tracker/reset", "Clear region"); }
-  void engage(bool on) { engage(on, on ? "Engage" : "Disengage"); }
+  void engage(bool on);
   void selectTask(const std::string& task);
 
   HeldControl& deadMan() { return dead_man_; }
@@ -72,6 +73,8 @@ class RosLink {
     ros::Publisher robot_stop, controller_stop;
     ros::Subscriber preview, homography, recorded, areas, tracker_state, controller_state, command, operating_state,
         playback;
+    ros::Subscriber features_preview;
+    std::string features_shown;  // the tracker of features whose picture is shown; empty: the region tracker's is
     bool limits_wanted = true;
     unsigned turns = 0;
   };
@@ -79,10 +82,12 @@ class RosLink {
   void run();
   std::unique_ptr<Connection> connect();
   void look(Connection& connection);
+  void choosePicture(Connection& connection, bool tracker, const FeatureLink::Connected& features);
   void renewed();
   std::string resolved(const std::string& name) const;
   void trigger(const std::string& service, const std::string& what);
-  void engage(bool on, const std::string& what);
+  // Who takes what a node answers to STOP.
+  ServiceCalls::Told told(StopReport::Node node);
   void take(const Answer& answer);
 
   std::function<void()> news_;
@@ -96,6 +101,8 @@ class RosLink {
   ros::CallbackQueue queue_;
   mutable std::mutex mutex_;  // guards the pointer below; never held during a call to a master
   std::unique_ptr<Connection> connection_;
+  std::mutex stop_mutex_;
+  StopReport stop_report_;  // of the last STOP
   ParameterLink parameters_;
   ServiceCalls calls_;
   std::thread thread_;

@@ -44,6 +44,22 @@ const char* const kStyle = R"(
   QListWidget::item:selected, QTableWidget::item:selected { background: #1f5a86; color: white; }
 )";
 
+QString wordsOf(const Answer& answer) {
+  const QString what = QString::fromStdString(answer.what);
+  const QString text = QString::fromStdString(answer.text);
+  switch (answer.outcome) {
+    case Outcome::kWaiting:
+      return what + " ... " + text;
+    case Outcome::kDone:
+      return what + ": done. " + text;
+    case Outcome::kRefused:
+      return what + ": REFUSED. " + text;
+    case Outcome::kUnanswered:
+      break;
+  }
+  return what + ": NOT DONE. " + text;
+}
+
 std::string cartName(const std::string& space) {
   const std::string name = ros::names::append(ros::this_node::getNamespace(), space);
   return name == "/" || name == "//" ? "" : ros::names::clean(name);
@@ -64,7 +80,15 @@ ScreenWidget::ScreenWidget(QWidget* parent, const std::string& space) : QWidget(
       },
       space);
   image_ = new ImageView([this](const QRect& pixels) { select(pixels); },
-                         [this](const QRect& pixels) { link_->tracker().checkRegion(pixels); }, this);
+                         [this](const QRect& pixels) {
+                           link_->tracker().forgetDrawn();
+                           link_->tracker().checkRegion(pixels);
+                         },
+                         this);
+  image_->takeOffers([this](const Offer& offer) {
+    link_->tracker().takeOffer(offer);
+    playPaused(offer.stamp);
+  });
   auto* layout = new QGridLayout(this);
   layout->setContentsMargins(6, 6, 6, 6);
   layout->setSpacing(6);
@@ -93,12 +117,17 @@ ScreenWidget::~ScreenWidget() {
   link_.reset();
 }
 
-// With a paused recording, plays the next picture, from which the region is cut.
 void ScreenWidget::select(const QRect& pixels) {
-  const Facts facts = link_->facts();
+  const std::optional<Frozen> frozen = link_->facts().frozen;
   link_->tracker().selectRegion(pixels);
-  if (facts.playback.connected && facts.playback.state == "PAUSED" && !facts.frozen)
-    link_->controlPlayback("STEP", 0.0);
+  playPaused(frozen ? frozen->stamp : 0);
+}
+
+// A selection waits for the next picture, which a paused recording has to play; one in an earlier picture waits for
+// several.
+void ScreenWidget::playPaused(std::int64_t stamp) {
+  const PlaybackFacts playback = link_->facts().playback;
+  if (playback.connected && playback.state == "PAUSED") link_->controlPlayback(stamp == 0 ? "STEP" : "PLAY", 0.0);
 }
 
 QWidget* ScreenWidget::makeColumn(const std::string& space) {
@@ -175,9 +204,7 @@ void ScreenWidget::showMinute(const Facts& facts, double now) {
 
 void ScreenWidget::showAnswer(const Answer& answer) {
   if (answer.what.empty()) return;
-  const QString text = QString::fromStdString(answer.text);
-  const QString words = QString::fromStdString(answer.what) +
-                        (answer.waiting ? " ..." : (answer.success ? ": done. " : ": REFUSED. ") + text);
+  const QString words = wordsOf(answer);
   if (words == answer_->text()) return;
   answer_->setText(words);
   answer_->setToolTip(words.toHtmlEscaped());

@@ -41,6 +41,7 @@ class ScreenWidget : public QWidget {
   bool hasFocusWithin() const;
   bool handleKey(int key, bool pressed);
   void select(const QRect& pixels);
+  void playPaused(std::int64_t stamp);
   QWidget* makeColumn(const std::string& space);
   QWidget* makeTabs();
   void showAnswer(const Answer& answer);

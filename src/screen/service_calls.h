@@ -5,10 +5,11 @@
 #include <ros/service.h>
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
-#include <set>
 #include <string>
+#include <vector>
 
 #include "screen/facts.h"
 
@@ -30,24 +31,36 @@ class ServiceCalls {
   template <class Service>
   void call(const std::string& service, const std::string& what, const Service& request,
             const std::function<void(const typename Service::Response&)>& then = nullptr) {
-    start(service, what, [service, request, then](Answer& answer, std::function<void()>& act) {
-      Service call = request;
-      answer.success = ros::service::call(service, call) && call.response.success;
-      if (answer.success && then) act = [then, response = call.response] { then(response); };
-      answer.text = call.response.message;
-      if (!answer.success && answer.text.empty()) answer.text = "no answer from " + service;
-    });
+    start(service, what, asking(service, request, then), nullptr);
+  }
+  // As above, with the results to `told` alone, also those of a call of this service that is under way already.
+  template <class Service>
+  void call(const std::string& service, const std::string& what, const Service& request, const Told& told) {
+    start(service, what, asking<Service>(service, request, nullptr), told);
   }
 
  private:
+  using Ask = std::function<void(Answer&, std::function<void()>&)>;
   struct Shared {
     std::mutex mutex;
-    std::set<std::string> waiting;
+    std::map<std::string, std::vector<Told>> waiting;  // of each call under way: who is told; null: the constructor's
     Told told;
-    void tell(const Answer& answer, const std::function<void()>& act = nullptr);
+    void tell(const Told& who, const Answer& answer);
+    void end(const std::string& service, const Answer& answer, const std::function<void()>& act);
   };
-  using Ask = std::function<void(Answer&, std::function<void()>&)>;
-  void start(const std::string& service, const std::string& what, const Ask& ask);
+  template <class Service>
+  static Ask asking(const std::string& service, const Service& request,
+                    const std::function<void(const typename Service::Response&)>& then) {
+    return [service, request, then](Answer& answer, std::function<void()>& act) {
+      Service call = request;
+      if (!ros::service::call(service, call)) return unanswered(service, answer);
+      answer.outcome = call.response.success ? Outcome::kDone : Outcome::kRefused;
+      answer.text = call.response.message;
+      if (answer.outcome == Outcome::kDone && then) act = [then, response = call.response] { then(response); };
+    };
+  }
+  static void unanswered(const std::string& service, Answer& answer);
+  void start(const std::string& service, const std::string& what, const Ask& ask, const Told& told);
 
   std::shared_ptr<Shared> shared_;  // shared with the threads
 };

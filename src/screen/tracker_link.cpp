@@ -12,6 +12,7 @@
 
 #include "ros/common/clocks.h"
 #include "screen/preview_image.h"
+#include "screen/region_message.h"
 
 namespace laparoscope_servo::screen {
 
@@ -20,30 +21,15 @@ namespace {
 using StoredView_ = laparoscope_servo::StoredView;
 using Views = std::shared_ptr<const std::vector<StoredView>>;
 
-// Bounds a side from a message, which may hold any value.
-int side(std::uint32_t pixels) {
-  constexpr std::uint32_t kLargest = 1u << 20;
-  return static_cast<int>(std::min(pixels, kLargest));
-}
-
-QRect pixelsOf(const sensor_msgs::RegionOfInterest& roi) {
-  return {side(roi.x_offset), side(roi.y_offset), side(roi.width), side(roi.height)};
-}
-
-sensor_msgs::RegionOfInterest messageOf(const QRect& pixels) {
-  sensor_msgs::RegionOfInterest roi;
-  roi.x_offset = static_cast<std::uint32_t>(pixels.x());
-  roi.y_offset = static_cast<std::uint32_t>(pixels.y());
-  roi.width = static_cast<std::uint32_t>(pixels.width());
-  roi.height = static_cast<std::uint32_t>(pixels.height());
-  return roi;
-}
-
-CheckRoi questionOf(const QRect& pixels, const std::optional<Frozen>& frozen) {
+CheckRoi questionOf(const QRect& pixels, std::int64_t stamp) {
   CheckRoi question;
   question.request.roi = messageOf(pixels);
-  if (frozen) question.request.stamp.fromNSec(static_cast<std::uint64_t>(frozen->stamp));
+  question.request.stamp.fromNSec(static_cast<std::uint64_t>(stamp));
   return question;
+}
+
+std::int64_t stampOf(const std::optional<Frozen>& frozen) {
+  return frozen ? frozen->stamp : 0;
 }
 
 Views viewsOf(const ListViews::Response& response) {
@@ -76,22 +62,39 @@ bool sameViews(const Views& known, const ListViews::Response& listed) {
 }  // namespace
 
 void TrackerLink::selectRegion(const QRect& pixels) {
-  const std::optional<Frozen> frozen = keeper_.facts().frozen;
-  const std::string name = resolved_(frozen ? "tracker/select_frozen_roi" : "tracker/select_roi");
+  const Facts facts = keeper_.facts();
+  const std::int64_t stamp = stampOf(facts.frozen);
+  keeper_.change([&](Facts& changed) { changed.drawn = Drawn{pixels, stamp}; });
+  select(pixels, stamp);
+  const bool is_judged = facts.verdict && facts.verdict->region == pixels && facts.verdict->stamp == stamp;
+  if (!is_judged) checkRegion(pixels);
+}
+
+void TrackerLink::takeOffer(const Offer& offer) {
+  select(offer.region, offer.stamp);
+}
+
+void TrackerLink::select(const QRect& pixels, std::int64_t stamp) {
+  const std::string name = resolved_(stamp != 0 ? "tracker/select_frozen_roi" : "tracker/select_roi");
   if (name.empty()) return;
-  if (!frozen) {
+  const auto taken = [this] { keeper_.change([](Facts& facts) { facts.drawn.reset(), facts.frozen.reset(); }); };
+  if (stamp == 0) {
     SelectRoi request;
     request.request.roi = messageOf(pixels);
-    return calls_.call(name, "Region", request);
+    return calls_.call<SelectRoi>(name, "Region", request, [taken](const SelectRoi::Response&) { taken(); });
   }
-  calls_.call<CheckRoi>(name, "Region of the frozen picture", questionOf(pixels, frozen),
-                        [this](const CheckRoi::Response&) { thaw(); });
+  calls_.call<CheckRoi>(name, "Region of an earlier picture", questionOf(pixels, stamp),
+                        [taken](const CheckRoi::Response&) { taken(); });
+}
+
+void TrackerLink::forgetDrawn() {
+  keeper_.change([](Facts& facts) { facts.drawn.reset(); });
 }
 
 void TrackerLink::checkRegion(const QRect& pixels) {
   const std::string name = resolved_("tracker/check_roi");
   if (name.empty()) return;
-  const CheckRoi question = questionOf(pixels, keeper_.facts().frozen);
+  const CheckRoi question = questionOf(pixels, stampOf(keeper_.facts().frozen));
   checks_.ask([this, name, pixels, question]() -> std::function<void()> {
     CheckRoi call = question;
     Verdict verdict;
@@ -123,7 +126,7 @@ void TrackerLink::freeze() {
 }
 
 void TrackerLink::thaw() {
-  keeper_.change([](Facts& facts) { facts.frozen.reset(); });
+  keeper_.change([](Facts& facts) { facts.frozen.reset(), facts.drawn.reset(); });
 }
 
 // Fetches the pictures only if the list has changed.

@@ -20,6 +20,9 @@ class TrackerLink {
 
   // `pixels`: px of the original image, in the frozen picture or the live one.
   void selectRegion(const QRect& pixels);
+  void takeOffer(const Offer& offer);
+  // No other region is offered in place of the one that was drawn last.
+  void forgetDrawn();
   // Asks whether a region would be accepted; the answer is in Facts::verdict.
   void checkRegion(const QRect& pixels);
   void freeze();
@@ -31,6 +34,8 @@ class TrackerLink {
   void listViews();
 
  private:
+  // `stamp`: as of Offer.
+  void select(const QRect& pixels, std::int64_t stamp);
   void call(const std::string& service, const std::string& what, const std::string& view);
 
   FactKeeper& keeper_;

@@ -18,7 +18,8 @@ struct ViewConfig {
   // px: distance of the region's centre from its place in the view. The scope has to be slow by then: what it does
   // while the next view is searched has not shown its effect, and uses up effect/unconfirmed_turn of the controller.
   double arrival_centre = 6.0;
-  double arrival_scale = 0.1;  // relative difference between the region's scale and that in the view
+  double arrival_scale = 0.1;    // relative difference between the region's scale and that in the view
+  double max_frozen_age = 60.0;  // s: of a frozen picture in which a region is drawn
 };
 
 // Adds the rows of all parameters, with range and meaning.

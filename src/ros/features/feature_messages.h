@@ -4,10 +4,14 @@
 #include <laparoscope_servo/TrackedFeatures.h>
 #include <std_msgs/Header.h>
 
+#include <opencv2/core.hpp>
+
 #include "laparoscope_servo/features/tracked_feature.h"
 
 namespace laparoscope_servo {
 
-TrackedFeatures featuresMessage(const std_msgs::Header& header, const features::TrackedFeatures& tracked);
+// `size`: of the image.
+TrackedFeatures featuresMessage(const std_msgs::Header& header, const cv::Size& size,
+                                const features::TrackedFeatures& tracked);
 
 }  // namespace laparoscope_servo

@@ -43,7 +43,8 @@ Kind kindOf(const std::string& path) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status)) {
-    throw SourceError("'" + path + "' does not exist, expected a bag, a video or a folder of images");
+    throw SourceError("'" + std::filesystem::absolute(path, error).string() +
+                      "' does not exist, expected a bag, a video or a folder of images");
   }
   if (std::filesystem::is_directory(status)) return Kind::kFolder;
   if (!std::ifstream(path)) throw SourceError("'" + path + "' cannot be read");

@@ -20,6 +20,8 @@ constexpr std::chrono::milliseconds kClockPeriod(10);
 constexpr std::chrono::milliseconds kCameraInfoTimeout(500);
 constexpr std::chrono::milliseconds kStatePeriod(200);
 constexpr std::chrono::milliseconds kHeldPeriod(200);
+// After the clock went back: it comes on a topic of its own, and an image that overtakes it would be refused.
+constexpr std::chrono::milliseconds kJumpPause(100);
 const ros::Duration kHeldStep(0, 1000);            // step of repeated stamps; 40,000 fit between two images of a film
 constexpr std::chrono::seconds kResultTimeout(2);  // a tracker without results must not stop the video
 
@@ -28,6 +30,7 @@ constexpr std::chrono::seconds kResultTimeout(2);  // a tracker without results 
 void describe(parameters::Table& table, VideoPlayerConfig& c) {
   table.text("video", c.video, "bag (or several with spaces between), video file or folder of images")
       .required("/path/to/video.mp4");
+  table.text("folder", c.folder, "of relative paths; empty: where the node was started");
   table.text("image_topic", c.image_topic, "of a bag; empty: the only one with images");
   table.text("camera_info_topic", c.camera_info_topic, "of a bag; empty: beside the images");
   table.text("camera_info", c.camera_info, "calibration file, YAML or INI; empty: none");
@@ -219,6 +222,10 @@ void VideoPlayer::playOnce() {
     }
     waitUntil(last_);
     publishClock(last_);
+    if (first && last_ < held_time_) {
+      std::this_thread::sleep_for(kJumpPause);
+      begin_due_ = Clock::now();
+    }
     position_ = static_cast<double>(image->frame) / source_->rate();
     held_time_ = last_;
     if (image->error.empty()) {

@@ -34,6 +34,7 @@ namespace laparoscope_servo {
 
 struct VideoPlayerConfig {
   std::string video;              // bag, video file, or folder of images; several bags: see inputsOf
+  std::string folder;             // of relative paths; empty: the working directory
   std::string image_topic;        // of a bag; may be empty if it has only one topic with images
   std::string camera_info_topic;  // of a bag; empty: camera_info beside the images
   std::string camera_info;        // file of camera_calibration (YAML or INI); empty: intrinsics unknown

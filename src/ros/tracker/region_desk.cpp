@@ -1,6 +1,7 @@
 #include "ros/tracker/region_desk.h"
 
 #include <cmath>
+#include <sstream>
 #include <stdexcept>
 
 #include "ros/tracker/region_proposal.h"
@@ -19,12 +20,24 @@ cv::Mat RegionDesk::preview() {
   return kept_ ? preview_.of(kept_->image, kept_->lens) : cv::Mat();
 }
 
-const Snapshot& RegionDesk::kept(const ros::Time& stamp) const {
+void RegionDesk::keep(const std::shared_ptr<const Snapshot>& snapshot, double now) {
+  kept_ = snapshot;
+  kept_at_ = now;
+}
+
+std::shared_ptr<const Snapshot> RegionDesk::kept(const ros::Time& stamp, double now) const {
   if (!kept_) throw std::invalid_argument("no picture is kept: call freeze_image first");
-  if (kept_->stamp != stamp) {
+  if (!holds(stamp)) {
     throw std::invalid_argument("the picture that was frozen is kept no more: another one was frozen since");
   }
-  return *kept_;
+  const double age = now - kept_at_;
+  if (!(age <= parameters_.views.max_frozen_age)) {
+    std::ostringstream text;
+    text << "the picture was frozen " << std::lround(age) << " s ago, expected at most "
+         << parameters_.views.max_frozen_age << " s (parameter views/max_frozen_age)";
+    throw std::invalid_argument(text.str());
+  }
+  return kept_;
 }
 
 void RegionDesk::check(const Snapshot& snapshot, const geometry::Rectangle& roi) const {
@@ -43,10 +56,10 @@ tracking::RegionTracker RegionDesk::trackerFor(const Snapshot& snapshot) const {
   return tracker;
 }
 
-RecallRoute RegionDesk::route(const ros::Time& stamp, const geometry::Rectangle& roi, const Snapshot& now) const {
-  const Snapshot& before = kept(stamp);
+RecallRoute RegionDesk::route(const Snapshot& before, const geometry::Rectangle& roi, const Snapshot& now) const {
   if (before.image.size() != now.image.size() || before.image.type() != now.image.type() || !sameLens(before, now)) {
-    throw std::invalid_argument("the images have another size, colour or lens than the picture that was frozen");
+    throw std::invalid_argument(
+        "the images have another size, colour or lens than the picture in which the region was drawn");
   }
   check(before, roi);
   const geometry::Rectangle whole{std::floor(roi.x), std::floor(roi.y), std::floor(roi.width), std::floor(roi.height)};

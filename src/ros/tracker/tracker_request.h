@@ -19,7 +19,8 @@ using TrackerQuestion = std::variant<geometry::Rectangle, WantSnapshot, RecallRo
 struct TrackerAnswer {
   bool success = false;
   std::string message;
-  std::shared_ptr<const Snapshot> snapshot = nullptr;  // to WantSnapshot
+  std::shared_ptr<const Snapshot> snapshot = nullptr;   // to WantSnapshot
+  std::shared_ptr<const Snapshot> reference = nullptr;  // to WantSnapshot, see TrackerSession::reference
 };
 
 using TrackerRequest = ImageRequest<TrackerQuestion, TrackerAnswer>;

@@ -65,7 +65,7 @@ void TrackerSession::complete(Processed& processed, const std::optional<geometry
   processed.result = track(processed, request, new_reference);
   const tracking::TrackResult found = processed.result;
   watchPicture(processed);
-  judgeSelection(found, processed.result);
+  judgeSelection(found, processed);
   before_ = found;
   if (had_roi && !tracker_.hasRoi()) ++epoch_;
   if (!tracker_.hasRoi() && recall_.due() == nullptr) recall_.end(processed.result.reason);
@@ -149,7 +149,7 @@ bool TrackerSession::takeDueView(double time) {
   reference_ = Reference{step->view.image, step->view.roi, step->stamp};
   start_roi_pending_ = false;
   trial_ends_.reset();
-  trial_failed_.clear();
+  trial_failed_ = false;
   believed_stamp_.reset();
   reference_stamp_ = step->stamp;
   return recall_.first();
@@ -230,6 +230,16 @@ Snapshot TrackerSession::snapshot(const Processed& processed) const {
   }
   result.roi_error = why.str();
   return result;
+}
+
+std::shared_ptr<const Snapshot> TrackerSession::reference() const {
+  if (!reference_ || !tracker_.hasRoi()) return nullptr;
+  auto snapshot = std::make_shared<Snapshot>();
+  snapshot->image = reference_->image;
+  snapshot->stamp = reference_->stamp;
+  snapshot->lens = lens_;  // another lens forgets the reference
+  snapshot->epoch = epoch_;
+  return snapshot;
 }
 
 std::string TrackerSession::recall(const RecallRoute& route) {

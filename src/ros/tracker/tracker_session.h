@@ -45,10 +45,12 @@ struct Processed {
   tracking::ExternalMask external_mask;           // as it was used; its pixels last until the next image
   double mask_share = 0.0;                        // 0 to 1, of the region: covered by it
   std::string selection_error;                    // why a requested ROI was not selected in this image; else empty
-  std::string recall = "none";                    // recall of a stored view, see ViewRecall::text
-  image::Repeats repeats;                         // repeats of the picture
-  double period = 0.0;                            // s since the last image
-  double processing_time = 0.0;                   // s, from the decoded image to the result
+  // px, in the image of reference_stamp: would do where the selected region was not held in its first second
+  std::optional<geometry::Rectangle> proposal;
+  std::string recall = "none";   // recall of a stored view, see ViewRecall::text
+  image::Repeats repeats;        // repeats of the picture
+  double period = 0.0;           // s since the last image
+  double processing_time = 0.0;  // s, from the decoded image to the result
 };
 
 class TrackerSession {
@@ -83,6 +85,9 @@ class TrackerSession {
 
   // The last image with the present place of the tracked ROI.
   Snapshot snapshot(const Processed& processed) const;
+  // The image in which the present region was selected, or that of the view that was recalled; null: there is none. Its
+  // pixels are not changed any more.
+  std::shared_ptr<const Snapshot> reference() const;
   // Starts a recall with the next image: each view of the way is the reference until it is reached; the last one stays.
   // Returns why it is refused: a ROI was selected, or the session was reset, after the image from which the way was
   // planned.
@@ -115,7 +120,7 @@ class TrackerSession {
   void lookForReference(const std::string& why);
   geometry::Quadrilateral onSensor(geometry::Quadrilateral corners) const;
   void watchPicture(Processed& processed);
-  void judgeSelection(const tracking::TrackResult& found, tracking::TrackResult& result);
+  void judgeSelection(const tracking::TrackResult& found, Processed& processed);
   std::string turnedTooFast(const tracking::TrackResult& result) const;
   tracking::TrackResult track(Processed& processed, const std::optional<geometry::Rectangle>& request,
                               bool& new_reference);
@@ -137,7 +142,8 @@ class TrackerSession {
   bool start_roi_refused_ = false;           // it was refused in an image before
   std::optional<double> trial_ends_;         // s, tracker time, end of a new region's trial
   bool lost_covered_ = false;                // the last loss was one of visibility
-  std::string trial_failed_;                 // added to the reason while a region that failed its trial is not TRACKING
+  bool trial_failed_ = false;                // the region was not held in its first second, and is not TRACKING since
+  std::optional<geometry::Rectangle> trial_proposal_;  // px, in the image of its selection: what would do instead
   ImageIntake intake_;
   cv::Rect box_;  // px, in the raw image: box around the region where it was last tracked
   tracking::CornerPath path_;

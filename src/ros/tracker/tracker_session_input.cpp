@@ -85,21 +85,22 @@ geometry::Quadrilateral TrackerSession::onSensor(geometry::Quadrilateral corners
 
 // The first second is a region's trial. If the region is not TRACKING at its end, and not because it is covered, the
 // reason proposes another one. The search goes on all the same: of 40 such regions on eight films 7 came back.
-void TrackerSession::judgeSelection(const tracking::TrackResult& found, tracking::TrackResult& result) {
+void TrackerSession::judgeSelection(const tracking::TrackResult& found, Processed& processed) {
   constexpr double kTrial = 1.0;  // s
   if (found.selected_now) trial_ends_ = intake_.time() + kTrial;
-  if (found.selected_now || found.state == tracking::State::kTracking) trial_failed_.clear();
+  if (found.selected_now || found.state == tracking::State::kTracking) trial_failed_ = false;
   if (!tracker_.hasRoi()) trial_ends_.reset();
   if (before_.state == tracking::State::kTracking && found.state != tracking::State::kTracking)
     lost_covered_ = !(found.visible_fraction >= parameters_.tracking.quality.min_visible_fraction);
   if (trial_ends_ && intake_.time() >= *trial_ends_) {
     trial_ends_.reset();
-    if (found.state != tracking::State::kTracking && !lost_covered_ && reference_)
-      trial_failed_ = "; it was not held in its first second" +
-                      proposalText(regionThatWouldDo(tracker_, reference_->image, reference_->roi));
+    trial_failed_ = found.state != tracking::State::kTracking && !lost_covered_ && reference_;
+    if (trial_failed_) trial_proposal_ = regionThatWouldDo(tracker_, reference_->image, reference_->roi);
   }
-  if (found.state == tracking::State::kSearching || found.state == tracking::State::kLost)
-    result.reason += trial_failed_;
+  const bool lost = found.state == tracking::State::kSearching || found.state == tracking::State::kLost;
+  if (!trial_failed_ || !lost) return;
+  processed.result.reason += "; it was not held in its first second" + proposalText(trial_proposal_);
+  processed.proposal = trial_proposal_;
 }
 
 // An estimate in a frozen feed is not reported as TRACKING, but the tracker does not lose the region for it.

@@ -1,6 +1,7 @@
 #include "ros/tracker/tracker_state_report.h"
 
 #include "laparoscope_servo/tracking/region_tracker.h"
+#include "ros/tracker/region_proposal.h"
 
 namespace laparoscope_servo {
 
@@ -32,6 +33,7 @@ std::optional<TrackerState> TrackerStateReport::processed(double now, const Proc
   message_.reason = tracker_reason_;
   message_.width = static_cast<std::uint32_t>(processed.image.cols);
   message_.height = static_cast<std::uint32_t>(processed.image.rows);
+  message_.proposal = proposalMessage(processed.proposal);
   message_.view = processed.recall == "none" ? "" : processed.recall;
   message_.reference_stamp = ros::Time();
   message_.region.fill(0.0);
@@ -46,7 +48,8 @@ std::optional<TrackerState> TrackerStateReport::processed(double now, const Proc
   if (message_.state != before.state) message_.since = processed.header.stamp;
   const bool changed = message_.state != before.state || message_.width != before.width ||
                        message_.height != before.height || message_.view != before.view ||
-                       message_.reference_stamp != before.reference_stamp || message_.region != before.region;
+                       message_.proposal != before.proposal || message_.reference_stamp != before.reference_stamp ||
+                       message_.region != before.region;
   return say(now, changed);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <QPolygonF>
+#include <QSize>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -24,6 +25,7 @@ struct FeatureFact {
 struct FeatureResult {
   std::int64_t stamp = 0;  // ns
   std::string frame;       // of the camera
+  QSize image;             // px; empty: not known
   int state = 0;           // of TrackedFeatures
   std::string reason;
   std::vector<FeatureFact> features;

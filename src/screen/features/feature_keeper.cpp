@@ -38,6 +38,11 @@ void FeatureKeeper::match(Kept& kept) const {
   }
 }
 
+QSize FeatureKeeper::imageOf(const std::string& tracker) const {
+  const auto kept = trackers_.find(tracker);
+  return kept != trackers_.end() && kept->second.facts.newest ? kept->second.facts.newest->image : QSize();
+}
+
 std::vector<FeatureTrackerFacts> FeatureKeeper::facts() const {
   std::vector<FeatureTrackerFacts> facts;
   for (const auto& [name, kept] : trackers_) facts.push_back(kept.facts);

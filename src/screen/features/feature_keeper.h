@@ -20,6 +20,8 @@ class FeatureKeeper {
   // Which results belong to the picture with this stamp.
   void match(std::int64_t stamp);
 
+  // px, of the newest image of a tracker; empty: not known.
+  QSize imageOf(const std::string& tracker) const;
   // By name.
   std::vector<FeatureTrackerFacts> facts() const;
 

@@ -70,9 +70,9 @@ void FeatureLink::take(const std::string& tracker, const TrackedFeatures& messag
   if (take_) take_(tracker, message);
 }
 
-std::vector<std::pair<std::string, bool>> FeatureLink::connected() const {
+FeatureLink::Connected FeatureLink::connected() const {
   const std::lock_guard<std::mutex> lock(mutex_);
-  std::vector<std::pair<std::string, bool>> all;
+  Connected all;
   for (const auto& [name, subscriber] : subscribers_) all.emplace_back(name, subscriber.getNumPublishers() > 0);
   return all;
 }

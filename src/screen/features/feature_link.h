@@ -23,6 +23,7 @@ std::vector<std::string> featureTrackersIn(XmlRpc::XmlRpcValue answer, const std
 
 class FeatureLink {
  public:
+  using Connected = std::vector<std::pair<std::string, bool>>;
   using Take = std::function<void(const std::string& tracker, const TrackedFeatures& message)>;
 
   // Construct it after ros::start. `take` is called from the threads of the callback queue of `node`, which is in the
@@ -32,7 +33,7 @@ class FeatureLink {
   // Asks the master, for half a second at most, and subscribes to new ones. Not from two threads at once.
   void find();
   // Which trackers are known, and whether they are there.
-  std::vector<std::pair<std::string, bool>> connected() const;
+  Connected connected() const;
   // `take` is not called any more; find() ends soon.
   void close();
 

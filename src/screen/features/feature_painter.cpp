@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <limits>
 #include <tuple>
 
 #include "screen/deviations.h"
@@ -129,19 +131,53 @@ void drawWords(QPainter& painter, const QRectF& area, QPointF left_bottom, const
   painter.drawText(left_bottom, words);
 }
 
+bool isDrawn(const FeatureFact& feature) {
+  const bool somewhere = feature.state == TrackedFeatures::TRACKING || feature.state == TrackedFeatures::SEARCHING;
+  return somewhere && !feature.outline.isEmpty();
+}
+
+// px of the widget, from the mouse to the nearest corner of the outline.
+double distanceTo(const FeatureFact& feature, const Letterbox& letterbox, const QPointF& mouse) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const QPointF& point : feature.outline) {
+    const QPointF apart = letterbox.fromCentre(point) - mouse;
+    least = std::min(least, std::hypot(apart.x(), apart.y()));
+  }
+  return least;
+}
+
+// Which of many features is named: the nearest one within reach of the mouse; null: none.
+const FeatureFact* featureAt(const FeatureResult& result, const Letterbox& letterbox,
+                             const std::optional<QPointF>& mouse) {
+  constexpr double kReach = 20.0;  // px of the widget
+  const FeatureFact* nearest = nullptr;
+  double least = kReach;
+  for (const FeatureFact& feature : result.features) {
+    if (!mouse || !isDrawn(feature)) continue;
+    const double distance = distanceTo(feature, letterbox, *mouse);
+    if (distance <= least) least = distance, nearest = &feature;
+  }
+  return nearest;
+}
+
+// Where its name stands in the widget.
+QPointF labelOf(const FeatureFact& feature, const Letterbox& letterbox) {
+  const bool axis = feature.kind == TrackedFeature::POSE && feature.outline.size() == 2;
+  const QPointF at = axis ? (feature.outline[0] + feature.outline[1]) / 2 : feature.outline.first();
+  return letterbox.fromCentre(at) + QPointF(8, -6);
+}
+
 // Where it is in the widget; empty when nothing of it is drawn.
 QRectF drawFeature(QPainter& painter, const FeatureFact& feature, const Letterbox& letterbox, const QColor& colour) {
+  if (!isDrawn(feature)) return {};
   const bool seen = feature.state == TrackedFeatures::TRACKING;
-  if ((!seen && feature.state != TrackedFeatures::SEARCHING) || feature.outline.isEmpty()) return {};
   const QPolygonF line = inWidget(feature.outline, letterbox);
   if (seen) drawSpread(painter, feature, line, letterbox, colour);
   const Look look{colour, seen ? Qt::SolidLine : Qt::DotLine};
-  QPointF label = line.first();
   if (line.size() == 1) {
     drawMark(painter, line.first(), look);
   } else if (feature.kind == TrackedFeature::POSE && line.size() == 2) {
     drawArrow(painter, line, look);
-    label = (line[0] + line[1]) / 2;
   } else if (feature.kind == TrackedFeature::POSE || feature.kind == TrackedFeature::MOTION) {
     // Points of an object's edges, which do not join.
     painter.setPen(QPen(kCasing, 1));
@@ -151,13 +187,13 @@ QRectF drawFeature(QPainter& painter, const FeatureFact& feature, const Letterbo
     stroke(painter, line, look);
     if (feature.kind == TrackedFeature::LINE) drawBars(painter, line, look);
   }
-  drawWords(painter, letterbox.area(), label + QPointF(8, -6), QString::fromStdString(feature.id), colour);
   return line.boundingRect().adjusted(0, 0, 1, 1);
 }
 
 }  // namespace
 
-void drawFeatures(QPainter& painter, const Facts& facts, const Letterbox& letterbox) {
+void drawFeatures(QPainter& painter, const Facts& facts, const Letterbox& letterbox,
+                  const std::optional<QPointF>& mouse) {
   if (!letterbox.isValid()) return;
   painter.save();
   painter.setClipRect(letterbox.area());
@@ -168,8 +204,14 @@ void drawFeatures(QPainter& painter, const Facts& facts, const Letterbox& letter
     if (!(age <= kForgotten)) continue;
     const QColor& colour = age > 0.0 ? kOldFeatureColour : kFeatureColour;
     QRectF box;
-    for (const FeatureFact& feature : tracker.drawn->features)
-      box = box.united(drawFeature(painter, feature, letterbox, colour));
+    const std::vector<FeatureFact>& all = tracker.drawn->features;
+    for (const FeatureFact& feature : all) box = box.united(drawFeature(painter, feature, letterbox, colour));
+    const bool few = std::count_if(all.begin(), all.end(), isDrawn) <= static_cast<std::ptrdiff_t>(kFewFeatures);
+    const FeatureFact* at_mouse = featureAt(*tracker.drawn, letterbox, mouse);
+    for (const FeatureFact& feature : all) {  // over all the forms
+      if (isDrawn(feature) && (few || &feature == at_mouse))
+        drawWords(painter, letterbox.area(), labelOf(feature, letterbox), QString::fromStdString(feature.id), colour);
+    }
     if (age > kOldest && !box.isNull())
       drawWords(painter, letterbox.area(), (box & letterbox.area()).center(),
                 QString("%1: %2 s old").arg(QString::fromStdString(tracker.name)).arg(age, 0, 'f', 1), Qt::white);

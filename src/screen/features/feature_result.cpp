@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "screen/region_message.h"
+
 namespace laparoscope_servo::screen {
 
 namespace {
@@ -47,6 +49,7 @@ std::shared_ptr<const FeatureResult> featureResult(const TrackedFeatures& messag
   auto result = std::make_shared<FeatureResult>();
   result->stamp = static_cast<std::int64_t>(message.header.stamp.toNSec());
   result->frame = message.header.frame_id;
+  result->image = {side(message.width), side(message.height)};
   result->state = message.state;
   result->reason = message.reason;
   const std::size_t count = std::min(message.features.size(), kMostFeatures);

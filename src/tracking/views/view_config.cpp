@@ -12,6 +12,8 @@ void describe(parameters::Table& table, ViewConfig& c) {
                "distance of the region's centre from its place within which a recall goes on to the next view");
   table.number("arrival_scale", c.arrival_scale, {0.001, 1}, "ratio",
                "difference of the region's scale within which a recall goes on to the next view");
+  table.number("max_frozen_age", c.max_frozen_age, {1, 3600}, "s",
+               "of a frozen picture; in an older one no region can be selected");
 }
 
 std::vector<std::string> validate(const ViewConfig& config) {

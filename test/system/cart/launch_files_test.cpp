@@ -75,6 +75,29 @@ std::string parametersOf(const std::string& launch) {
   return outputOf("roslaunch --dump-params laparoscope_servo " + launch);
 }
 
+// A node's working directory is not that of the shell.
+TEST(LaunchFiles, RelativePathsAreThoseOfTheShell) {
+  const auto from = [](const std::string& launch) {
+    return outputOf("cd /usr/share && roslaunch --dump-params laparoscope_servo " + launch);
+  };
+  const auto expect = [](const std::string& output, const std::string& line) {
+    EXPECT_NE(output.find(line + "\n"), std::string::npos) << line << ", but:\n" << output;
+  };
+  expect(from("record.launch folder:=cases"), "/recorder/folder: /usr/share/cases");
+  expect(from("record.launch folder:=/tmp/cases"), "/recorder/folder: /tmp/cases");
+  expect(from("calibrate.launch port:=/dev/ttyX file:=x.yaml"), "/aesop/calibration/file: /usr/share/x.yaml");
+  const std::string cart = from("cart.launch port:=/dev/ttyX rviz:=false insertion_point_file:=x.yaml");
+  expect(cart, "/aesop/insertion_point_file: /usr/share/x.yaml");
+  expect(cart, "/aesop/calibration/file: /usr/share/x.yaml");
+  expect(from("features.launch selection:=x.yaml"), "/edges/selection: /usr/share/x.yaml");
+  const std::string camera = from("camera.launch device:=film.mp4 calibration:=c.ini");
+  expect(camera, "/camera_driver/device: /usr/share/film.mp4");
+  expect(camera, "/camera_driver/calibration: /usr/share/c.ini");
+  expect(from("camera.launch"), "/camera_driver/calibration: ''");
+  expect(from("camera.launch device:=rtsp://10.0.0.1/x"), "/camera_driver/device: rtsp://10.0.0.1/x");
+  expect(from("replay.launch video:=film.mp4"), "/player/folder: /usr/share");
+}
+
 TEST(LaunchFiles, ControllerOfACartAsksForTheRobotAndForADeadManThatIsGiven) {
   const std::string cart = parametersOf("cart.launch port:=/dev/ttyX rviz:=false");
   EXPECT_NE(cart.find("/controller/safety/robot_required: true"), std::string::npos) << cart;

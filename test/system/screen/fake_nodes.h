@@ -177,19 +177,22 @@ class FakeNodes {
         response.success = 1;
         return true;
       });
+  // Takes what is 100 px wide or more; otherwise 100 px would do.
   ros::ServiceServer select_ = node_.advertiseService<SelectRoi::Request, SelectRoi::Response>(
       "tracker/select_roi", [this](SelectRoi::Request& request, SelectRoi::Response& response) {
         const std::lock_guard<std::mutex> lock(mutex_);
         regions_.push_back(request.roi);
-        response.success = 1;
+        response.success = static_cast<std::uint8_t>(request.roi.width >= 100);
         return true;
       });
-  // Takes what is 100 px wide or more.
   ros::ServiceServer check_ = node_.advertiseService<CheckRoi::Request, CheckRoi::Response>(
       "tracker/check_roi", [this](CheckRoi::Request& request, CheckRoi::Response& response) {
         ++checks;
         response.success = static_cast<std::uint8_t>(request.roi.width >= 100);
-        if (!response.success) response.message = "ROI is too small, expected at least 100 px";
+        if (response.success) return true;
+        response.message = "ROI is too small, expected at least 100 px";
+        response.proposal = request.roi;
+        response.proposal.width = 100;
         return true;
       });
   ros::ServiceServer freeze_ = node_.advertiseService<FreezeImage::Request, FreezeImage::Response>(

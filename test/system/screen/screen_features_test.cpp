@@ -89,7 +89,14 @@ TEST_F(ScreenFeatures, WithoutACameraNothingIsDrawnAndItIsSaid) {
   EXPECT_FALSE(line("instrument").cure.empty());
 }
 
-// The last test, for nobody starts it again.
+// The last tests, for nobody starts again what they end.
+TEST_F(ScreenFeatures, WhereNoRegionTrackerRunsThePictureIsOfATrackerOfFeatures) {
+  ASSERT_TRUE(waitFor([this] { return says("instrument", "TRACKING") && areDrawn(); })) << line("instrument").word;
+  ASSERT_EQ(std::system("rosnode kill /tracker >/dev/null"), 0);
+  ASSERT_TRUE(waitFor([this] { return word("Tracker") == "GONE"; })) << word("Tracker");
+  EXPECT_TRUE(waitFor([this] { return areDrawn(); })) << onEdges(screen::kFeatureColour);
+}
+
 TEST_F(ScreenFeatures, WhatATrackerSaidThatHasEndedIsGreyForAWhile) {
   ASSERT_TRUE(waitFor([this] { return says("instrument", "TRACKING") && areDrawn(); })) << line("instrument").word;
   nodelet::NodeletUnload unload;

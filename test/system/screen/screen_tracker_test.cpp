@@ -15,6 +15,7 @@
 namespace laparoscope_servo {
 namespace {
 
+using test_support::hands;
 using test_support::ImageFeed;
 using test_support::waitFor;
 
@@ -133,6 +134,17 @@ TEST_F(ScreenTracker, TimeThatJumpsBackAndIntrinsicsOfZeroDoNoHarm) {
   feed_.setClock(0.0);
   EXPECT_TRUE(waitFor([this] { return isColoured(); })) << tracker().word;
   EXPECT_TRUE(word("Tracker") == "IDLE" || selects({640, 480}, {250, 170, 140, 140})) << tracker().word;
+}
+
+TEST_F(ScreenTracker, StopSaysThatThereIsNoArm) {
+  ASSERT_TRUE(waitFor([this] { return word("Tracker") == "NO IMAGE"; })) << "there is a master";
+  hands("key Escape");
+  EXPECT_TRUE(waitFor([this] {
+    return answer() == "STOP: done. There is no arm and no controller here: nothing had to be stopped.";
+  })) << answer().toStdString();
+  click("enable");
+  EXPECT_TRUE(waitFor([this] { return answer().contains("NOT DONE. No node offers /aesop/enable"); }))
+      << answer().toStdString();
 }
 
 TEST_F(ScreenTracker, ANameOfMarkupIsText) {

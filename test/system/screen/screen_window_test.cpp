@@ -124,12 +124,48 @@ TEST_F(ScreenWindow, ARegionIsJudgedWhileItIsDrawnAndNothingIsSelectedByIt) {
   draws(60);
   EXPECT_TRUE(waitFor([&] { return painted(QColor(0xff, 0x70, 0x60)); })) << "refused while it is drawn";
   hands(moveTo(onDisplay(kOriginal, {700, 400})));
-  EXPECT_TRUE(waitFor([&] { return painted(QColor(0x5c, 0xf0, 0x8c)); })) << "now it would be taken";
+  EXPECT_TRUE(waitFor([&] { return painted(QColor(0x5c, 0xf0, 0x8c)) && !painted(QColor(0xff, 0x70, 0x60)); }))
+      << "now it would be taken";
   EXPECT_GE(nodes_.checks, 2);
   EXPECT_TRUE(nodes_.regions().empty());
   hands("click 3 mouseup 1");
   waitFor([&] { return !painted(QColor(0x5c, 0xf0, 0x8c)); });
   EXPECT_TRUE(nodes_.regions().empty()) << "the right button gives it up";
+}
+
+TEST_F(ScreenWindow, ARegionThatTheTrackerOffersIsTakenByAClickInIt) {
+  drag(onDisplay(kOriginal, {300, 200}), onDisplay(kOriginal, {360, 400}));
+  ASSERT_TRUE(waitFor([this] { return nodes_.regions().size() == 1; }));
+  // To another place each time, for Qt tells of no other move.
+  auto isOffered = [this, aside = 0]() mutable {
+    aside = 4 - aside;
+    hands(moveTo(onDisplay(kOriginal, {380.0 + aside, 300})));
+    waitFor([] { return false; }, 0.1);
+    return image().cursor().shape() == Qt::PointingHandCursor;
+  };
+  // A busy machine makes the picture old for a moment, and then nothing can be taken.
+  const auto takes = [&](const std::string& act, const std::function<bool()>& is_taken) {
+    return waitFor([&] {
+      if (isOffered()) hands(act);
+      return waitFor(is_taken, 2.0);
+    });
+  };
+  ASSERT_TRUE(takes("click 1", [this] { return nodes_.regions().size() == 2; }))
+      << "what was drawn was refused, with another one that would do";
+  EXPECT_EQ(nodes_.regions()[1].width, 100u);
+  EXPECT_TRUE(waitFor([&] { return !isOffered(); })) << "it was taken";
+
+  // Lost in its first second: cut from the picture in which it was selected.
+  nodes_.change([](TrackerState& tracker, ControllerState&, OperatingState&) {
+    tracker.state = TrackerState::SEARCHING;
+    tracker.reason = "correlation 0.2; it was not held in its first second; 350,250,100,100 would do";
+    tracker.reference_stamp = ros::Time(5.0);
+    tracker.proposal.x_offset = 350;
+    tracker.proposal.y_offset = 250;
+    tracker.proposal.width = tracker.proposal.height = 100;
+  });
+  ASSERT_TRUE(takes("click 1", [this] { return nodes_.frozenRegions().size() == 1; }));
+  EXPECT_EQ(nodes_.frozenRegions()[0].x_offset, 350u);
 }
 
 TEST_F(ScreenWindow, ARegionIsDrawnInAFrozenPicture) {
@@ -180,6 +216,9 @@ TEST_F(ScreenWindow, ACameraThatDiesIsSeen) {
 TEST_F(ScreenWindow, StopsByItsButtonAndByKeysFromAnyFocus) {
   click("stop");
   EXPECT_TRUE(isStopped(1)) << nodes_.robot_stops << nodes_.controller_stops << nodes_.disables << nodes_.disengages;
+  const auto answer = [this] { return find<QLabel>("answer").text().toStdString(); };
+  EXPECT_TRUE(waitFor([&] { return answer() == "STOP: done. The arm is disabled. The controller is disengaged."; }))
+      << answer();
   hands("key Escape");
   EXPECT_TRUE(isStopped(2));
   const auto other = otherWindow();

@@ -126,13 +126,35 @@ TEST(BandText, ARecordingThatStandsIsNoCameraThatFails) {
   all.tracker.state = "NO_IMAGE";
   all.tracker.reason = "no image for more than 1 s; before: TRACKING";
   all.playback.connected = true;
+  FeatureTrackerFacts edges;
+  edges.name = "edges";
+  edges.connected = true;
+  edges.newest = std::make_shared<FeatureResult>();
+  edges.heard_at = kNow - 7.0;
+  const std::pair<const char*, const char*> words[] = {
+      {"ENDED", "ENDED"}, {"PAUSED", "PAUSED"}, {"HOLDING", "HOLDS"}, {"WAITING", "WAITING"}};
+  for (const auto& [state, word] : words) {
+    all.playback.state = state;
+    const BandText band = trackerBand(all, kNow);
+    EXPECT_EQ(band.word, word);
+    EXPECT_EQ(band.level, Level::kResting) << state << ": nobody has to act";
+    EXPECT_EQ(band.sentence.find("The recording "), 0u) << band.sentence;
+    EXPECT_NE(band.cure, "");
+    EXPECT_EQ(band.detail, all.tracker.reason);
+    EXPECT_EQ(featureBand(all, edges, kNow).word, word) << "the trackers of features, too";
+  }
   all.playback.state = "ENDED";
-  EXPECT_EQ(trackerBand(all, kNow).word, "NO IMAGE");
-  EXPECT_EQ(trackerBand(all, kNow).sentence, "The recording has ended.");
-  all.playback.state = "PAUSED";
-  EXPECT_EQ(trackerBand(all, kNow).sentence, "The recording stands.");
+  EXPECT_NE(trackerBand(all, kNow).cure.find("\"Again\""), std::string::npos);
   all.playback.state = "PLAYING";
+  EXPECT_EQ(trackerBand(all, kNow).word, "NO IMAGE");
   EXPECT_EQ(trackerBand(all, kNow).sentence, "The camera has stopped sending.");
+  EXPECT_EQ(featureBand(all, edges, kNow).word, "SILENT");
+  all.playback.state = "ENDED";
+  all.tracker.reason = "image refused: the image is truncated: it has 7 bytes";
+  EXPECT_EQ(trackerBand(all, kNow).word, "NO IMAGE") << "what is wrong with its pictures is not hidden";
+  all.playback.connected = false;
+  all.tracker.reason = "no image for more than 1 s; before: TRACKING";
+  EXPECT_EQ(trackerBand(all, kNow).level, Level::kBad) << "the player is gone";
 }
 
 TEST(BandText, ACautionIsSaidWhileItMoves) {

@@ -133,10 +133,36 @@ TEST(FactKeeper, NothingThatATopicCarriesHarms) {
   EXPECT_EQ(keeper.facts().areas->rows, 0);
   TrackerState state;
   state.width = state.height = 4000000000u;
+  state.proposal.width = 4000000000u;
   keeper.take(state, 1.0);
   EXPECT_EQ(keeper.facts().tracker.width, 0);
   keeper.take(preview(12.0, 1), std::numeric_limits<double>::quiet_NaN(), 3.0);
   EXPECT_EQ(keeper.facts().picture.age_at_arrival, 0.0);
+}
+
+TEST(FactKeeper, ThePictureOfATrackerOfFeaturesHasTheSizeOfItsImages) {
+  FactKeeper keeper;
+  keeper.take("edges", preview(10.0, 1), 0.0, 1.0);
+  EXPECT_TRUE(keeper.facts().picture.original.isEmpty()) << "not known yet";
+  TrackedFeatures features;
+  features.width = 1920;
+  features.height = 1080;
+  keeper.take("edges", features, 1.0);
+  keeper.take("edges", preview(11.0, 1), 0.0, 1.0);
+  EXPECT_EQ(keeper.facts().picture.original, QSize(1920, 1080));
+  keeper.take(preview(12.0, 1), 0.0, 1.0);
+  EXPECT_TRUE(keeper.facts().picture.original.isEmpty()) << "the region tracker says it in its state";
+}
+
+TEST(FactKeeper, KeepsTheRegionThatTheTrackerProposes) {
+  FactKeeper keeper;
+  TrackerState state;
+  state.proposal.x_offset = 12;
+  state.proposal.y_offset = 34;
+  state.proposal.width = 56;
+  state.proposal.height = 78;
+  keeper.take(state, 1.0);
+  EXPECT_EQ(keeper.facts().tracker.proposal, QRect(12, 34, 56, 78));
 }
 
 }  // namespace

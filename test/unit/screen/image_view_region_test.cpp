@@ -41,6 +41,11 @@ TEST_F(ImageViewRegion, AClickDrawsNothingNorDoesAPictureThatIsNotLive) {
   view_.show(unknown, kNow);
   drag({100, 100}, {300, 300});
   EXPECT_TRUE(regions_.empty()) << "of which size is the image?";
+  Facts features = tracked();
+  features.picture.original = QSize(1280, 720);
+  view_.show(features, kNow);
+  drag({100, 100}, {300, 300});
+  EXPECT_TRUE(regions_.empty()) << "the picture is not the region tracker's";
 }
 
 TEST_F(ImageViewRegion, TheRegionThatThereIsIsMovedFromItsInside) {
@@ -85,6 +90,49 @@ TEST_F(ImageViewRegion, AsksForARegionWhileItIsDrawnAndShowsTheAnswer) {
   EXPECT_EQ(drawn(facts), unanswered) << "the answer is of another region";
   QTest::mouseRelease(&view_, Qt::LeftButton, {}, {300, 260});
   EXPECT_EQ(regions_.size(), 1u);
+}
+
+TEST_F(ImageViewRegion, ARegionThatTheTrackerOffersIsTakenByAClickOrAKey) {
+  view_.resize(1280, 720);
+  Facts facts = tracked();
+  facts.result->state = Homography::LOST;
+  facts.tracker.state = "LOST";
+  const QImage without = drawn(facts);
+  facts.tracker.proposal = QRect(800, 400, 120, 100);
+  facts.picture.arrived_at += 0.01;
+  EXPECT_EQ(drawn(facts), without) << "nobody would take it";
+  std::vector<Offer> taken;
+  view_.takeOffers([&](const Offer& offer) { taken.push_back(offer); });
+  facts.picture.arrived_at += 0.01;
+  const QImage with = drawn(facts);
+  int dots = 0, gaps = 0;
+  for (int x = 800; x < 920; ++x) (with.pixelColor(x, 400).green() > 150 ? dots : gaps) += 1;
+  EXPECT_GT(dots, 20) << "dotted";
+  EXPECT_GT(gaps, 20);
+  QTest::mouseClick(&view_, Qt::LeftButton, {}, QPoint(700, 300));
+  EXPECT_TRUE(taken.empty()) << "a click elsewhere";
+  QTest::mouseClick(&view_, Qt::LeftButton, {}, QPoint(860, 450));
+  ASSERT_EQ(taken.size(), 1u);
+  EXPECT_EQ(taken[0].region, facts.tracker.proposal);
+  EXPECT_EQ(taken[0].stamp, 5);
+  QTest::keyClick(&view_, Qt::Key_Return);
+  EXPECT_EQ(taken.size(), 2u);
+  EXPECT_TRUE(regions_.empty());
+  drag({820, 420}, {900, 480});
+  EXPECT_EQ(taken.size(), 2u) << "a drag draws, as elsewhere";
+  EXPECT_EQ(regions_.size(), 1u);
+  view_.show(facts, kNow + 5.0);
+  QTest::mouseClick(&view_, Qt::LeftButton, {}, QPoint(860, 450));
+  QTest::keyClick(&view_, Qt::Key_Return);
+  EXPECT_EQ(taken.size(), 2u) << "the picture is not live";
+  view_.show(facts, kNow);
+  QTest::mouseClick(&view_, Qt::RightButton, {}, QPoint(300, 300));
+  QTest::keyClick(&view_, Qt::Key_Return);
+  EXPECT_EQ(taken.size(), 2u) << "the right button gives it up";
+  facts.tracker.proposal.translate(10, 0);
+  view_.show(facts, kNow);
+  QTest::keyClick(&view_, Qt::Key_Return);
+  EXPECT_EQ(taken.size(), 3u) << "another one is offered";
 }
 
 TEST_F(ImageViewRegion, ArrowsNudgeTheRegionAndReturnSelectsIt) {

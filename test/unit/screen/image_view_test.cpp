@@ -52,6 +52,16 @@ TEST_F(ImageViewTest, RepaintsForEachThingThatIsDrawn) {
   EXPECT_EQ(paintsFor(facts), 1) << "its result";
   facts.features[0].heard_at = 7.0;
   EXPECT_EQ(paintsFor(facts), 0) << "is not drawn";
+  facts.verdict = Verdict{QRect(1, 2, 30, 40), 0, true, ""};
+  EXPECT_EQ(paintsFor(facts), 1) << "an answer";
+  facts.verdict->taken = false;
+  EXPECT_EQ(paintsFor(facts), 1) << "another answer about the same region";
+  facts.frozen = Frozen{facts.picture.image, 77, QSize(1280, 720), kNow};
+  EXPECT_EQ(paintsFor(facts), 1) << "a frozen picture";
+  facts.frozen->stamp = 78;
+  EXPECT_EQ(paintsFor(facts), 1) << "another one";
+  facts.frozen->at -= 3.0;
+  EXPECT_EQ(paintsFor(facts), 1) << "its age, also when no live picture comes";
 }
 
 TEST_F(ImageViewTest, FeaturesAreDrawnUntilTheyAreSwitchedOff) {
@@ -149,6 +159,26 @@ TEST_F(ImageViewTest, DrawsNoResultOfAnotherImageOrRegion) {
   other.result->corners[0] = std::numeric_limits<double>::quiet_NaN();
   other.result->g[8] = 0.0;
   drawn(other);
+}
+
+// White pixels at the sides of the picture would be words that are cut off.
+TEST_F(ImageViewTest, WordsAreNotWiderThanThePicture) {
+  view_.resize(500, 400);
+  Facts facts = tracked();
+  facts.playback.connected = true;
+  facts.playback.state = "ENDED";
+  const QImage image = drawn(facts);
+  const QRectF picture = Letterbox(QSize(1280, 720), QRectF(view_.rect())).area();
+  int white = 0, at_the_sides = 0;
+  for (int y = static_cast<int>(picture.top()); y < picture.bottom(); ++y) {
+    for (int x = 0; x < image.width(); ++x) {
+      if (qGray(image.pixel(x, y)) < 200) continue;
+      ++white;
+      if (x < picture.left() + 4 || x > picture.right() - 4) ++at_the_sides;
+    }
+  }
+  EXPECT_GT(white, 1000);
+  EXPECT_EQ(at_the_sides, 0);
 }
 
 TEST_F(ImageViewTest, AnOldPictureIsGreyAndSaysSo) {

@@ -35,7 +35,9 @@ TEST(Legend, HasARowForEachFormInItsCorner) {
       const QRectF& sample = legend.samples[k];
       EXPECT_TRUE(QRectF(legend.image.rect()).contains(sample)) << k;
       EXPECT_EQ(sample.center().x() < kCanvas.width() / 2.0, corner == Legend::Corner::kLeft) << k;
-      if (k > 0) EXPECT_GE(sample.top(), legend.samples[k - 1].bottom()) << k;
+      if (k > 0) {
+        EXPECT_GE(sample.top(), legend.samples[k - 1].bottom()) << k;
+      }
       int dark = 0, white = 0;
       for (int x = static_cast<int>(sample.right()) + 1; x < kCanvas.width(); ++x) {
         for (int y = static_cast<int>(sample.top()); y < static_cast<int>(sample.bottom()); ++y) {

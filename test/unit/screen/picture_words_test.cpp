@@ -55,6 +55,7 @@ TEST(PictureWords, ARecordingSaysThatItHasEnded) {
   picture.image = QImage(4, 4, QImage::Format_RGB32);
   picture.arrived_at = picture.changed_at = 10.0;
   EXPECT_EQ(pictureWords(picture, 10.0, "ENDED").words, "ENDED");
+  EXPECT_NE(pictureWords(picture, 10.0, "ENDED").detail.find("\"Again\""), std::string::npos) << "and what to press";
   EXPECT_FALSE(pictureWords(picture, 10.0, "ENDED").live);
   EXPECT_TRUE(pictureWords(picture, 99.0, "PAUSED").live) << "it stands because somebody wants it to";
   EXPECT_TRUE(pictureWords(picture, 99.0, "HOLDING").live);

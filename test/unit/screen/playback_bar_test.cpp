@@ -34,6 +34,8 @@ TEST(PlaybackBar, IsThereOnlyWithARecordingAndSaysWhatItDoes) {
   bar.show(facts);
   QTest::mouseClick(bar.findChild<QPushButton*>("again"), Qt::LeftButton);
   EXPECT_EQ(commands, (std::vector<std::string>{"PAUSE", "STEP", "AGAIN"}));
+  QTest::mouseClick(bar.findChild<QPushButton*>("play"), Qt::LeftButton);
+  EXPECT_EQ(commands.back(), "AGAIN") << "there is nothing to go on with";
 }
 
 }  // namespace

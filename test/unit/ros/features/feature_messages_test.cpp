@@ -33,9 +33,11 @@ TEST(FeatureMessages, CopiesAllOfAFeature) {
   header.frame_id = "optical";
   header.stamp = ros::Time(7, 8);
 
-  const TrackedFeatures message = featuresMessage(header, tracked);
+  const TrackedFeatures message = featuresMessage(header, {640, 480}, tracked);
   EXPECT_EQ(message.header.frame_id, "optical");
   EXPECT_EQ(message.header.stamp, ros::Time(7, 8));
+  EXPECT_EQ(message.width, 640u);
+  EXPECT_EQ(message.height, 480u);
   EXPECT_EQ(message.state, TrackedFeatures::LOST);
   EXPECT_EQ(message.reason, "rim: outside the image");
   ASSERT_EQ(message.features.size(), 2u);
@@ -63,7 +65,7 @@ TEST(FeatureMessages, CopiesAllOfAFeature) {
 TEST(FeatureMessages, SaysThatNothingIsSelected) {
   features::TrackedFeatures tracked;
   features::summarise(tracked, "nothing is selected");
-  const TrackedFeatures message = featuresMessage({}, tracked);
+  const TrackedFeatures message = featuresMessage({}, {640, 480}, tracked);
   EXPECT_EQ(message.state, TrackedFeatures::IDLE);
   EXPECT_EQ(message.reason, "nothing is selected");
   EXPECT_TRUE(message.features.empty());

@@ -10,6 +10,7 @@ namespace laparoscope_servo {
 namespace {
 
 const geometry::Rectangle kRoi{110.0, 75.0, 100.0, 90.0};
+constexpr double kNow = 50.0;  // s
 
 class RegionDeskTest : public testing::Test {
  protected:
@@ -47,28 +48,39 @@ TEST_F(RegionDeskTest, SaysWhetherARegionWouldBeTaken) {
 
 TEST_F(RegionDeskTest, KeepsOnePictureAndKnowsItByItsStamp) {
   EXPECT_TRUE(desk_.preview().empty());
-  EXPECT_NE(whyNot([&] { desk_.kept(ros::Time(1.0)); }).find("freeze_image"), std::string::npos);
-  desk_.keep(snapshot(1.0, cv::Size(1280, 720)));
+  EXPECT_NE(whyNot([&] { desk_.kept(ros::Time(1.0), kNow); }).find("freeze_image"), std::string::npos);
+  EXPECT_FALSE(desk_.holds(ros::Time(1.0)));
+  desk_.keep(snapshot(1.0, cv::Size(1280, 720)), kNow);
   EXPECT_EQ(desk_.preview().size(), cv::Size(640, 360));
-  EXPECT_EQ(desk_.kept(ros::Time(1.0)).stamp, ros::Time(1.0));
-  desk_.keep(snapshot(2.0));
-  EXPECT_NE(whyNot([&] { desk_.kept(ros::Time(1.0)); }).find("another one was frozen"), std::string::npos);
+  EXPECT_EQ(desk_.kept(ros::Time(1.0), kNow)->stamp, ros::Time(1.0));
+  desk_.keep(snapshot(2.0), kNow);
+  EXPECT_TRUE(desk_.holds(ros::Time(2.0)));
+  EXPECT_NE(whyNot([&] { desk_.kept(ros::Time(1.0), kNow); }).find("another one was frozen"), std::string::npos);
+}
+
+TEST_F(RegionDeskTest, APictureThatWasFrozenLongAgoIsNotDrawnIn) {
+  desk_.keep(snapshot(1.0), kNow);
+  const double longest = parameters_.views.max_frozen_age;
+  EXPECT_EQ(whyNot([&] { desk_.kept(ros::Time(1.0), kNow + longest); }), "");
+  const std::string why = whyNot([&] { desk_.kept(ros::Time(1.0), kNow + longest + 5.0); });
+  EXPECT_EQ(why, "the picture was frozen 65 s ago, expected at most 60 s (parameter views/max_frozen_age)");
+  desk_.keep(snapshot(2.0), kNow + longest);
+  EXPECT_EQ(whyNot([&] { desk_.kept(ros::Time(2.0), kNow + longest + 5.0); }), "");
 }
 
 TEST_F(RegionDeskTest, TheRegionIsCutFromThatVeryImage) {
   const auto before = snapshot(1.0);
-  desk_.keep(before);
-  const RecallRoute route = desk_.route(ros::Time(1.0), kRoi, *snapshot(5.0));
+  const RecallRoute route = desk_.route(*before, kRoi, *snapshot(5.0));
   ASSERT_EQ(route.steps.size(), 1u);
   EXPECT_EQ(route.steps[0].name, "");
   EXPECT_EQ(route.steps[0].view.image.data, before->image.data);
   EXPECT_EQ(route.steps[0].view.roi.x, kRoi.x);
   EXPECT_EQ(route.steps[0].stamp, before->stamp);
   EXPECT_EQ(route.epoch, 3u);
-  EXPECT_NE(whyNot([&] { desk_.route(ros::Time(1.0), kRoi, *snapshot(5.0, cv::Size(640, 480))); }).find("another size"),
+  EXPECT_NE(whyNot([&] { desk_.route(*before, kRoi, *snapshot(5.0, cv::Size(640, 480))); }).find("another size"),
             std::string::npos);
   EXPECT_NE(whyNot([&] {
-              desk_.route(ros::Time(1.0), {0.0, 0.0, 2.0, 2.0}, *snapshot(5.0));
+              desk_.route(*before, {0.0, 0.0, 2.0, 2.0}, *snapshot(5.0));
             }).find("too small"),
             std::string::npos);
 }

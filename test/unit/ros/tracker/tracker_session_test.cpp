@@ -202,20 +202,30 @@ TEST_F(TrackerSessionTest, SaysThatARegionWasNotHeldInItsFirstSecondUntilItIsTra
   session.process(picture(), at(1.0));
   cv::Mat grain(kSize, CV_8UC3);
   std::string early, late;
+  std::optional<geometry::Rectangle> proposal;
   for (int k = 1; k <= 40; ++k) {
     random_.fill(grain, cv::RNG::UNIFORM, 0, 2);
     const Processed processed = session.process(grain + elsewhere, at(1.0 + 0.04 * k));
     ASSERT_NE(processed.result.state, State::kTracking) << k;
     (k < 25 ? early : late) = processed.result.reason;
+    EXPECT_EQ(processed.proposal.has_value(), k >= 25) << k;
+    proposal = processed.proposal;
   }
   const std::string said = "it was not held in its first second";
   EXPECT_EQ(early.find(said), std::string::npos) << early;
   EXPECT_NE(late.find(said), std::string::npos) << late;
+  const auto reference = session.reference();
+  ASSERT_TRUE(reference);
+  EXPECT_EQ(reference->stamp, ros::Time(1.0)) << "what is proposed lies in the image of the selection";
+  ASSERT_TRUE(proposal) << late;
+  EXPECT_NE(late.find(roiText(*proposal)), std::string::npos) << late;
+  EXPECT_NO_THROW(tracking::RegionTracker(tracking::TrackerConfig()).check(reference->image, *proposal));
   Processed processed;
   for (int k = 41; k <= 80 && processed.result.state != State::kTracking; ++k)
     processed = session.process(picture(), at(1.0 + 0.04 * k));
   EXPECT_EQ(processed.result.state, State::kTracking);
   EXPECT_EQ(processed.result.reason, "");
+  EXPECT_FALSE(processed.proposal);
   for (int k = 81; k <= 90; ++k) processed = session.process(grain + elsewhere, at(1.0 + 0.04 * k));
   EXPECT_NE(processed.result.state, State::kTracking);
   EXPECT_EQ(processed.result.reason.find(said), std::string::npos) << processed.result.reason;

@@ -41,6 +41,15 @@ TEST(TrackerStateReport, SaysTheFirstImageAndEachChangeAtOnce) {
   const auto selected = report.processed(0.06, other_region);
   ASSERT_TRUE(selected);
   EXPECT_EQ(selected->since, ros::Time(100.02)) << "it tracks since then";
+  other_region.proposal = geometry::Rectangle{20.0, 30.0, 50.0, 60.0};
+  const auto proposed = report.processed(0.065, other_region);
+  ASSERT_TRUE(proposed);
+  EXPECT_EQ(proposed->proposal.y_offset, 30u);
+  EXPECT_EQ(proposed->proposal.width, 50u);
+  other_region.proposal = geometry::Rectangle{-2.0, 30.0, 50.0, 60.0};
+  const auto rectified = report.processed(0.07, other_region);
+  ASSERT_TRUE(rectified);
+  EXPECT_EQ(rectified->proposal.width, 0u) << "the message cannot say it";
   other_region.recall = "going to view 'a'";
   ASSERT_TRUE(report.processed(0.08, other_region));
   other_region.image = cv::Mat(480, 640, CV_8UC1, cv::Scalar(0));

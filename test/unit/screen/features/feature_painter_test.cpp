@@ -19,7 +19,8 @@ const QSize kImage(400, 240);
 constexpr double kStamp = 500.0;
 
 // What is drawn over a picture of kStamp, on a widget twice as large as the image.
-QImage drawn(const std::vector<TrackedFeature>& features, double stamp = kStamp) {
+QImage drawn(const std::vector<TrackedFeature>& features, double stamp = kStamp,
+             const std::optional<QPointF>& mouse = std::nullopt) {
   Facts facts;
   facts.picture.stamp = static_cast<std::int64_t>(kStamp * 1e9);
   facts.features.resize(1);
@@ -28,7 +29,7 @@ QImage drawn(const std::vector<TrackedFeature>& features, double stamp = kStamp)
   QImage image(2 * kImage, QImage::Format_RGB32);
   image.fill(QColor(180, 70, 60));
   QPainter painter(&image);
-  drawFeatures(painter, facts, Letterbox(kImage, QRectF(image.rect())));
+  drawFeatures(painter, facts, Letterbox(kImage, QRectF(image.rect())), mouse);
   return image;
 }
 
@@ -98,6 +99,23 @@ TEST(FeaturePainter, EachKindHasAFormOfItsOwn) {
   const QImage image = drawn({object});
   EXPECT_GT(count(image, {198, 158, 5, 5}, kFeatureColour), 5);
   EXPECT_EQ(count(image, {140, 100, 20, 20}, kFeatureColour), 0);
+}
+
+TEST(FeaturePainter, OfManyOnlyTheOneAtTheMouseHasItsName) {
+  std::vector<TrackedFeature> points;
+  for (std::size_t k = 0; k <= kFewFeatures; ++k) points.push_back(pointMessage("point", 30.0 + 40.0 * k, 120.0));
+  const auto named = [](const QImage& image, double u) {  // the dark box behind the name, at the right of its point
+    return count(image, {u + 5, 112, 10, 3}, QColor(60, 23, 20)) > 5;
+  };
+  const std::vector<TrackedFeature> few(points.begin(), points.end() - 1);
+  EXPECT_TRUE(named(drawn(few), 30.0));
+  EXPECT_TRUE(named(drawn(few), 70.0));
+  EXPECT_FALSE(named(drawn(points), 30.0));
+  EXPECT_FALSE(named(drawn(points), 70.0));
+  const QImage at_mouse = drawn(points, kStamp, QPointF(2 * 70.0 + 8.0, 2 * 120.0));
+  EXPECT_TRUE(named(at_mouse, 70.0));
+  EXPECT_FALSE(named(at_mouse, 30.0));
+  EXPECT_FALSE(named(drawn(points, kStamp, QPointF(2 * 70.0, 2 * 60.0)), 70.0)) << "too far away";
 }
 
 TEST(FeaturePainter, WhatIsOfAnEarlierPictureIsGreyWithItsAge) {
