@@ -68,8 +68,8 @@ void FeatureNodelet::process(const sensor_msgs::ImageConstPtr& message) {
 
 void FeatureNodelet::publish(const ProcessedFeatures& processed) {
   if (features_publisher_.getNumSubscribers() > 0) {
-    features_publisher_.publish(
-        boost::make_shared<TrackedFeatures>(featuresMessage(processed.header, processed.result)));
+    features_publisher_.publish(boost::make_shared<TrackedFeatures>(
+        featuresMessage(processed.header, processed.result, processed.selection_stamp)));
   }
   if (mask_publisher_ && mask_publisher_.getNumSubscribers() > 0)
     mask_publisher_.publish(imageMessage(processed.header, session_->mask()));

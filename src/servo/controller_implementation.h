@@ -35,6 +35,8 @@ class Controller::Implementation {
  private:
   void end(const std::string& reason, double time);
   SafetyFacts facts(const ControllerInput& input) const;
+  const TaskErrorInput& seen(const ControllerInput& input) const;
+  std::string problemOf(const TaskErrorInput& seen) const;
   double d2(const ControllerInput& input) const;
   void correctDepth(const ControllerInput& input);
   void watchEffect(const ControllerInput& input);

@@ -10,6 +10,7 @@
 #include "laparoscope_servo/servo/prediction_config.h"
 #include "laparoscope_servo/servo/safety_config.h"
 #include "laparoscope_servo/servo/shaping_config.h"
+#include "laparoscope_servo/servo/task_config.h"
 
 namespace laparoscope_servo::parameters {
 class Table;
@@ -45,6 +46,7 @@ struct ControllerConfig {
   Workspace range;
   InsertionPointUse insertion_point;
   HorizonConfig horizon;
+  StabiliseConfig stabilise;
   EffectConfig effect;
   SafetyConfig safety;
 };

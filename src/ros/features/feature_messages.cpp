@@ -53,9 +53,11 @@ TrackedFeature featureMessage(const features::TrackedFeature& feature) {
 
 }  // namespace
 
-TrackedFeatures featuresMessage(const std_msgs::Header& header, const features::TrackedFeatures& tracked) {
+TrackedFeatures featuresMessage(const std_msgs::Header& header, const features::TrackedFeatures& tracked,
+                                const ros::Time& selected) {
   TrackedFeatures message;
   message.header = header;
+  message.selection_stamp = selected;
   message.state = static_cast<std::uint8_t>(tracked.state);
   message.reason = tracked.reason;
   message.features.reserve(tracked.features.size());

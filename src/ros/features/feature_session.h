@@ -26,6 +26,7 @@ struct ProcessedFeatures {
   cv::Mat image;            // as tracked, 8UC1 or 8UC3; may share the data of the message
   features::TrackedFeatures result;
   bool selected_now = false;
+  ros::Time selection_stamp;     // of the image in which the features were selected; zero: in none
   std::string selection_error;   // why what was requested, or is in the file, was not selected; else empty
   std::string camera_error;      // why there are no intrinsics; else empty
   image::Repeats repeats;        // repeats of the picture
@@ -75,6 +76,7 @@ class FeatureSession {
   bool file_pending_ = false;      // it is to be selected in the next image
   bool file_selected_ = false;     // what is tracked was selected by it
   bool time_began_again_ = false;  // since the last selection
+  ros::Time selection_stamp_;
   image::RepeatWatch repeats_;
   tracking::FrozenFeed feed_;
 };

@@ -33,9 +33,10 @@ TEST(FeatureMessages, CopiesAllOfAFeature) {
   header.frame_id = "optical";
   header.stamp = ros::Time(7, 8);
 
-  const TrackedFeatures message = featuresMessage(header, tracked);
+  const TrackedFeatures message = featuresMessage(header, tracked, ros::Time(3, 4));
   EXPECT_EQ(message.header.frame_id, "optical");
   EXPECT_EQ(message.header.stamp, ros::Time(7, 8));
+  EXPECT_EQ(message.selection_stamp, ros::Time(3, 4));
   EXPECT_EQ(message.state, TrackedFeatures::LOST);
   EXPECT_EQ(message.reason, "rim: outside the image");
   ASSERT_EQ(message.features.size(), 2u);
