@@ -9,12 +9,14 @@
 
 #include "laparoscope_servo/scope/geometry.h"
 #include "laparoscope_servo/scope/insertion_point.h"
+#include "laparoscope_servo/servo/view_region.h"
 
 namespace laparoscope_servo::closed_loop {
 
 namespace {
 
-constexpr double kStep = 0.001;  // s, of the integration
+constexpr double kStep = 0.001;         // s, of the integration
+constexpr double kEnoughInView = 0.25;  // share of the reference image, as AnchoredMotion needs it
 
 // Normal noise by Box and Muller: the standard does not define the numbers of std::normal_distribution, and the same
 // seed must give the same run everywhere.
@@ -51,9 +53,11 @@ class Loop {
         insertion_point_(shaft_R_camera_.transpose() * Eigen::Vector3d(0.0, 0.0, -config.depth)),
         body_(startPose(), insertion_point_, config.scope_length, config.wrist),
         picture_(pictureOf(config.picture)),
-        signs_(config.signs[0], config.signs[1], config.signs[2], config.signs[3]) {}
+        signs_(config.signs[0], config.signs[1], config.signs[2], config.signs[3]) {
+    if (config.task == "STABILISE") controller_.select(servo::Task::kStabilise);
+  }
 
-  bool seesRoi(double time) const { return nearestToBorder(cornersAt(time)) >= 0.0; }
+  bool seesRoi(double time) const { return nearestToBorder(cornersAt(time, config_.roi)) >= 0.0; }
 
   void expose(double time) {
     servo::TaskErrorInput input;
@@ -63,11 +67,13 @@ class Loop {
     const double noise = config_.corner_noise * (1.0 + covered * (config_.crossing.noise - 1.0));
     input.visible_fraction = 1.0 - covered * config_.crossing.cover;
     input.corner_error = noise;
-    geometry::Quadrilateral seen = cornersAt(time);
-    if (nearestToBorder(seen) >= 0.0) {
+    const bool whole = controller_.task() == servo::Task::kStabilise;
+    const geometry::Rectangle region = whole ? servo::viewRegion(config_.width, config_.height) : config_.roi;
+    geometry::Quadrilateral seen = cornersAt(time, region);
+    if (whole ? referenceInView(time) >= kEnoughInView : nearestToBorder(seen) >= 0.0) {
       for (Eigen::Vector2d& corner : seen) corner += noise_.draw(noise);
-      const Eigen::Matrix3d g = geometry::fromCorners(config_.roi.corners(), seen);
-      input.error = servo::taskError(geometry::normalisedFromPixels(g, config_.camera), config_.roi, config_.camera);
+      const Eigen::Matrix3d g = geometry::fromCorners(region.corners(), seen);
+      input.error = servo::taskError(geometry::normalisedFromPixels(g, config_.camera), region, config_.camera);
       input.valid = true;
     }
     images_.emplace_back(time, input);
@@ -81,9 +87,10 @@ class Loop {
       latest_ = images_.front();
       images_.pop_front();
     }
-    input.task_error = latest_.second;
-    input.task_error.image_time = latest_.first;
-    input.task_error.age = input.task_error.image_age = std::max(0.0, time - latest_.first);
+    servo::TaskErrorInput& seen = controller_.task() == servo::Task::kStabilise ? input.view : input.task_error;
+    seen = latest_.second;
+    seen.image_time = latest_.first;
+    seen.age = seen.image_age = std::max(0.0, time - latest_.first);
     input.robot = {"", true, 0.0};
     input.dead_man = {true, 0.0};
     input.depth.problem.clear();
@@ -159,8 +166,23 @@ class Loop {
     return picture_ * (frozen_ ? *frozen_ : trueHomography(time)) * picture_.transpose();
   }
 
-  geometry::Quadrilateral cornersAt(double time) const {
-    return geometry::apply(geometry::pixelsFromNormalised(seenHomography(time), config_.camera), config_.roi.corners());
+  geometry::Quadrilateral cornersAt(double time, const geometry::Rectangle& region) const {
+    return geometry::apply(geometry::pixelsFromNormalised(seenHomography(time), config_.camera), region.corners());
+  }
+
+  // Share of the reference image that is in view.
+  double referenceInView(double time) const {
+    constexpr int kAlong = 10;
+    const Eigen::Matrix3d g = geometry::pixelsFromNormalised(seenHomography(time), config_.camera);
+    int seen = 0;
+    for (int k = 0; k < kAlong * kAlong; ++k) {
+      const Eigen::Vector3d p = g * Eigen::Vector3d((k % kAlong + 0.5) / kAlong * config_.width,
+                                                    (k / kAlong + 0.5) / kAlong * config_.height, 1.0);
+      const bool inside = p.z() > 0.0 && p.x() >= 0.0 && p.y() >= 0.0 && p.x() <= config_.width * p.z() &&
+                          p.y() <= config_.height * p.z();
+      seen += inside ? 1 : 0;
+    }
+    return static_cast<double>(seen) / (kAlong * kAlong);
   }
 
   // 0 to 1: progress of an instrument over the region.
@@ -202,7 +224,7 @@ class Loop {
         geometry::apply(geometry::pixelsFromNormalised(h, config_.camera), config_.roi.centre());
     s.u = centre.x();
     s.v = centre.y();
-    s.worst_corner = nearestToBorder(cornersAt(time));
+    s.worst_corner = nearestToBorder(cornersAt(time, config_.roi));
     try {
       const servo::TaskError error = servo::taskError(h, config_.roi, config_.camera);
       s.log_depth = error.log_depth;

@@ -73,7 +73,7 @@ void FeatureNodelet::process(const sensor_msgs::ImageConstPtr& message) {
 void FeatureNodelet::publish(const ProcessedFeatures& processed) {
   if (features_publisher_.getNumSubscribers() > 0) {
     features_publisher_.publish(boost::make_shared<TrackedFeatures>(
-        featuresMessage(processed.header, processed.image.size(), processed.result)));
+        featuresMessage(processed.header, processed.image.size(), processed.result, processed.selection_stamp)));
   }
   if (poses_) poses_->publish(processed.header, processed.result);
   if (mask_publisher_ && mask_publisher_.getNumSubscribers() > 0)

@@ -206,6 +206,8 @@ void describe(Table& table, ControllerConfig& c) {
   table.group("horizon", "which way is up, for the spin upright", [&] {
     table.numbers("up", c.horizon.up, 3, Range::finite(), "", "direction in the insertion point's frame; not all zero");
   });
+  table.group("stabilise", "the task STABILISE, which keeps the view of an anchor image by pan and tilt",
+              [&] { describe(table, c.stabilise); });
   table.group("safety", "what the scope has to be sure of before it moves", [&] { describe(table, c.safety); });
 }
 

@@ -74,16 +74,26 @@ SafetyFacts Controller::Implementation::facts(const ControllerInput& input) cons
     facts.tracker = nothingMissing();
     return facts;
   }
-  const TaskErrorInput& task = input.task_error;
+  const TaskErrorInput& task = seen(input);
   facts.tracker = {task.problem,          task.age,         task.image_age, task.valid, task.region,
                    task.visible_fraction, task.corner_error};
-  if (!task.problem.empty() || !task.valid) return facts;
-  facts.tracker.problem = implausible(task);
-  if (facts.tracker.problem.empty() && repeats_.repeats()) {
-    facts.tracker.problem =
-        "the picture repeats: the task error stays the same to the last digit while the scope moves";
-  }
+  if (task.problem.empty() && task.valid) facts.tracker.problem = problemOf(task);
   return facts;
+}
+
+// What the present task goes by; in MANUAL nothing is.
+const TaskErrorInput& Controller::Implementation::seen(const ControllerInput& input) const {
+  return task_ == Task::kStabilise ? input.view : input.task_error;
+}
+
+std::string Controller::Implementation::problemOf(const TaskErrorInput& seen) const {
+  const std::string impossible = implausible(seen);
+  if (!impossible.empty()) return impossible;
+  if (task_ == Task::kStabilise && !(seen.corner_error <= config_.stabilise.max_error))
+    return "where the view is, is not known well enough: its expected error is above stabilise/max_error";
+  if (repeats_.repeats())
+    return "the picture repeats: the task error stays the same to the last digit while the scope moves";
+  return "";
 }
 
 EffectFacts Controller::Implementation::effectFacts() const {
@@ -111,18 +121,19 @@ void Controller::Implementation::correctDepth(const ControllerInput& input) {
 
 // Whether picture and pose may be compared.
 bool Controller::Implementation::isUsable(const ControllerInput& input) const {
-  const TaskErrorInput& task = input.task_error;
-  return task_ == Task::kHoldView && task.problem.empty() && task.valid && task.image_time &&
+  const TaskErrorInput& task = seen(input);
+  return task_ != Task::kManual && task.problem.empty() && task.valid && task.image_time &&
          implausible(task).empty() && input.depth.problem.empty() && input.depth.d2 > 0.0;
 }
 
 // Images are observed also before engaging, so that the tissue's own motion is known by then.
 void Controller::Implementation::watchEffect(const ControllerInput& input) {
   if (!isUsable(input)) return;
-  const TaskErrorInput& task = input.task_error;
+  const TaskErrorInput& task = seen(input);
   EffectObservation image;
   image.time = *task.image_time;
   image.error = task.error;
+  image.region = task.region;
   image.scope = {input.depth.camera_R_shaft, d2(input)};
   image.desired_depth = config_.features.desired_depth;
   image.corner_error = task.corner_error;
@@ -132,10 +143,10 @@ void Controller::Implementation::watchEffect(const ControllerInput& input) {
 
 // It begins where somebody engages, or presses the dead-man switch, and looks.
 void Controller::Implementation::watchLeash(const ControllerInput& input) {
-  if (machine_.state() == SafetyState::kArmed || !engaged() || task_ != Task::kHoldView) leash_.restart();
+  if (machine_.state() == SafetyState::kArmed || !engaged() || task_ == Task::kManual) leash_.restart();
   if (!isUsable(input)) return;
   const ServoInput servo = servoInput(input);
-  const TaskErrorInput& task = input.task_error;
+  const TaskErrorInput& task = seen(input);
   leash_.observe({*task.image_time, task.region, task.error, servo_.toTarget(servo), servo_.sinceImage(servo),
                   input.depth.d2, servo.insertion_point_T_tip});
 }
@@ -171,6 +182,8 @@ void Controller::Implementation::select(Task task) {
   task_ = task;
   task_changed_ = true;
   stick_.restart();
+  effect_.anotherTracker();
+  servo_.setUse(servoUse(task, config_));
   servo_.restart(last_time_);
 }
 
@@ -194,13 +207,13 @@ ControllerOutput Controller::Implementation::update(const ControllerInput& input
     insertion_point_.update(input.time, {tip.translation(), tip.linear().col(2)});
   }
   correctDepth(input);
-  watchRepetition(input.task_error);
+  watchRepetition(seen(input));
   watchEffect(input);
   watchLeash(input);
   // A non-finite time is ignored here, and the budget stays; the state machine stops the scope.
   const bool has_clock = std::isfinite(input.time);
   const double told_for = std::clamp(input.time - last_time_, 0.0, config_.predictor.command_lifetime);
-  if (has_clock) effect_.command(told_for * told_, task_ == Task::kHoldView);
+  if (has_clock) effect_.command(told_for * told_, task_ != Task::kManual);
   SafetyFacts known = facts(input);
   SafetyOutput safety = machine_.step(known);
   ControllerOutput output;
@@ -256,7 +269,7 @@ std::string Controller::Implementation::caution(const SafetyOutput& safety, cons
 void Controller::Implementation::watchRepetition(const TaskErrorInput& task_error) {
   if (!task_error.problem.empty() || !task_error.valid || !task_error.image_time) return;
   const bool moves = moves_since_ && *task_error.image_time - *moves_since_ > servo_.delay() + kShows;
-  repeats_.take(*task_error.image_time, task_error.error, moves && task_ == Task::kHoldView);
+  repeats_.take(*task_error.image_time, task_error.error, moves && task_ != Task::kManual);
 }
 
 ServoLimits Controller::Implementation::limits(const SafetyOutput& safety, double time) const {
@@ -278,8 +291,10 @@ ServoLimits Controller::Implementation::limits(const SafetyOutput& safety, doubl
 ServoInput Controller::Implementation::servoInput(const ControllerInput& input) const {
   ServoInput servo;
   servo.time = input.time;
-  servo.image_time = input.task_error.image_time.value_or(input.time - input.task_error.image_age);
-  servo.error = input.task_error.error;
+  const TaskErrorInput& task = seen(input);
+  servo.image_time = task.image_time.value_or(input.time - task.image_age);
+  servo.error = task.error;
+  servo.region = task.region;
   servo.scope = {input.depth.camera_R_shaft, d2(input)};
   servo.d2_doubt = std::abs(d2_correction_.wanted());
   servo.pose_time = input.time - input.depth.age;

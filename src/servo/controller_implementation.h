@@ -36,6 +36,8 @@ class Controller::Implementation {
  private:
   void end(const std::string& reason, double time);
   SafetyFacts facts(const ControllerInput& input) const;
+  const TaskErrorInput& seen(const ControllerInput& input) const;
+  std::string problemOf(const TaskErrorInput& seen) const;
   double d2(const ControllerInput& input) const;
   void correctDepth(const ControllerInput& input);
   bool isUsable(const ControllerInput& input) const;

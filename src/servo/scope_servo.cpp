@@ -41,8 +41,9 @@ scope::Velocity scaled(const scope::Velocity& velocity, double scale) {
 
 ScopeServo::ScopeServo(const ControllerConfig& config)
     : config_(config),
+      use_(servoUse(Task::kHoldView, config)),
       paper_law_(config.gains),
-      feature_law_(config.features, config.spin),
+      feature_law_(config.features, use_.axes()),
       band_(config.rest),
       oscillation_(config.oscillation),
       limiter_(beforeDeadZone(config)),
@@ -52,7 +53,7 @@ ScopeServo::ScopeServo(const ControllerConfig& config)
       breathing_(config.breathing, config.target) {}
 
 const ControlLaw& ScopeServo::law() const {
-  if (config_.law == LawKind::kPaper) return paper_law_;
+  if (use_.law == LawKind::kPaper) return paper_law_;
   return feature_law_;
 }
 
@@ -62,7 +63,7 @@ void ScopeServo::retune(const ControllerConfig& config) {
   config_.features.depth = config.features.depth;
   config_.features.orientation = config.features.orientation;
   paper_law_ = PaperLaw(config_.gains);
-  feature_law_ = FeatureLaw(config_.features, config_.spin);
+  feature_law_ = FeatureLaw(config_.features, use_.axes());
   RestConfig rest = config.rest;
   rest.enabled = config_.rest.enabled;
   band_.retune(rest);
@@ -74,6 +75,11 @@ void ScopeServo::reset() {
   history_.clear();
   delay_.reset(false);
   forgetTarget();
+}
+
+void ScopeServo::setUse(const ServoUse& use) {
+  use_ = use;
+  feature_law_ = FeatureLaw(config_.features, use_.axes());
 }
 
 void ScopeServo::restart(double time) {
@@ -125,10 +131,10 @@ Eigen::Vector4d ScopeServo::sinceImage(const ServoInput& input) const {
 // The task error, with the ROI's orientation replaced by the horizon's (kUpright) or by zero (kReleased).
 TaskError ScopeServo::oriented(const ServoInput& input) const {
   TaskError error = input.error;
-  if (config_.spin == SpinMode::kServo) return error;
+  if (use_.spin == SpinMode::kServo) return error;
   error.alpha = error.desired_alpha = 0.0;
   error.e_w.setZero();
-  if (config_.spin == SpinMode::kReleased || !input.insertion_point_T_tip) return error;
+  if (use_.spin == SpinMode::kReleased || !input.insertion_point_T_tip) return error;
   const Eigen::Vector3d up(config_.horizon.up[0], config_.horizon.up[1], config_.horizon.up[2]);
   const auto since = scope::Velocity::fromVector(sinceImage(input));
   const Eigen::Matrix3d pose_R_image = geometry::so3Exp(-scope::angularVelocity(since));
@@ -139,17 +145,14 @@ TaskError ScopeServo::oriented(const ServoInput& input) const {
 
 // Velocity of the scope that follows this velocity of the target.
 scope::Velocity ScopeServo::following(const Features& velocity) const {
-  if (config_.spin != SpinMode::kReleased) return scope::Velocity::fromVector(jacobian_.inverse() * velocity);
-  Eigen::Matrix3d without_spin;
-  without_spin << jacobian_.block<3, 2>(0, 0), jacobian_.block<3, 1>(0, 3);
-  const Eigen::Vector3d v = without_spin.inverse() * velocity.head<3>();
-  return {v[0], v[1], 0.0, v[2]};
+  return scope::Velocity::fromVector(inverseOf(jacobian_, use_.axes()) * velocity);
 }
 
 void ScopeServo::observe(const ServoInput& input) {
   const Eigen::Vector2d desired(input.error.desired_x, input.error.desired_y);
-  if (has_image_ && (desired != desired_ || input.error.m_star != m_star_))
+  if (has_image_ && (desired != desired_ || input.error.m_star != m_star_ || input.region != region_))
     restart(input.time);  // another region was selected
+  region_ = input.region;
   desired_ = desired;
   m_star_ = input.error.m_star;
   error_ = oriented(input);
@@ -163,7 +166,9 @@ void ScopeServo::observe(const ServoInput& input) {
   to_target_ = displacementToTarget(error_, input.scope, config_.features.desired_depth);
   image_time_ = input.image_time;
   has_image_ = true;
-  oscillation_.update(image_time_, error_);
+  TaskError controlled = error_;
+  if (!use_.insertion) controlled.log_depth = controlled.desired_log_depth;
+  oscillation_.update(image_time_, controlled);
   if (!to_target_.allFinite()) return;
   const Features place = jacobian_ * (displacement_ + to_target_);
   // If the scope does not execute its commands, a target at rest looks as if it moved along with the scope.

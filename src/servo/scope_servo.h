@@ -16,6 +16,7 @@
 #include "servo/prediction/command_history.h"
 #include "servo/prediction/delay_estimator.h"
 #include "servo/prediction/target_motion.h"
+#include "servo/servo_use.h"
 #include "servo/shaping/hysteresis_band.h"
 #include "servo/shaping/oscillation_guard.h"
 #include "servo/shaping/slew_limiter.h"
@@ -27,6 +28,7 @@ struct ServoInput {
   double time = 0.0;        // s, of the command
   double image_time = 0.0;  // s, of the exposure, on the same clock
   TaskError error;
+  double region = 0.0;  // identifies what the error is of: another one is another target
   scope::Geometry scope;
   // with the shaft's axes; if empty, cone and horizon are not used
   std::optional<Eigen::Isometry3d> insertion_point_T_tip;
@@ -78,6 +80,9 @@ class ScopeServo {
   // Call when another task begins: as stop(), and forgets the target, but not the commands sent.
   void restart(double time);
 
+  // How the task that begins uses the law; with restart().
+  void setUse(const ServoUse& use);
+
   // Forgets everything.
   void reset();
 
@@ -109,6 +114,7 @@ class ScopeServo {
   void remember(double time, const scope::Velocity& executed);
 
   ControllerConfig config_;
+  ServoUse use_;
   PaperLaw paper_law_;
   FeatureLaw feature_law_;
   HysteresisBand band_;
@@ -123,7 +129,8 @@ class ScopeServo {
   bool has_image_ = false;
   bool at_bound_ = false;
   bool blocked_ = false;
-  double blocked_since_ = 0.0;                         // s
+  double blocked_since_ = 0.0;  // s
+  double region_ = 0.0;
   Eigen::Vector2d desired_ = Eigen::Vector2d::Zero();  // reference place of the present region, with m_star_
   Eigen::Vector3d m_star_ = Eigen::Vector3d::Zero();
   // Jacobian of the features at the reference, see target_motion.h

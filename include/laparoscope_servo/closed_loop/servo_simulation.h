@@ -1,7 +1,8 @@
 // The closed loop without ROS and without images: the controller, an ideal scope under an insertion point, a plane of
 // tissue.
 //
-// The camera measures the exact homography of the plane, with noise on the ROI's corners. The robot executes the
+// The camera measures the exact homography of the plane, with noise on the ROI's corners; in STABILISE on those of
+// servo::viewRegion(), as long as enough of the reference image is in view for AnchoredMotion. The robot executes the
 // commands after a delay and with a dead zone, as the end-effector's velocity of eq. (12). Tissue and insertion point
 // may move, the optics may be oblique, and the controller's depths and delay may be wrong. Deterministic: the same
 // configuration and seed give the same numbers. World frame: the camera's at the reference pose.
@@ -35,6 +36,7 @@ struct CrossingConfig {
 };
 
 struct SimulationConfig {
+  std::string task = "HOLD_VIEW";                              // or "STABILISE"
   double frame_rate = 25.0;                                    // Hz, of the camera
   double image_delay = 0.0;                                    // s, from the exposure to the task error
   double corner_noise = 0.3;                                   // px, standard deviation of each corner coordinate

@@ -15,15 +15,10 @@
 #include "laparoscope_servo/servo/insertion_point_estimator.h"
 #include "laparoscope_servo/servo/manual_input.h"
 #include "laparoscope_servo/servo/safety_facts.h"
+#include "laparoscope_servo/servo/task.h"
 #include "laparoscope_servo/servo/task_error_input.h"
 
 namespace laparoscope_servo::servo {
-
-// What moves the scope in SERVO.
-enum class Task {
-  kHoldView,  // the control law, which keeps the region of interest at its place in the image
-  kManual,    // a person, by four velocities; images are not used
-};
 
 struct DepthInput {
   std::string problem = "depth d2 is unknown";  // why the pose cannot be used; empty: it can
@@ -44,11 +39,12 @@ struct RobotReport {
 };
 
 struct ControllerInput {
-  double time = 0.0;       // s, on a clock that never jumps
-  std::string clock_jump;  // description of a jump of another clock since the last step; empty: none
-  std::string ended;       // what has ended the engagement since the last step; empty: nothing
-  TaskErrorInput task_error;
-  ManualInput manual;  // unusable input stops the scope at once
+  double time = 0.0;          // s, on a clock that never jumps
+  std::string clock_jump;     // description of a jump of another clock since the last step; empty: none
+  std::string ended;          // what has ended the engagement since the last step; empty: nothing
+  TaskErrorInput task_error;  // of HOLD_VIEW: of the region of interest
+  TaskErrorInput view;        // of STABILISE: of viewRegion(), from the anchor image to this one
+  ManualInput manual;         // unusable input stops the scope at once
   DepthInput depth;
   RobotReport robot_report;
   RobotFacts robot;       // used if safety/robot_required

@@ -11,6 +11,7 @@
 #include "laparoscope_servo/servo/prediction_config.h"
 #include "laparoscope_servo/servo/safety_config.h"
 #include "laparoscope_servo/servo/shaping_config.h"
+#include "laparoscope_servo/servo/task_config.h"
 
 namespace laparoscope_servo::parameters {
 class Table;
@@ -46,6 +47,7 @@ struct ControllerConfig {
   Workspace range;
   InsertionPointUse insertion_point;
   HorizonConfig horizon;
+  StabiliseConfig stabilise;
   EffectConfig effect;
   LeashConfig leash;
   SafetyConfig safety;

@@ -24,6 +24,13 @@ struct FeatureGains {
       0.08;
 };
 
+// The degrees of freedom that a law uses beside pan and tilt. Without spin the orientation is not controlled, without
+// insertion the depth is not.
+struct LawAxes {
+  bool spin = true;
+  bool insertion = true;
+};
+
 // What the scope's spin is used for.
 enum class SpinMode {
   kServo,     // servoes the orientation of the ROI

@@ -1,6 +1,8 @@
 #include "ros/controller/controller_conversions.h"
 
 #include <cmath>
+#include <cstddef>
+#include <iterator>
 
 #include "ros/common/eigen_messages.h"
 
@@ -74,7 +76,31 @@ servo::RobotFacts fromMessage(const OperatingState& message) {
 }
 
 std::string taskName(servo::Task task) {
-  return task == servo::Task::kManual ? ControllerState::MANUAL : ControllerState::HOLD_VIEW;
+  switch (task) {
+    case servo::Task::kHoldView:
+      return ControllerState::HOLD_VIEW;
+    case servo::Task::kManual:
+      return ControllerState::MANUAL;
+    case servo::Task::kStabilise:
+      return ControllerState::STABILISE;
+  }
+  return ControllerState::HOLD_VIEW;
+}
+
+std::optional<servo::Task> taskNamed(const std::string& name) {
+  for (const servo::Task task : servo::kTasks) {
+    if (taskName(task) == name) return task;
+  }
+  return std::nullopt;
+}
+
+std::string taskNames() {
+  std::string names;
+  for (std::size_t k = 0; k < std::size(servo::kTasks); ++k) {
+    const bool last = k + 1 == std::size(servo::kTasks);
+    names += (k == 0 ? "" : last ? " or " : ", ") + taskName(servo::kTasks[k]);
+  }
+  return names;
 }
 
 scope::Velocity servoVelocity(const ScopeVelocity& message) {

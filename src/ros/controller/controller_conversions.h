@@ -8,11 +8,18 @@
 #include <laparoscope_servo/ScopeVelocity.h>
 #include <laparoscope_servo/TaskError.h>
 
+#include <optional>
+#include <string>
+
 #include "laparoscope_servo/servo/controller.h"
 
 namespace laparoscope_servo {
 
 std::string taskName(servo::Task task);
+// Empty: there is none of that name.
+std::optional<servo::Task> taskNamed(const std::string& name);
+// All of them, for a text: "HOLD_VIEW, MANUAL or STABILISE".
+std::string taskNames();
 
 // Converts without checks; the result may be non-finite.
 scope::Velocity servoVelocity(const ScopeVelocity& message);

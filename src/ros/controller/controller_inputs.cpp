@@ -46,6 +46,10 @@ ControllerInputs::ControllerInputs(ros::NodeHandle& node, ros::NodeHandle& priva
       calls_(calls),
       task_error_input_(resolved(node, config.owners.task_error), "task errors", "owners/task_error",
                         config.control.safety.max_clock_difference),
+      motion_input_(resolved(node, config.owners.motion), "motion features", "owners/motion",
+                    config.control.safety.max_clock_difference),
+      camera_info_input_(resolved(node, config.owners.camera_info), "camera infos", "owners/camera_info",
+                         config.control.safety.max_clock_difference),
       operating_state_input_(resolved(node, config.owners.operating_state), "operating states",
                              "owners/operating_state", config.control.safety.max_clock_difference),
       measured_velocity_input_(resolved(node, config.owners.operating_state), "measured velocities",
@@ -54,11 +58,14 @@ ControllerInputs::ControllerInputs(ros::NodeHandle& node, ros::NodeHandle& priva
                     config.control.safety.max_clock_difference),
       dead_man_input_(resolved(node, config.owners.dead_man), "words of the dead-man switch", "owners/dead_man",
                       config.control.safety.max_clock_difference),
+      view_input_(config.rectified_images),
       dead_man_(config.control.safety.max_dead_man_age) {
   // tcpNoDelay: a message must not wait for a full packet.
   const ros::TransportHints at_once = ros::TransportHints().tcpNoDelay();
   using Self = ControllerInputs;
   task_error_input_.subscriber = node.subscribe("task_error", kQueue, &Self::onTaskError, this, at_once);
+  motion_input_.subscriber = node.subscribe("motion_features", kQueue, &Self::onMotion, this, at_once);
+  camera_info_input_.subscriber = node.subscribe("camera_info", kQueue, &Self::onCameraInfo, this, at_once);
   manual_input_.subscriber = private_node.subscribe("manual", kQueue, &Self::onManual, this, at_once);
   if (config_.control.safety.robot_required) {
     operating_state_input_.subscriber =
@@ -83,9 +90,16 @@ void ControllerInputs::know(bool engaged, servo::Task task) {
 }
 
 void ControllerInputs::forgetStamps() {
-  task_error_ = servo::TaskErrorInput();
-  task_error_watch_.clear();
+  task_error_.forget();
   task_error_input_.stamps.clear();
+  view_.forget();
+  motion_input_.stamps.clear();
+}
+
+void ControllerInputs::Picture::forget() {
+  last = servo::TaskErrorInput();
+  last.problem = words.none;
+  watch.clear();
 }
 
 void ControllerInputs::end(const std::string& why) {
@@ -122,19 +136,42 @@ bool ControllerInputs::isAhead(Input& input, const ros::Time& stamp) const {
   return input.stamps.isAhead(stamp, ros::Time::now());
 }
 
-void ControllerInputs::onTaskError(const ros::MessageEvent<TaskError const>& event) {
-  const bool follows = task_ == servo::Task::kHoldView;
-  if (!counts(task_error_input_, event, engaged_ && follows)) return;
+// Whether the message is the owner's next one. `follows`: the present task goes by it.
+template <typename Message>
+bool ControllerInputs::takes(Input& input, Picture& picture, const ros::MessageEvent<Message const>& event,
+                             bool follows) {
+  if (!counts(input, event, engaged_ && follows)) return false;
   calls_.check_time();
-  const TaskError& message = *event.getConstMessage();
-  const ros::Time now = ros::Time::now();
-  const StampGate::Verdict verdict = task_error_input_.stamps.judge(message.header.stamp, now);
-  if (verdict == StampGate::Verdict::kJumpedBack && follows) clock_jump_ = "stamps of the task error jumped back";
-  if (verdict != StampGate::Verdict::kCounts && verdict != StampGate::Verdict::kJumpedBack) return;
-  task_error_watch_.arrived(message.header.stamp, steadyNow());
-  task_error_ = fromMessage(message);
-  // Converts the stamp to steady time once per image, since the clocks may drift.
-  task_error_.image_time = steadyNow() - task_error_watch_.stampAge(now);
+  const ros::Time stamp = event.getConstMessage()->header.stamp;
+  const StampGate::Verdict verdict = input.stamps.judge(stamp, ros::Time::now());
+  if (verdict == StampGate::Verdict::kJumpedBack && follows) clock_jump_ = picture.words.jumped_back;
+  if (verdict != StampGate::Verdict::kCounts && verdict != StampGate::Verdict::kJumpedBack) return false;
+  picture.watch.arrived(stamp, steadyNow());
+  return true;
+}
+
+// Converts the stamp to steady time once per image, since the clocks may drift.
+void ControllerInputs::keep(Picture& picture, const servo::TaskErrorInput& seen) {
+  picture.last = seen;
+  picture.last.image_time = steadyNow() - picture.watch.stampAge(ros::Time::now());
+}
+
+void ControllerInputs::onTaskError(const ros::MessageEvent<TaskError const>& event) {
+  if (takes(task_error_input_, task_error_, event, task_ == servo::Task::kHoldView))
+    keep(task_error_, fromMessage(*event.getConstMessage()));
+}
+
+void ControllerInputs::onMotion(const ros::MessageEvent<TrackedFeatures const>& event) {
+  if (takes(motion_input_, view_, event, task_ == servo::Task::kStabilise))
+    keep(view_, view_input_.from(*event.getConstMessage()));
+}
+
+// Without a check of its stamp: a calibration does not grow old. With another one, what was measured by the last one
+// does not go on.
+void ControllerInputs::onCameraInfo(const ros::MessageEvent<sensor_msgs::CameraInfo const>& event) {
+  const bool matters = engaged_ && task_ == servo::Task::kStabilise;
+  if (!counts(camera_info_input_, event, matters)) return;
+  if (view_input_.takeCameraInfo(*event.getConstMessage()) && matters) end("camera_info has another calibration");
 }
 
 // A stop is accepted with any stamp.
@@ -204,15 +241,20 @@ void ControllerInputs::fill(servo::ControllerInput& input, double steady_now) co
   input.dead_man = dead_man_.facts(steady_now);
   input.manual.velocity = servoVelocity(manual_);
   input.manual.age = std::max(steady_now - manual_arrival_, stampAge(manual_.header.stamp));
-  input.task_error = task_error_;
-  if (!task_error_watch_.empty()) {
-    input.task_error.age = task_error_watch_.silence(steady_now);
-    input.task_error.image_age = task_error_watch_.stampAge(ros::Time::now());
-  }
-  if (task_error_input_.stamps.onlyAhead()) input.task_error.problem = inFuture("task error");
-  if (task_error_input_.stamps.onlyUnset()) input.task_error.problem = "task error has no stamp";
+  input.task_error = agedOf(task_error_input_, task_error_, steady_now);
+  input.view = agedOf(motion_input_, view_, steady_now);
   input.robot_report = robot_report_;
   input.robot_report.age = steady_now - robot_report_arrival_;
+}
+
+servo::TaskErrorInput ControllerInputs::agedOf(const Input& input, const Picture& picture, double steady_now) {
+  servo::TaskErrorInput seen = picture.last;
+  const bool came = !picture.watch.empty();
+  if (came) seen.age = picture.watch.silence(steady_now);
+  if (came) seen.image_age = picture.watch.stampAge(ros::Time::now());
+  if (input.stamps.onlyAhead()) seen.problem = inFuture(picture.words.name);
+  if (input.stamps.onlyUnset()) seen.problem = picture.words.without_stamp;
+  return seen;
 }
 
 void ControllerInputs::taken() {
@@ -222,14 +264,16 @@ void ControllerInputs::taken() {
 }
 
 void ControllerInputs::describe(diagnostic_updater::DiagnosticStatusWrapper& status) {
-  for (Input* input :
-       {&task_error_input_, &operating_state_input_, &measured_velocity_input_, &manual_input_, &dead_man_input_}) {
+  for (Input* input : {&task_error_input_, &motion_input_, &camera_info_input_, &operating_state_input_,
+                       &measured_velocity_input_, &manual_input_, &dead_man_input_}) {
     if (input->subscriber) describe(*input, status);
   }
-  const StampGate& stamps = task_error_input_.stamps;
-  status.add("task errors: stamps late", stamps.late());
-  status.add("task errors: stamps repeated", stamps.repeated());
-  status.add("task errors: without a stamp", stamps.unset());
+  for (const Input* input : {&task_error_input_, &motion_input_}) {
+    const StampGate& stamps = input->stamps;
+    status.add(input->owner.what() + ": stamps late", stamps.late());
+    status.add(input->owner.what() + ": stamps repeated", stamps.repeated());
+    status.add(input->owner.what() + ": without a stamp", stamps.unset());
+  }
 }
 
 void ControllerInputs::describe(Input& input, diagnostic_updater::DiagnosticStatusWrapper& status) {

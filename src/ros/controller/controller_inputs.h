@@ -10,7 +10,9 @@
 #include <laparoscope_servo/OperatingState.h>
 #include <laparoscope_servo/ScopeVelocity.h>
 #include <laparoscope_servo/TaskError.h>
+#include <laparoscope_servo/TrackedFeatures.h>
 #include <ros/ros.h>
+#include <sensor_msgs/CameraInfo.h>
 #include <std_msgs/Bool.h>
 #include <std_msgs/Empty.h>
 
@@ -24,6 +26,7 @@
 #include "ros/common/stamp_gate.h"
 #include "ros/common/stamp_watch.h"
 #include "ros/controller/controller_parameters.h"
+#include "ros/controller/view_input.h"
 
 namespace laparoscope_servo {
 
@@ -66,11 +69,32 @@ class ControllerInputs {
     bool several = false;         // several publishers were reported
   };
 
+  // What a tracker says of the picture, and its age.
+  struct PictureWords {
+    const char* name;
+    const char* none;
+    const char* without_stamp;
+    const char* jumped_back;
+  };
+  struct Picture {
+    explicit Picture(const PictureWords& said) : words(said) { forget(); }
+    void forget();
+    PictureWords words;
+    servo::TaskErrorInput last;
+    StampWatch watch;
+  };
+
   template <typename Message>
   bool counts(Input& input, const ros::MessageEvent<Message const>& event, bool matters);
   bool manualMatters() const { return engaged_ && task_ == servo::Task::kManual; }
   bool isAhead(Input& input, const ros::Time& stamp) const;
+  template <typename Message>
+  bool takes(Input& input, Picture& picture, const ros::MessageEvent<Message const>& event, bool follows);
+  void keep(Picture& picture, const servo::TaskErrorInput& seen);
+  static servo::TaskErrorInput agedOf(const Input& input, const Picture& picture, double steady_now);
   void onTaskError(const ros::MessageEvent<TaskError const>& event);
+  void onMotion(const ros::MessageEvent<TrackedFeatures const>& event);
+  void onCameraInfo(const ros::MessageEvent<sensor_msgs::CameraInfo const>& event);
   void onOperatingState(const ros::MessageEvent<OperatingState const>& event);
   void onMeasuredVelocity(const ros::MessageEvent<geometry_msgs::TwistStamped const>& event);
   void onManual(const ros::MessageEvent<ScopeVelocity const>& event);
@@ -87,14 +111,19 @@ class ControllerInputs {
   std::string clock_jump_;  // clock jump since taken()
 
   Input task_error_input_;
+  Input motion_input_;
+  Input camera_info_input_;
   Input operating_state_input_;
   Input measured_velocity_input_;
   Input manual_input_;
   Input dead_man_input_;
   ros::Subscriber stop_subscriber_;
 
-  servo::TaskErrorInput task_error_;
-  StampWatch task_error_watch_;
+  Picture task_error_{
+      {"task error", "no task error was received", "task error has no stamp", "stamps of the task error jumped back"}};
+  Picture view_{{"motion of the view", "no motion of the view was received", "motion of the view has no stamp",
+                 "stamps of the motion of the view jumped back"}};
+  ViewInput view_input_;
   servo::RobotFacts robot_;
   ros::Time robot_stamp_;
   double robot_arrival_ = 0.0;  // s, steady

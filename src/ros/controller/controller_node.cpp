@@ -18,7 +18,15 @@ namespace {
 constexpr double kCautionPause = 1.0;  // s, between two cautions on the terminal
 
 const char* doing(servo::Task task) {
-  return task == servo::Task::kManual ? "is driven by hand" : "follows the region of interest";
+  switch (task) {
+    case servo::Task::kHoldView:
+      return "follows the region of interest";
+    case servo::Task::kManual:
+      return "is driven by hand";
+    case servo::Task::kStabilise:
+      return "keeps the view";
+  }
+  return "";
 }
 
 }  // namespace
@@ -178,10 +186,12 @@ void ControllerNode::report(diagnostic_updater::DiagnosticStatusWrapper& status)
   const std::string problem = controller_.problem(last_input_);
   stops_.describe(steadyNow(), status);
   status.add("ready to move", problem.empty() ? "yes" : "no: " + problem);
-  status.add("age of the task error [s]", last_input_.task_error.age);
-  status.add("age of its image [s]", last_input_.task_error.image_age);
-  status.add("visible fraction", last_input_.task_error.visible_fraction);
-  status.add("corner error [px]", last_input_.task_error.corner_error);
+  const servo::TaskErrorInput& seen =
+      last_output_.task == servo::Task::kStabilise ? last_input_.view : last_input_.task_error;
+  status.add("age of the task error [s]", seen.age);
+  status.add("age of its image [s]", seen.image_age);
+  status.add("visible fraction", seen.visible_fraction);
+  status.add("corner error [px]", seen.corner_error);
   status.add("age of d2 [s]", last_input_.depth.age);
   status.add("d2 [m]", last_input_.depth.d2);
   scope_pose_.describe(status);

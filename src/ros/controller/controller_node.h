@@ -1,9 +1,9 @@
 // The controller as a node: task error and tf in, scope velocity out.
 //
-// Subscribes `task_error` (TaskError), `~manual` (ScopeVelocity), `~stop` (std_msgs/Empty) and, where they are
-// required, `operating_state` (OperatingState) and `dead_man` (std_msgs/Bool), see controller_inputs.h; publishes
-// `servo_command` (ScopeVelocity, at a fixed rate, zero unless the arm may move), `~state` (ControllerState, latched)
-// and diagnostics; services `~engage` (std_srvs/SetBool),
+// Subscribes `task_error` (TaskError), `motion_features` (TrackedFeatures), `camera_info`, `~manual` (ScopeVelocity),
+// `~stop` (std_msgs/Empty) and, where they are required, `operating_state` (OperatingState) and `dead_man`
+// (std_msgs/Bool), see controller_inputs.h; publishes `servo_command` (ScopeVelocity, at a fixed rate, zero unless the
+// arm may move), `~state` (ControllerState, latched) and diagnostics; services `~engage` (std_srvs/SetBool),
 // `~select_task` (SelectTask). d2 comes from tf. The rate and all ages run on a steady clock: ROS time that stands
 // still or jumps back stops the arm. Not thread-safe: one thread calls all callbacks.
 #pragma once

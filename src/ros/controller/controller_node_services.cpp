@@ -36,13 +36,14 @@ void ControllerNode::engage(bool on, std_srvs::SetBool::Response& response) {
 
 void ControllerNode::selectTask(const std::string& task, SelectTask::Response& response) {
   checkTime();
-  response.success = task == SelectTask::Request::HOLD_VIEW || task == SelectTask::Request::MANUAL;
-  if (!response.success) {
+  const std::optional<servo::Task> known = taskNamed(task);
+  response.success = known.has_value();
+  if (!known) {
     response.message =
-        "no task '" + task + "', expected HOLD_VIEW or MANUAL; " + taskName(controller_.task()) + " goes on";
+        "no task '" + task + "', expected " + taskNames() + "; " + taskName(controller_.task()) + " goes on";
     return;
   }
-  controller_.select(task == SelectTask::Request::MANUAL ? servo::Task::kManual : servo::Task::kHoldView);
+  controller_.select(*known);
   onTick();
   response.message = task + ", " + toMessage(last_output_).state + ": " + last_output_.reason;
 }

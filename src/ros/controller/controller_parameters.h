@@ -16,6 +16,8 @@ namespace laparoscope_servo {
 struct InputOwners {
   std::string task_error = "tracker";
   std::string operating_state = "aesop";  // also owns measured_cv
+  std::string motion = "motion";
+  std::string camera_info;
   std::string manual;
   std::string dead_man;
 };
@@ -27,6 +29,7 @@ struct ControllerNodeConfig {
   std::string camera = "laparoscope_optical";       // tf frame, O_C
   std::string shaft = "scope_tip";                  // tf frame with its z axis along the shaft, into the body
   InputOwners owners;
+  bool rectified_images = false;      // P of camera_info applies to the features' pixels, otherwise K
   std::string frame_prefix = "auto";  // prefix of frames without a slash; auto: the namespace
   std::string tf_owner = "aesop";     // the node that publishes these frames; empty: the first publisher
   servo::ControllerConfig control;

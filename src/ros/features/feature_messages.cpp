@@ -55,11 +55,12 @@ TrackedFeature featureMessage(const features::TrackedFeature& feature) {
 }  // namespace
 
 TrackedFeatures featuresMessage(const std_msgs::Header& header, const cv::Size& size,
-                                const features::TrackedFeatures& tracked) {
+                                const features::TrackedFeatures& tracked, const ros::Time& selected) {
   TrackedFeatures message;
   message.header = header;
   message.width = static_cast<std::uint32_t>(size.width);
   message.height = static_cast<std::uint32_t>(size.height);
+  message.selection_stamp = selected;
   message.state = static_cast<std::uint8_t>(tracked.state);
   message.reason = tracked.reason;
   message.features.reserve(tracked.features.size());

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <laparoscope_servo/TrackedFeatures.h>
+#include <ros/time.h>
 #include <std_msgs/Header.h>
 
 #include <opencv2/core.hpp>
@@ -10,8 +11,8 @@
 
 namespace laparoscope_servo {
 
-// `size`: of the image.
+// `size`: of the image. `selected`: stamp of the image of their selection; zero: there was none.
 TrackedFeatures featuresMessage(const std_msgs::Header& header, const cv::Size& size,
-                                const features::TrackedFeatures& tracked);
+                                const features::TrackedFeatures& tracked, const ros::Time& selected = ros::Time());
 
 }  // namespace laparoscope_servo

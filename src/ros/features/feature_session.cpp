@@ -88,6 +88,7 @@ void FeatureSession::complete(ProcessedFeatures& processed, const std::optional<
   processed.period = passed.period;
   if (passed.step_back > 0.0) repeats_.clear();  // a film that begins anew shows the same pictures
   if (passed.loop) {
+    selection_stamp_ = ros::Time();
     time_began_again_ = tracker_->features().state != State::kIdle;
     tracker_->reset();
     file_pending_ = file_pending_ || file_selected_;
@@ -132,6 +133,7 @@ void FeatureSession::track(ProcessedFeatures& processed, const std::optional<fea
       file_selected_ = !request;
       file_pending_ = time_began_again_ = false;
       processed.selected_now = true;
+      selection_stamp_ = processed.selection_stamp = processed.header.stamp;
       return;
     } catch (const std::invalid_argument& error) {
       // The file's selection stays pending: the first images of a camera may be black.
@@ -140,6 +142,7 @@ void FeatureSession::track(ProcessedFeatures& processed, const std::optional<fea
   }
   expectMotion(processed, prior);
   processed.result = tracker_->track(processed.image, time, prior);
+  processed.selection_stamp = selection_stamp_;
   if (processed.result.state != State::kIdle) time_began_again_ = false;
   if (time_began_again_) processed.result.reason = "time jumped back";
 }
@@ -153,6 +156,7 @@ void FeatureSession::watchPicture(ProcessedFeatures& processed) {
 
 void FeatureSession::reset() {
   tracker_->reset();
+  selection_stamp_ = ros::Time();
   file_pending_ = file_selected_ = time_began_again_ = false;
 }
 

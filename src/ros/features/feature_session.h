@@ -27,6 +27,7 @@ struct ProcessedFeatures {
   cv::Mat image;            // as tracked, 8UC1 or 8UC3; may share the data of the message
   features::TrackedFeatures result;
   bool selected_now = false;
+  ros::Time selection_stamp;     // of the image in which the features were selected; zero: in none
   std::string selection_error;   // why what was requested, or is in the file, was not selected; else empty
   std::string camera_error;      // why there are no intrinsics; else empty
   std::string motion_error;      // why the camera's motion is not known, where it was asked for; else empty
@@ -86,6 +87,7 @@ class FeatureSession {
   CameraMotion camera_motion_;
   double depth_;                         // m, see setCameraMotion()
   std::optional<ros::Time> last_stamp_;  // from which the motion is asked for; empty: nothing was seen yet
+  ros::Time selection_stamp_;
   image::RepeatWatch repeats_;
   tracking::FrozenFeed feed_;
 };

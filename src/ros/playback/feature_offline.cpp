@@ -59,7 +59,7 @@ class FeatureOffline : public OfflineTracker {
     summary.times.push_back(processed.processing_time);
     if (csv_) csv_->write([&](std::ostream& stream) { writeFeatureCsvRows(stream, image.frame, processed); });
     bag_->write(image.record_time, "/" + options_.tracker + "/features",
-                featuresMessage(processed.header, processed.image.size(), processed.result));
+                featuresMessage(processed.header, processed.image.size(), processed.result, processed.selection_stamp));
     if (overlay_->isWanted()) overlay_->write(drawFeatures(processed.image, processed.result, session_.mask()));
   }
 

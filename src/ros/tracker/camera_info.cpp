@@ -110,15 +110,14 @@ const Model& modelOf(const sensor_msgs::CameraInfo& info) {
                               "', expected plumb_bob, rational_polynomial or equidistant");
 }
 
-// Compares all but the header, since the same camera_info comes with every image. A NaN never compares as equal.
+}  // namespace
+
 bool sameCalibration(const sensor_msgs::CameraInfo& a, const sensor_msgs::CameraInfo& b) {
   return a.width == b.width && a.height == b.height && a.distortion_model == b.distortion_model && a.D == b.D &&
          a.K == b.K && a.R == b.R && a.P == b.P && a.binning_x == b.binning_x && a.binning_y == b.binning_y &&
          a.roi.x_offset == b.roi.x_offset && a.roi.y_offset == b.roi.y_offset && a.roi.width == b.roi.width &&
          a.roi.height == b.roi.height;
 }
-
-}  // namespace
 
 geometry::PinholeCamera cameraFromInfo(const sensor_msgs::CameraInfo& info, ImageKind kind, const cv::Size& size) {
   const bool has_p = std::any_of(info.P.begin(), info.P.end(), [](double value) { return value != 0.0; });

@@ -32,6 +32,9 @@ geometry::PinholeCamera cameraFromInfo(const sensor_msgs::CameraInfo& info, Imag
 // not the model's, and values that are not finite. An R of zeros counts as the identity.
 image::Lens lensFromInfo(const sensor_msgs::CameraInfo& info, const cv::Size& size);
 
+// Compares all but the header, since the same camera_info comes with every image. A NaN never compares as equal.
+bool sameCalibration(const sensor_msgs::CameraInfo& a, const sensor_msgs::CameraInfo& b);
+
 // Reads a file of camera_calibration, YAML or INI. Throws std::runtime_error with the file's name.
 sensor_msgs::CameraInfo readCameraInfo(const std::string& file);
 

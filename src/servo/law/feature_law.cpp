@@ -14,6 +14,24 @@ Eigen::Matrix4d featureJacobian(double x, double y, double depth, const scope::G
   return interaction * scope::insertionPointMotions(scope);
 }
 
+Eigen::Matrix4d inverseOf(const Eigen::Matrix4d& jacobian, const LawAxes& axes) {
+  // Features are in the order x, y, log depth, alpha; velocities in the order pan, tilt, spin, insertion.
+  constexpr int kDepth = 2, kAlpha = 3, kSpin = 2, kInsertion = 3;
+  // A unit row and column in place of each degree of freedom that is not used keeps the others' block by itself.
+  Eigen::Matrix4d part = jacobian;
+  const auto leaveOut = [&part](int feature, int velocity) {
+    part.row(feature).setZero();
+    part.col(velocity).setZero();
+    part(feature, velocity) = 1.0;
+  };
+  if (!axes.spin) leaveOut(kAlpha, kSpin);
+  if (!axes.insertion) leaveOut(kDepth, kInsertion);
+  Eigen::Matrix4d inverse = part.inverse();
+  if (!axes.spin) inverse(kSpin, kAlpha) = 0.0;
+  if (!axes.insertion) inverse(kInsertion, kDepth) = 0.0;
+  return inverse;
+}
+
 double shortTurn(double turn) {
   // rad: half a turn plus 20 degrees of margin for noise, a hundred times an image's noise (target/orientation_noise).
   constexpr double kLongest = 3.5;
@@ -29,16 +47,9 @@ LawVelocity FeatureLaw::velocity(const TaskError& error, const scope::Geometry& 
   const Eigen::Vector3d centring(-gains_.centre * (error.x - error.desired_x),
                                  -gains_.centre * (error.y - error.desired_y),
                                  -gains_.depth * (error.log_depth - error.desired_log_depth));
-  LawVelocity velocity;
-  if (spin_ == SpinMode::kReleased) {
-    Eigen::Matrix3d without_spin;
-    without_spin << j.block<3, 2>(0, 0), j.block<3, 1>(0, 3);
-    const Eigen::Vector3d u = without_spin.inverse() * centring;
-    velocity.centring = {u[0], u[1], 0.0, u[2]};
-    return velocity;
-  }
-  const Eigen::Matrix4d inverse = j.inverse();
+  const Eigen::Matrix4d inverse = inverseOf(j, axes_);
   const double turn = shortTurn(error.alpha - error.desired_alpha);
+  LawVelocity velocity;
   velocity.centring = scope::Velocity::fromVector(inverse.leftCols<3>() * centring);
   velocity.turning = scope::Velocity::fromVector(inverse.col(3) * (-gains_.orientation * turn));
   return velocity;

@@ -1,8 +1,9 @@
 // The law on the features (x, y, log depth, alpha) of the ROI, under the constraint of the insertion point.
 //
 // Four features for four degrees of freedom: each decays as exp(-rate t), the ROI's centre on a straight line in the
-// image. Interaction matrix: Chaumette and Hutchinson, Visual servo control I (2006), for a point and a depth; the
-// orientation is the mean over the ROI's directions.
+// image. A law of fewer degrees of freedom controls fewer features: the others are left alone, and cost the controlled
+// ones nothing. Interaction matrix: Chaumette and Hutchinson, Visual servo control I (2006), for a point and a depth;
+// the orientation is the mean over the ROI's directions.
 #pragma once
 
 #include "laparoscope_servo/servo/law_config.h"
@@ -14,6 +15,10 @@ namespace laparoscope_servo::servo {
 // `depth` Z [m] > 0 of the ROI's centre now, `x`, `y` normalised.
 Eigen::Matrix4d featureJacobian(double x, double y, double depth, const scope::Geometry& scope);
 
+// The inverse of the part of `jacobian`, as above, that belongs to these degrees of freedom and to their features;
+// the rows and columns of the others are zero.
+Eigen::Matrix4d inverseOf(const Eigen::Matrix4d& jacobian, const LawAxes& axes);
+
 // The shorter way round for a turn [rad]; the turn itself if both ways are about equally long.
 double shortTurn(double turn);
 
@@ -22,12 +27,12 @@ double depthOf(const TaskError& error, double desired_depth);
 
 class FeatureLaw : public ControlLaw {
  public:
-  explicit FeatureLaw(const FeatureGains& gains, SpinMode spin = SpinMode::kServo) : gains_(gains), spin_(spin) {}
+  explicit FeatureLaw(const FeatureGains& gains, const LawAxes& axes = {}) : gains_(gains), axes_(axes) {}
   LawVelocity velocity(const TaskError& error, const scope::Geometry& scope) const override;
 
  private:
   FeatureGains gains_;
-  SpinMode spin_;
+  LawAxes axes_;
 };
 
 }  // namespace laparoscope_servo::servo

@@ -86,6 +86,11 @@ void EffectGuard::rearm() {
   forget();
 }
 
+void EffectGuard::anotherTracker() {
+  started_ = false;
+  waiting_.clear();
+}
+
 void EffectGuard::forget() {
   evidence_ = 0.0;
   for (Track& track : tracks_) track.log_likelihood = 0.0;
@@ -177,7 +182,7 @@ bool EffectGuard::reports(double time) const {
 // It does not go on from the last one.
 bool EffectGuard::isOther(const EffectObservation& image) const {
   const double dt = image.time - last_.time;
-  const bool other_region = image.error.m_star != last_.error.m_star;
+  const bool other_region = image.error.m_star != last_.error.m_star || image.region != last_.region;
   const bool other_optics = !image.scope.camera_R_shaft.isApprox(last_.scope.camera_R_shaft, kSameOptics);
   return !started_ || !(dt > 0.0 && dt <= kGap) || other_region || other_optics;
 }

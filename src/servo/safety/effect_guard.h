@@ -43,6 +43,7 @@ struct EffectExplanation;
 struct EffectObservation {
   double time = 0.0;  // s, of the exposure
   TaskError error;
+  double region = 0.0;         // identifies what the error is of
   scope::Geometry scope;       // as configured
   double desired_depth = 0.0;  // m, Z*
   double corner_error = 0.0;   // px, expected of the worst corner
@@ -77,6 +78,9 @@ class EffectGuard {
   const EffectBudget& budget() const { return budget_; }
   // The scope was told to go by (pan, tilt, spin [rad], insertion [m]); `for_view`: by the control law.
   void command(const Eigen::Vector4d& displacement, bool for_view) { budget_.command(displacement, for_view); }
+
+  // Another task begins, which goes by another tracker: its first image is only the start of what follows.
+  void anotherTracker();
 
   // Somebody has engaged: nothing is held against the picture any more; what is known of the tissue's motion stays.
   void rearm();

@@ -33,11 +33,12 @@ TEST(FeatureMessages, CopiesAllOfAFeature) {
   header.frame_id = "optical";
   header.stamp = ros::Time(7, 8);
 
-  const TrackedFeatures message = featuresMessage(header, {640, 480}, tracked);
+  const TrackedFeatures message = featuresMessage(header, {640, 480}, tracked, ros::Time(3, 4));
   EXPECT_EQ(message.header.frame_id, "optical");
   EXPECT_EQ(message.header.stamp, ros::Time(7, 8));
   EXPECT_EQ(message.width, 640u);
   EXPECT_EQ(message.height, 480u);
+  EXPECT_EQ(message.selection_stamp, ros::Time(3, 4));
   EXPECT_EQ(message.state, TrackedFeatures::LOST);
   EXPECT_EQ(message.reason, "rim: outside the image");
   ASSERT_EQ(message.features.size(), 2u);

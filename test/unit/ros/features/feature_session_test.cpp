@@ -68,12 +68,16 @@ class FeatureSessionTest : public testing::TestWithParam<const char*> {
 
 TEST_P(FeatureSessionTest, SelectsAndTracks) {
   FeatureSession session = this->session();
-  EXPECT_EQ(next(session).result.state, State::kIdle);
+  const ProcessedFeatures idle = next(session);
+  EXPECT_EQ(idle.result.state, State::kIdle);
+  EXPECT_TRUE(idle.selection_stamp.isZero());
   const ProcessedFeatures selected = select(session);
+  EXPECT_EQ(selected.selection_stamp, selected.header.stamp);
   EXPECT_TRUE(selected.selected_now) << selected.selection_error;
   const ProcessedFeatures tracked = next(session, 1.0);
   EXPECT_EQ(tracked.result.state, State::kTracking) << tracked.result.reason;
   EXPECT_FALSE(tracked.selected_now);
+  EXPECT_EQ(tracked.selection_stamp, selected.header.stamp);
   EXPECT_EQ(tracked.header.frame_id, "optical_of_the_test");
   EXPECT_NEAR(tracked.period, kPeriod, 1e-6);
   EXPECT_EQ(tracked.result.features.size(), 2u);
@@ -129,6 +133,7 @@ TEST_P(FeatureSessionTest, GoesOnWhenASelectionIsRefused) {
   EXPECT_FALSE(refused.selected_now);
   EXPECT_FALSE(refused.selection_error.empty());
   EXPECT_EQ(refused.result.state, State::kTracking);
+  EXPECT_LT(refused.selection_stamp, refused.header.stamp) << "the selection before goes on";
 }
 
 // The first images of a camera may be black.
@@ -143,6 +148,7 @@ TEST_P(FeatureSessionTest, SelectsTheFileInTheFirstImageThatShowsIt) {
   EXPECT_FALSE(next(session).selected_now);
   session.reset();
   EXPECT_FALSE(next(session).selected_now);
+  EXPECT_TRUE(next(session).selection_stamp.isZero());
   EXPECT_EQ(next(session).result.state, State::kIdle);
   EXPECT_THROW(this->session(folder_.file("absent.yaml")), std::invalid_argument);
 }
@@ -163,6 +169,7 @@ TEST_P(FeatureSessionTest, ForgetsWhenTimeBeginsAgainAndSelectsTheFileAgain) {
     session.clockJumpedBack();
     const ProcessedFeatures again = next(session);
     EXPECT_EQ(again.selected_now, with_file);
+    EXPECT_EQ(again.selection_stamp, with_file ? again.header.stamp : ros::Time());
     EXPECT_EQ(again.result.state, with_file ? State::kTracking : State::kIdle);
     EXPECT_EQ(again.result.reason, with_file ? "" : "time jumped back");
     EXPECT_EQ(next(session).result.reason, with_file ? "" : "time jumped back");

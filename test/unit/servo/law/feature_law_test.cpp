@@ -138,7 +138,7 @@ TEST(FeatureLaw, ConvergesFromRandomVisibleStarts) {
 }
 
 TEST(FeatureLaw, ReleasedItDoesNotSpinAndStillCentres) {
-  const FeatureLaw law(FeatureGains(), SpinMode::kReleased);
+  const FeatureLaw law(FeatureGains(), LawAxes{false, true});
   for (const Eigen::Matrix3d& optics : {Eigen::Matrix3d(Eigen::Matrix3d::Identity()), kOblique}) {
     PlaneLoop loop(Eigen::Vector3d::UnitZ(), kZ, {optics, kD2});
     loop.offset({0.1, -0.1, 0.3, 0.01});
@@ -151,6 +151,46 @@ TEST(FeatureLaw, ReleasedItDoesNotSpinAndStillCentres) {
     EXPECT_LT(std::hypot(error.x - error.desired_x, error.y - error.desired_y), 1e-4);
     EXPECT_LT(std::abs(error.log_depth), 1e-3);
   }
+}
+
+// With oblique optics insertion moves the centre, too: what is not used has to be left out of the inverse, not of the
+// velocity alone.
+TEST(FeatureLaw, PanAndTiltAloneTakeTheCentreStraight) {
+  const FeatureGains gains;
+  const FeatureLaw law(gains, LawAxes{false, false});
+  for (const Eigen::Matrix3d& optics : {Eigen::Matrix3d(Eigen::Matrix3d::Identity()), kOblique}) {
+    PlaneLoop loop(Eigen::Vector3d::UnitZ(), kZ, {optics, kD2});
+    loop.offset({0.1, -0.1, 0.1, 0.01});
+    for (int k = 0; k < 400; ++k) {
+      const TaskError error = loop.error();
+      const scope::Velocity velocity = law.velocity(error, loop.scope()).sum();
+      ASSERT_EQ(velocity.spin, 0.0);
+      ASSERT_EQ(velocity.insertion, 0.0);
+      const Eigen::Vector2d off(error.x - error.desired_x, error.y - error.desired_y);
+      const double depth = depthOf(error, gains.desired_depth);
+      const Eigen::Vector4d rate = featureJacobian(error.x, error.y, depth, loop.scope()) * velocity.vector();
+      ASSERT_LT((rate.head<2>() + gains.centre * off).norm(), 1e-9 + 1e-9 * off.norm()) << k;
+      loop.move(velocity, 0.01);
+    }
+    const TaskError error = loop.error();
+    EXPECT_LT(std::hypot(error.x - error.desired_x, error.y - error.desired_y), 1e-4);
+    EXPECT_GT(std::abs(error.log_depth), 0.05) << "the error that remains";
+  }
+}
+
+TEST(FeatureLaw, TheInverseOfAPartIsThatOfItsBlock) {
+  const Eigen::Matrix4d j = featureJacobian(0.2, -0.1, kZ, {kOblique, kD2});
+  EXPECT_LT((inverseOf(j, LawAxes{true, true}) * j - Eigen::Matrix4d::Identity()).norm(), 1e-12);
+  const Eigen::Matrix4d pan_tilt = inverseOf(j, LawAxes{false, false});
+  EXPECT_LT((pan_tilt.topLeftCorner<2, 2>() * j.topLeftCorner<2, 2>() - Eigen::Matrix2d::Identity()).norm(), 1e-12);
+  EXPECT_EQ(pan_tilt.bottomRows<2>().norm() + pan_tilt.rightCols<2>().norm(), 0.0);
+  Eigen::Matrix3d block;  // x, y, alpha by pan, tilt, spin
+  block << j.topLeftCorner<2, 3>(), j.block<1, 3>(3, 0);
+  const Eigen::Matrix4d with_spin = inverseOf(j, LawAxes{true, false});
+  Eigen::Matrix3d inverse;
+  inverse << with_spin.topLeftCorner<3, 2>(), with_spin.block<3, 1>(0, 3);
+  EXPECT_LT((inverse * block - Eigen::Matrix3d::Identity()).norm(), 1e-12);
+  EXPECT_EQ(with_spin.row(3).norm() + with_spin.col(2).norm(), 0.0);
 }
 
 TEST(FeatureLaw, IsNotFiniteWhereTheErrorIsNot) {

@@ -1,0 +1,14 @@
+// The tasks: what moves the scope in SERVO.
+#pragma once
+
+namespace laparoscope_servo::servo {
+
+enum class Task {
+  kHoldView,   // the control law, which keeps the region of interest at its place in the image
+  kManual,     // a person, by four velocities; images are not used
+  kStabilise,  // the control law, which keeps the whole view where it was in the anchor image
+};
+
+constexpr Task kTasks[] = {Task::kHoldView, Task::kManual, Task::kStabilise};
+
+}  // namespace laparoscope_servo::servo

@@ -1,0 +1,100 @@
+// Stands in for the node of the dominant motion and for the camera: publishes the motion of the view since an anchor
+// (25 Hz) and camera_info (10 Hz) from a thread of its own.
+#pragma once
+
+#include <laparoscope_servo/TrackedFeatures.h>
+#include <ros/ros.h>
+#include <sensor_msgs/CameraInfo.h>
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <thread>
+
+namespace laparoscope_servo {
+
+// What is published; a test changes it.
+struct MotionWords {
+  bool motion = true;
+  bool camera_info = true;
+  double stamp_offset = 0.0;  // s, added to the stamps of the motion
+  bool without_stamp = false;
+  double focal_length = 500.0;  // px, of camera_info
+  TrackedFeatures message;
+};
+
+// The view is off by (u, v) px.
+inline TrackedFeatures viewOff(double u, double v) {
+  TrackedFeatures message;
+  message.state = TrackedFeatures::TRACKING;
+  message.selection_stamp = ros::Time(3);
+  TrackedFeature motion;
+  motion.id = "view";
+  motion.kind = TrackedFeature::MOTION;
+  motion.state = TrackedFeatures::TRACKING;
+  motion.share = 1.0;
+  motion.expected_error = 0.05;
+  motion.parameters = {u, v, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  motion.outline = {u, v, 639.0 + u, v, 639.0 + u, 479.0 + v, u, 479.0 + v};
+  TrackedFeature step = motion;
+  step.id = "view step";
+  message.features = {motion, step};
+  return message;
+}
+
+class MotionFeed {
+ public:
+  MotionFeed() : publisher_([this] { publishUntilEnd(); }) {}
+  ~MotionFeed() { end(); }
+  void end() {
+    end_ = true;
+    if (publisher_.joinable()) publisher_.join();
+  }
+  void set(const std::function<void(MotionWords&)>& change) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    change(words_);
+  }
+
+ private:
+  void publishUntilEnd() {
+    for (int k = 0; !end_; ++k) {
+      MotionWords words;
+      {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        words = words_;
+      }
+      if (words.motion) {
+        words.message.header.stamp = ros::Time::now() + ros::Duration(words.stamp_offset);
+        if (words.without_stamp) words.message.header.stamp = ros::Time();
+        // No two pictures are the same.
+        if (!words.message.features.empty()) words.message.features[0].parameters[0] += 1e-9 * k;
+        motion_.publish(words.message);
+      }
+      if (words.camera_info && k % 3 == 0) {
+        sensor_msgs::CameraInfo info;
+        info.header.stamp = ros::Time::now();
+        info.width = 640;
+        info.height = 480;
+        info.distortion_model = "plumb_bob";
+        info.D.assign(5, 0.0);
+        const double f = words.focal_length;
+        info.K = {f, 0.0, 319.5, 0.0, f, 239.5, 0.0, 0.0, 1.0};
+        info.P = {f, 0.0, 319.5, 0.0, 0.0, f, 239.5, 0.0, 0.0, 0.0, 1.0, 0.0};
+        camera_info_.publish(info);
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(40));
+    }
+  }
+
+  ros::NodeHandle node_;
+  ros::Publisher motion_ = node_.advertise<TrackedFeatures>("/motion_features", 1);
+  ros::Publisher camera_info_ = node_.advertise<sensor_msgs::CameraInfo>("/camera_info", 1);
+  std::mutex mutex_;
+  MotionWords words_;
+  std::atomic<bool> end_{false};
+  std::thread publisher_;
+};
+
+}  // namespace laparoscope_servo
