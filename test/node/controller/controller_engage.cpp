@@ -72,8 +72,9 @@ TEST_F(ControllerEngage, FollowsOnceEngagedAndStopsWhenDisengaged) {
 }
 
 TEST_F(ControllerEngage, KeepsItsLimits) {
-  engageAndMove();
-  cart_.set([](Feed& feed) { feed.message.x = 1.0; });
+  TaskError far = offTarget();
+  far.x = 1.0;
+  engageAndMove(far);
   EXPECT_TRUE(waitFor([this] { return cart_.nextCommands(1).back().pan > 0.0999; }));
   for (const ScopeVelocity& command : cart_.nextCommands(30)) {
     EXPECT_LE(std::abs(command.pan), 0.1 * (1.0 + 1e-9));
@@ -115,22 +116,17 @@ TEST_F(ControllerEngage, AnotherRegionWhileTheArmIsWaitedForIsLost) {
 
 // A picture that is only turned: a straight scope spins, an oblique one has to turn its tip, too.
 TEST_F(ControllerEngage, ObliqueOpticsServoInTheShaftsAxes) {
-  const auto turned = [](double optics) {
-    return [optics](Feed& feed) {
-      feed.optics = optics;
-      feed.message.x = feed.message.y = feed.message.log_depth = 0.0;
-      feed.message.e_v.x = feed.message.e_v.y = feed.message.e_v.z = 0.0;
-      feed.message.alpha = 0.5;
-    };
-  };
+  TaskError turned = offTarget();
+  turned.x = turned.y = turned.log_depth = 0.0;
+  turned.e_v.x = turned.e_v.y = turned.e_v.z = 0.0;
+  turned.alpha = 0.5;
   for (const double optics : {0.0, 0.5236}) {
     bool success = false;
     cart_.engage(false, success);  // nobody turns the optics while the scope is driven: that is a fault
     ASSERT_TRUE(success);
     cart_.strike([=](Feed& feed) { feed.optics = optics; });
     cart_.nextCommands(10);  // until the controller has it
-    engageAndMove();
-    cart_.set(turned(optics));
+    engageAndMove(turned);
     const auto settled = [&] {
       const ScopeVelocity command = cart_.nextCommands(1).back();
       return command.spin > 0.05 && (std::abs(command.pan) > 0.02) == (optics > 0.0);

@@ -22,8 +22,11 @@ class ControllerFixture : public ::testing::Test {
     ASSERT_TRUE(cart_.waitForState(ControllerState::IDLE));
   }
 
-  void engageAndMove() {
-    cart_.set([](Feed& feed) { feed.message = offTarget(); });
+  // `error`: of the target from the start on, since one that jumps away while the scope is engaged is held by the
+  // leash.
+  void engageAndMove(const TaskError& error = offTarget()) {
+    cart_.set([&](Feed& feed) { feed.message = error; });
+    cart_.nextCommands(10);  // until the controller has it
     ASSERT_TRUE(cart_.engageWhenReady());
     ASSERT_TRUE(cart_.waitForState(ControllerState::SERVO));
     ASSERT_TRUE(waitFor([this] { return cart_.moves(); }));

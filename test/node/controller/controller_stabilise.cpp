@@ -35,9 +35,8 @@ class ControllerStabilise : public ControllerFixture {
   }
 
   void engageAndStabilise() {
-    ASSERT_TRUE(cart_.engageWhenReady()) << cart_.answer();
-    ASSERT_TRUE(cart_.waitForState(ControllerState::SERVO)) << cart_.state().reason;
-    ASSERT_TRUE(waitFor([this] { return cart_.moves(); }));
+    // Again, where the calibration of the test before was still in force.
+    ASSERT_TRUE(waitFor([this] { return cart_.engageWhenReady() && cart_.moves(); })) << cart_.state().reason;
   }
   bool waitForReason(const std::string& reason) {
     return waitFor([&] { return cart_.state().reason.find(reason) != std::string::npos; });
