@@ -4,7 +4,8 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
+
+#include "laparoscope_servo/robust/draws.h"
 
 namespace laparoscope_servo::motion {
 
@@ -20,18 +21,6 @@ constexpr double kFar = 1.5;        // px of the level: a vote that is further o
 constexpr double kTolerance = 0.4;  // px of the level: what votes that agree differ by
 constexpr int kDraws = 160;         // of four: with 60 % of the votes right one of eight is
 constexpr int kRefinements = 4;
-
-// Numbers that look random, the same ones each time.
-class Draws {
- public:
-  std::size_t below(std::size_t count) {
-    state_ = state_ * 6364136223846793005ULL + 1442695040888963407ULL;
-    return static_cast<std::size_t>((state_ >> 33) % count);
-  }
-
- private:
-  std::uint64_t state_ = 1;
-};
 
 // Solves for the first `unknowns` of a; false when they are not determined.
 bool solve(const Matrix8& normal, const Vector8d& right, int unknowns, Vector8d& a) {
@@ -105,7 +94,7 @@ double CellVotes::agreement(const Vector8d& a, double tolerance) const {
 std::optional<Vector8d> CellVotes::drawn(int unknowns, double tolerance) const {
   std::optional<Vector8d> best;
   double most = 0.0;
-  Draws draws;
+  robust::Draws draws;
   const int count = unknowns / 2;
   for (int k = 0; k < kDraws; ++k) {
     Matrix8 normal = Matrix8::Zero();
