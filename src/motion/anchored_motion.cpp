@@ -1,7 +1,5 @@
 #include "laparoscope_servo/motion/anchored_motion.h"
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -59,7 +57,7 @@ class AnchoredMotion::Implementation {
   void anchor(const cv::Mat& image, double stamp, const cv::Mat& mask);
   Reason integrate();
   Reason compare();
-  double errorAtCorners() const;
+  double expectedError() const { return errorAtCorners(frame_.corners(), frame_.centre(), covariance_); }
 
   double max_drift_;  // px
   features::StateKeeper keeper_;
@@ -109,15 +107,6 @@ void AnchoredMotion::Implementation::reset() {
   result_.reason = Reason::kReset;
 }
 
-double AnchoredMotion::Implementation::errorAtCorners() const {
-  double worst = 0.0;
-  for (const Eigen::Vector2d& corner : frame_.corners()) {
-    const auto j = fieldJacobian(corner - frame_.centre());
-    worst = std::max(worst, std::sqrt((j * covariance_ * j.transpose()).trace()));
-  }
-  return worst;
-}
-
 // Eq. (10), with homographies in place of sums.
 Reason AnchoredMotion::Implementation::integrate() {
   if (!sequence_.believed()) {
@@ -126,7 +115,7 @@ Reason AnchoredMotion::Implementation::integrate() {
   }
   g_ = step().g * g_;
   covariance_ += sequence_.covariance();
-  if (known_ && !(errorAtCorners() <= max_drift_)) {
+  if (known_ && !(expectedError() <= max_drift_)) {
     known_ = false;
     return Reason::kUncertain;
   }
@@ -142,7 +131,7 @@ Reason AnchoredMotion::Implementation::compare() {
   if (found.why != Reason::kNone) return found.why;
   if (shareInView(found.at.g, frame_) < kEnoughInView) return Reason::kOutside;
   const double surprise = geometry::cornerDistance(found.at.g, g_, frame_);
-  if (known_ && !(surprise <= kSurprise + kDeviations * errorAtCorners())) return Reason::kJump;
+  if (known_ && !(surprise <= kSurprise + kDeviations * expectedError())) return Reason::kJump;
   g_ = found.at.g;
   covariance_ = found.covariance;
   result_.share = found.share;
@@ -173,7 +162,7 @@ const AnchoredResult& AnchoredMotion::Implementation::track(const cv::Mat& image
   result_.since_anchored = stamp - anchored_stamp_;
   result_.in_view = shareInView(g_, frame_);
   result_.covariance = covariance_;
-  result_.expected_error = errorAtCorners();
+  result_.expected_error = expectedError();
   if (result_.state != State::kTracking) {
     features::setUnknown(result_.covariance);
     result_.expected_error = kInfinite;

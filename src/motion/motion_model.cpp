@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace laparoscope_servo::motion {
 
@@ -38,6 +39,16 @@ Eigen::Matrix<double, 2, 8> fieldJacobian(const Eigen::Vector2d& p) {
 
 Eigen::Vector2d MotionField::at(const Eigen::Vector2d& pixel) const {
   return fieldJacobian(pixel - centre) * a;
+}
+
+double errorAtCorners(const geometry::Quadrilateral& corners, const Eigen::Vector2d& centre,
+                      const Eigen::Matrix<double, 8, 8>& covariance) {
+  double worst = 0.0;
+  for (const Eigen::Vector2d& corner : corners) {
+    const Eigen::Matrix<double, 2, 8> j = fieldJacobian(corner - centre);
+    worst = std::max(worst, std::sqrt((j * covariance * j.transpose()).trace()));
+  }
+  return worst;
 }
 
 MotionField scaled(const MotionField& field, double factor) {

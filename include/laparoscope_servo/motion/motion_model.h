@@ -36,6 +36,11 @@ struct MotionField {
 // The derivative of MotionField::at by a, at `p` from the centre.
 Eigen::Matrix<double, 2, 8> fieldJacobian(const Eigen::Vector2d& p);
 
+// Px, the standard deviation of MotionField::at at the worst of these corners, px: the root of the sum of the variances
+// of its two components. `covariance`: of a, about `centre`, px.
+double errorAtCorners(const geometry::Quadrilateral& corners, const Eigen::Vector2d& centre,
+                      const Eigen::Matrix<double, 8, 8>& covariance);
+
 // The field in an image in which all lengths are `factor` times as large: 2 from a level of a pyramid to the next finer
 // one. a0, a1 grow, a2 to a5 remain, a6, a7 shrink.
 MotionField scaled(const MotionField& field, double factor);

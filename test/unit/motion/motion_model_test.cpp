@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <random>
 
 namespace laparoscope_servo::motion {
@@ -145,6 +148,29 @@ TEST(MotionModel, TheFieldsJacobianIsItsDerivative) {
     more.a[k] += 1.0;
     EXPECT_LT((more.at(p) - field.at(p) - j.col(k)).norm(), 1e-9 * (1.0 + j.col(k).norm())) << "a" << k;
   }
+}
+
+// Of fields drawn by the covariance, where they move the corners.
+TEST(MotionModel, TheErrorAtCornersIsThatOfTheWorstOne) {
+  const Eigen::Vector2d centre(100.0, 80.0);
+  const geometry::Quadrilateral corners = geometry::Rectangle{60.0, 50.0, 120.0, 100.0}.corners();
+  std::mt19937 random(11);
+  std::normal_distribution<double> normal(0.0, 1.0);
+  geometry::Vector8d deviations;
+  deviations << 0.5, 0.2, 0.01, 0.003, 0.004, 0.006, 2e-5, 5e-5;
+  Eigen::Matrix<double, 8, 8> mixed = Eigen::Matrix<double, 8, 8>::NullaryExpr([&] { return normal(random); });
+  mixed = (deviations.asDiagonal() * mixed).eval();
+  constexpr int kFields = 20000;
+  std::array<double, 4> squares{};
+  for (int k = 0; k < kFields; ++k) {
+    MotionField field;
+    field.centre = centre;
+    field.a = mixed * geometry::Vector8d::NullaryExpr([&] { return normal(random); });
+    for (std::size_t i = 0; i < 4; ++i) squares[i] += field.at(corners[i]).squaredNorm() / kFields;
+  }
+  const double worst = std::sqrt(*std::max_element(squares.begin(), squares.end()));
+  EXPECT_NEAR(errorAtCorners(corners, centre, mixed * mixed.transpose()), worst, 0.03 * worst);
+  EXPECT_EQ(errorAtCorners(corners, centre, Eigen::Matrix<double, 8, 8>::Zero()), 0.0);
 }
 
 }  // namespace
