@@ -15,6 +15,7 @@ using features::Reason;
 using features::State;
 
 constexpr double kEnoughInView = 0.25;  // share of the anchor, to be compared with
+constexpr double kMostDrift = 5.0;      // px: a larger expected error of what was integrated is not believed
 // Px, and standard deviations of what was integrated: a comparison that is further off found something else.
 constexpr double kSurprise = 2.0, kDeviations = 4.0;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
@@ -39,8 +40,8 @@ double shareInView(const Eigen::Matrix3d& g, const geometry::Rectangle& frame) {
 
 class AnchoredMotion::Implementation {
  public:
-  Implementation(const MotionConfig& config, double max_drift)
-      : max_drift_(max_drift), keeper_(config.state), sequence_(config), estimator_(config), config_(config) {
+  explicit Implementation(const MotionConfig& config)
+      : keeper_(config.state), sequence_(config), estimator_(config), config_(config) {
     starts_.reserve(MotionAligner::kMostStarts);
   }
 
@@ -59,7 +60,6 @@ class AnchoredMotion::Implementation {
   Reason compare();
   double expectedError() const { return errorAtCorners(frame_.corners(), frame_.centre(), covariance_); }
 
-  double max_drift_;  // px
   features::StateKeeper keeper_;
   MotionSequence sequence_;
   MotionEstimator estimator_;
@@ -115,7 +115,7 @@ Reason AnchoredMotion::Implementation::integrate() {
   }
   g_ = step().g * g_;
   covariance_ += sequence_.covariance();
-  if (known_ && !(expectedError() <= max_drift_)) {
+  if (known_ && !(expectedError() <= kMostDrift)) {
     known_ = false;
     return Reason::kUncertain;
   }
@@ -170,9 +170,9 @@ const AnchoredResult& AnchoredMotion::Implementation::track(const cv::Mat& image
   return result_;
 }
 
-AnchoredMotion::AnchoredMotion(const MotionConfig& config, double max_drift) {
+AnchoredMotion::AnchoredMotion(const MotionConfig& config) {
   validation::throwErrors("motion", validate(config));
-  implementation_ = std::make_unique<Implementation>(config, max_drift);
+  implementation_ = std::make_unique<Implementation>(config);
 }
 
 AnchoredMotion::AnchoredMotion(AnchoredMotion&&) noexcept = default;

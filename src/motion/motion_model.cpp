@@ -51,14 +51,6 @@ double errorAtCorners(const geometry::Quadrilateral& corners, const Eigen::Vecto
   return worst;
 }
 
-MotionField scaled(const MotionField& field, double factor) {
-  MotionField result = field;
-  result.a.head<2>() *= factor;
-  result.a.tail<2>() /= factor;
-  result.centre *= factor;
-  return result;
-}
-
 // geometry::sl3Hat(x) moves (u, v) by (x1 + x3 v + (x5 - x6) u - x7 u^2 - x8 u v,
 //                                      x2 + x4 u - (x5 + 2 x6) v - x7 u v - x8 v^2).
 Eigen::Matrix<double, 8, 8> fieldFromSl3(double unit) {
@@ -86,19 +78,6 @@ MotionField fieldOf(const Eigen::Matrix3d& g, const Eigen::Vector2d& centre) {
   field.centre = centre;
   field.a = fieldFromSl3(unit) * stepsAbout(centre, unit).minus(g, Eigen::Matrix3d::Identity());
   return field;
-}
-
-geometry::Vector8d planeMotion(const Eigen::Vector3d& v, const Eigen::Vector3d& w, double depth, double g1, double g2) {
-  geometry::Vector8d a;
-  a << -v.x() / depth - w.y(),       // a0
-      -v.y() / depth + w.x(),        // a1
-      (g1 * v.x() + v.z()) / depth,  // a2
-      g2 * v.x() / depth + w.z(),    // a3
-      g1 * v.y() / depth - w.z(),    // a4
-      (g2 * v.y() + v.z()) / depth,  // a5
-      -g1 * v.z() / depth - w.y(),   // a6
-      -g2 * v.z() / depth + w.x();   // a7
-  return a;
 }
 
 }  // namespace laparoscope_servo::motion
