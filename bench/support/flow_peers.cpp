@@ -5,13 +5,8 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/tracking.hpp>
 
+#include "bench/support/robust_fit.h"
 #include "laparoscope_servo/robust/median.h"
-
-// USAC came with OpenCV 4.5.1.
-#if CV_VERSION_MAJOR > 4 || \
-    (CV_VERSION_MAJOR == 4 && (CV_VERSION_MINOR > 5 || (CV_VERSION_MINOR == 5 && CV_VERSION_REVISION >= 1)))
-#define LAPAROSCOPE_SERVO_BENCH_MAGSAC
-#endif
 
 namespace laparoscope_servo::bench {
 
@@ -19,13 +14,6 @@ namespace {
 
 using Points = std::vector<cv::Point2f>;
 
-#ifdef LAPAROSCOPE_SERVO_BENCH_MAGSAC
-constexpr int kMethod = cv::USAC_MAGSAC;
-constexpr char kFit[] = "magsac";
-#else
-constexpr int kMethod = cv::RANSAC;
-constexpr char kFit[] = "ransac";
-#endif
 constexpr double kInlier = 1.0;  // px
 
 Eigen::Matrix3d fit(motion::Model model, const Points& from, const Points& to) {
@@ -42,8 +30,8 @@ Eigen::Matrix3d fit(motion::Model model, const Points& from, const Points& to) {
     return g;
   }
   const bool affine = model == motion::Model::kAffine;
-  const cv::Mat m = affine ? cv::estimateAffine2D(from, to, cv::noArray(), kMethod, kInlier)
-                           : cv::findHomography(from, to, kMethod, kInlier);
+  const cv::Mat m = affine ? cv::estimateAffine2D(from, to, cv::noArray(), kRobustFit, kInlier)
+                           : cv::findHomography(from, to, kRobustFit, kInlier);
   for (int k = 0; k < static_cast<int>(m.total()); ++k) g(k / 3, k % 3) = m.at<double>(k / 3, k % 3);
   return g;
 }
@@ -83,7 +71,7 @@ std::vector<FlowPeer> flowPeers(motion::Model model) {
     }
     return fit(model, from, to);
   };
-  const std::string name = model == motion::Model::kConstant ? "median" : kFit;
+  const std::string name = model == motion::Model::kConstant ? "median" : kRobustFitName;
   return {{"klt + " + name, klt}, {"dis + " + name, dis}};
 }
 

@@ -4,12 +4,7 @@
 
 #include "bench/support/contestant.h"
 #include "bench/support/crop.h"
-
-// USAC came with OpenCV 4.5.1.
-#if CV_VERSION_MAJOR > 4 || \
-    (CV_VERSION_MAJOR == 4 && (CV_VERSION_MINOR > 5 || (CV_VERSION_MINOR == 5 && CV_VERSION_REVISION >= 1)))
-#define LAPAROSCOPE_SERVO_BENCH_MAGSAC
-#endif
+#include "bench/support/robust_fit.h"
 
 namespace laparoscope_servo::bench {
 
@@ -21,17 +16,7 @@ constexpr int kFewest = 8;
 class Klt : public Contestant {
  public:
   explicit Klt(double margin) : margin_(margin) {}
-#ifdef LAPAROSCOPE_SERVO_BENCH_MAGSAC
-  std::string name() const override {
-    return "klt_magsac";
-  }
-  static constexpr int kMethod = cv::USAC_MAGSAC;
-#else
-  std::string name() const override {
-    return "klt_ransac";
-  }
-  static constexpr int kMethod = cv::RANSAC;
-#endif
+  std::string name() const override { return std::string("klt_") + kRobustFitName; }
 
   void select(const cv::Mat& image, const geometry::Rectangle& roi) override {
     roi_ = roi;
@@ -68,7 +53,7 @@ class Klt : public Contestant {
     next_.resize(kept);
     points_ = next_;
     if (static_cast<int>(kept) < kFewest) return {g_, false};
-    const cv::Mat h = cv::findHomography(reference_, points_, kMethod, 3.0);
+    const cv::Mat h = cv::findHomography(reference_, points_, kRobustFit, 3.0);
     if (h.empty()) return {g_, false};
     for (int k = 0; k < 9; ++k) g_(k / 3, k % 3) = h.at<double>(k / 3, k % 3);
     return {g_, true};

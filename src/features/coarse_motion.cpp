@@ -2,7 +2,8 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
-#include <cstdint>
+
+#include "laparoscope_servo/robust/draws.h"
 
 namespace laparoscope_servo::features {
 
@@ -13,18 +14,6 @@ constexpr int kDraw = 3;
 constexpr double kEnough = 0.75;    // share of the score that all sites on edges would have: no other motion has more
 constexpr double kTolerance = 2.5;  // px: what a sample every other pixel, and a curve that changes its shape, leave
 constexpr double kNoise = 0.7;      // px, of one candidate
-
-// Numbers that look random, the same ones each time.
-class Draws {
- public:
-  int below(int count) {
-    state_ = state_ * 6364136223846793005ULL + 1442695040888963407ULL;
-    return static_cast<int>((state_ >> 33) % static_cast<std::uint64_t>(count));
-  }
-
- private:
-  std::uint64_t state_ = 1;
-};
 
 // What is known of the motion beforehand: it may be of the range, growth and turn of half of it.
 Eigen::Matrix4d information(double range) {
@@ -116,19 +105,19 @@ CoarseResult CoarseMotion::find(const std::vector<Site>& sites, const std::vecto
   // Where the curve is expected comes first: another motion has to be better.
   Motion best = Motion::Zero();
   double best_score = score(candidates, best);
-  Draws draws;
+  robust::Draws draws;
   const Eigen::Matrix4d known = information(range);
   for (int h = 0; h < kHypotheses && best_score < kEnough * most_; ++h) {
     Eigen::Matrix4d normal = known;
     Motion right = Motion::Zero();
     for (int k = 0; k < kDraw; ++k) {
-      const std::size_t i = static_cast<std::size_t>(
-          with_candidates_[static_cast<std::size_t>(draws.below(static_cast<int>(with_candidates_.size())))]);
+      const std::size_t i = static_cast<std::size_t>(with_candidates_[draws.below(with_candidates_.size())]);
       const WeightedCandidates& all = candidates[i];
-      int at = draws.below(all.found.count);
-      while (!(all.weight[static_cast<std::size_t>(at)] > 0.0f)) at = (at + 1) % all.found.count;
+      const std::size_t count = static_cast<std::size_t>(all.found.count);
+      std::size_t at = draws.below(count);
+      while (!(all.weight[at] > 0.0f)) at = (at + 1) % count;
       normal += rows_[i] * rows_[i].transpose() / (kNoise * kNoise);
-      right += rows_[i] * static_cast<double>(all.found.at[static_cast<std::size_t>(at)].offset) / (kNoise * kNoise);
+      right += rows_[i] * static_cast<double>(all.found.at[at].offset) / (kNoise * kNoise);
     }
     const Motion motion = normal.ldlt().solve(right);
     const double value = score(candidates, motion);

@@ -44,20 +44,15 @@ void CurveTrackerBase::refuse(const EdgeReport& report) {
 }
 
 bool CurveTrackerBase::accepts(const cv::Mat& image, double stamp) {
-  image::checkImage(image, stamp);
+  const Reason ended = sequence_.judge(image, stamp);
   if (keeper_.state() == State::kIdle) return false;
-  if (image.size() != size_ || image.type() != type_) {
-    keeper_.reset(Reason::kImageChanged);
-  } else if (stamp < stamp_) {
-    keeper_.reset(Reason::kTimeJumpedBack);
-  }
-  return keeper_.state() != State::kIdle;
+  if (ended != Reason::kNone) keeper_.reset(ended);
+  return ended == Reason::kNone;
 }
 
 void CurveTrackerBase::start(const cv::Mat& image, double stamp) {
-  size_ = image.size();
-  type_ = image.type();
-  stamp_ = tracked_stamp_ = stamp;
+  sequence_.begin(image, stamp);
+  tracked_stamp_ = stamp;
   usual_jump_ = 0.0;
   stopVelocity();
   if (keeper_.state() != State::kTracking || keeper_.confirmed() == 0) keeper_.select(stamp);

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "features/dot_finder.h"
+#include "laparoscope_servo/features/image_sequence.h"
 #include "laparoscope_servo/features/tracked_feature.h"
 #include "laparoscope_servo/geometry/homography.h"
 #include "laparoscope_servo/image/image_type.h"
@@ -99,9 +100,7 @@ class DotTracker::Implementation {
       dots.push_back(dot);
     }
     dots_ = std::move(dots);
-    size_ = image.size();
-    type_ = image.type();
-    stamp_ = stamp;
+    sequence_.begin(image, stamp);
     velocity_.setZero();
     result_.dots.resize(dots_.size());
     result_.selected_now = true;
@@ -110,22 +109,16 @@ class DotTracker::Implementation {
   }
 
   const DotsResult& track(const cv::Mat& image, double stamp, const std::optional<Eigen::Matrix3d>& motion) {
-    image::checkImage(image, stamp);
+    const Reason ended = sequence_.judge(image, stamp);
     result_.selected_now = false;
-    if (!dots_.empty()) {
-      if (image.size() != size_ || image.type() != type_) {
-        forget(Reason::kImageChanged);
-      } else if (stamp < stamp_) {
-        forget(Reason::kTimeJumpedBack);
-      }
-    }
+    if (!dots_.empty() && ended != Reason::kNone) forget(ended);
     if (dots_.empty()) return result_;
     expect(stamp, motion);
     for (Dot& dot : dots_) look(image, dot);
     keepApart();
     measureMotion(stamp);
     for (Dot& dot : dots_) step(dot, stamp);
-    stamp_ = stamp;
+    sequence_.goOn(stamp);
     tell();
     return result_;
   }
@@ -148,7 +141,7 @@ class DotTracker::Implementation {
   }
 
   void expect(double stamp, const std::optional<Eigen::Matrix3d>& motion) {
-    Eigen::Vector2d shift = config_.velocity_damping * (stamp - stamp_) * velocity_;
+    Eigen::Vector2d shift = config_.velocity_damping * (stamp - sequence_.stamp()) * velocity_;
     if (!(shift.norm() <= config_.range)) shift.setZero();
     for (Dot& dot : dots_) {
       dot.expected = dot.place + shift;
@@ -195,7 +188,7 @@ class DotTracker::Implementation {
       before += dot.place;
       now += dot.measured.centre;
     }
-    const double passed = stamp - stamp_;
+    const double passed = stamp - sequence_.stamp();
     velocity_.setZero();
     if (count > 0.0) {
       before /= count;
@@ -266,9 +259,7 @@ class DotTracker::Implementation {
   DotFinder finder_;
   std::vector<Dot> dots_;
   Eigen::Vector2d velocity_ = Eigen::Vector2d::Zero();  // px/s
-  cv::Size size_;
-  int type_ = 0;
-  double stamp_ = 0.0;
+  ImageSequence sequence_;
   DotsResult result_;
 };
 

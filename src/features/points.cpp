@@ -13,6 +13,7 @@
 #include "features/points/point_motion.h"
 #include "features/points/point_selection.h"
 #include "features/points/tracked_point.h"
+#include "laparoscope_servo/features/image_sequence.h"
 #include "laparoscope_servo/features/tracked_feature.h"
 #include "laparoscope_servo/image/image_type.h"
 #include "laparoscope_servo/validation/error_report.h"
@@ -57,8 +58,7 @@ class PointTracker::Implementation {
       point.memory.keep(now_, point.pose.place, flowHalf(config_));
       if (!point.isSeen()) point.memory.forget();
     }
-    type_ = image.type();
-    stamp_ = stamp;
+    sequence_.begin(image, stamp);
     turn_ = 0;
     result_.points.resize(points_.size());
     result_.selected_now = true;
@@ -67,15 +67,9 @@ class PointTracker::Implementation {
   }
 
   const PointsResult& track(const cv::Mat& image, double stamp, const std::optional<Eigen::Matrix3d>& motion) {
-    image::checkImage(image, stamp);
+    const Reason ended = sequence_.judge(image, stamp);
     result_.selected_now = false;
-    if (!points_.empty()) {
-      if (image.size() != now_.size() || image.type() != type_) {
-        forget(Reason::kImageChanged);
-      } else if (stamp < stamp_) {
-        forget(Reason::kTimeJumpedBack);
-      }
-    }
+    if (!points_.empty() && ended != Reason::kNone) forget(ended);
     if (points_.empty()) return result_;
     now_.take(image, config_.levels, config_.saturation);
     for (TrackedPoint& point : points_) point.begin();
@@ -87,7 +81,7 @@ class PointTracker::Implementation {
     for (std::size_t source = 0; source < sources_.size(); ++source) refuseStrays(source);
     for (std::size_t source = 0; source < sources_.size(); ++source) recall(source, stamp);
     for (TrackedPoint& point : points_) step(point, stamp);
-    stamp_ = stamp;
+    sequence_.goOn(stamp);
     tell();
     return result_;
   }
@@ -271,8 +265,7 @@ class PointTracker::Implementation {
   std::vector<PointSource> sources_;
   PointMotion shift_;     // from the last image to this one
   std::size_t turn_ = 0;  // the point that is looked for next
-  int type_ = 0;
-  double stamp_ = 0.0;
+  ImageSequence sequence_;
   PointsResult result_;
 };
 

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "laparoscope_servo/features/image_sequence.h"
 #include "laparoscope_servo/image/image_type.h"
 #include "laparoscope_servo/validation/error_report.h"
 #include "model/model_start.h"
@@ -70,7 +71,6 @@ class ModelTracker::Implementation {
 
   void track(const cv::Mat& image, double stamp, const std::optional<Eigen::Isometry3d>& motion) {
     result_.selected_now = false;
-    image::checkImage(image, stamp);
     if (!accepts(image, stamp)) return idle();
     const bool tracking = keeper_.state() == State::kTracking;
     expect(tracking, stamp, motion);
@@ -94,7 +94,7 @@ class ModelTracker::Implementation {
       velocity_.setZero();
       last_ = report.reason == Reason::kNone ? now_.pose() : home_;
     }
-    stamp_ = stamp;
+    sequence_.goOn(stamp);
     now_.setPose(last_);
     tell(report, now_);
   }
@@ -121,19 +121,15 @@ class ModelTracker::Implementation {
 
   // False: the image was not for this tracker, which is IDLE now if it was not before.
   bool accepts(const cv::Mat& image, double stamp) {
+    const Reason ended = sequence_.judge(image, stamp);
     if (keeper_.state() == State::kIdle) return false;
-    if (image.size() != size_ || image.type() != type_) {
-      keeper_.reset(Reason::kImageChanged);
-    } else if (stamp < stamp_) {
-      keeper_.reset(Reason::kTimeJumpedBack);
-    }
-    return keeper_.state() != State::kIdle;
+    if (ended != Reason::kNone) keeper_.reset(ended);
+    return ended == Reason::kNone;
   }
 
   void begin(const cv::Mat& image, double stamp) {
-    size_ = image.size();
-    type_ = image.type();
-    stamp_ = tracked_stamp_ = stamp;
+    sequence_.begin(image, stamp);
+    tracked_stamp_ = stamp;
     usual_jump_ = 0.0;
     velocity_.setZero();
     keeper_.select(stamp);
@@ -232,9 +228,8 @@ class ModelTracker::Implementation {
   Occluders occluders_;
   ModelResult result_;
   geometry::Vector6d velocity_ = geometry::Vector6d::Zero();
-  double stamp_ = 0.0, tracked_stamp_ = 0.0, usual_jump_ = 0.0;
-  cv::Size size_;
-  int type_ = 0;
+  double tracked_stamp_ = 0.0, usual_jump_ = 0.0;
+  features::ImageSequence sequence_;
 };
 
 ModelTracker::ModelTracker(std::shared_ptr<const CadModel> model, const geometry::PinholeCamera& camera,

@@ -1,7 +1,5 @@
 #include "laparoscope_servo/motion/anchored_motion.h"
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -17,6 +15,7 @@ using features::Reason;
 using features::State;
 
 constexpr double kEnoughInView = 0.25;  // share of the anchor, to be compared with
+constexpr double kMostDrift = 5.0;      // px: a larger expected error of what was integrated is not believed
 // Px, and standard deviations of what was integrated: a comparison that is further off found something else.
 constexpr double kSurprise = 2.0, kDeviations = 4.0;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
@@ -41,8 +40,8 @@ double shareInView(const Eigen::Matrix3d& g, const geometry::Rectangle& frame) {
 
 class AnchoredMotion::Implementation {
  public:
-  Implementation(const MotionConfig& config, double max_drift)
-      : max_drift_(max_drift), keeper_(config.state), sequence_(config), estimator_(config), config_(config) {
+  explicit Implementation(const MotionConfig& config)
+      : keeper_(config.state), sequence_(config), estimator_(config), config_(config) {
     starts_.reserve(MotionAligner::kMostStarts);
   }
 
@@ -59,9 +58,8 @@ class AnchoredMotion::Implementation {
   void anchor(const cv::Mat& image, double stamp, const cv::Mat& mask);
   Reason integrate();
   Reason compare();
-  double errorAtCorners() const;
+  double expectedError() const { return errorAtCorners(frame_.corners(), frame_.centre(), covariance_); }
 
-  double max_drift_;  // px
   features::StateKeeper keeper_;
   MotionSequence sequence_;
   MotionEstimator estimator_;
@@ -109,15 +107,6 @@ void AnchoredMotion::Implementation::reset() {
   result_.reason = Reason::kReset;
 }
 
-double AnchoredMotion::Implementation::errorAtCorners() const {
-  double worst = 0.0;
-  for (const Eigen::Vector2d& corner : frame_.corners()) {
-    const auto j = fieldJacobian(corner - frame_.centre());
-    worst = std::max(worst, std::sqrt((j * covariance_ * j.transpose()).trace()));
-  }
-  return worst;
-}
-
 // Eq. (10), with homographies in place of sums.
 Reason AnchoredMotion::Implementation::integrate() {
   if (!sequence_.believed()) {
@@ -126,7 +115,7 @@ Reason AnchoredMotion::Implementation::integrate() {
   }
   g_ = step().g * g_;
   covariance_ += sequence_.covariance();
-  if (known_ && !(errorAtCorners() <= max_drift_)) {
+  if (known_ && !(expectedError() <= kMostDrift)) {
     known_ = false;
     return Reason::kUncertain;
   }
@@ -142,7 +131,7 @@ Reason AnchoredMotion::Implementation::compare() {
   if (found.why != Reason::kNone) return found.why;
   if (shareInView(found.at.g, frame_) < kEnoughInView) return Reason::kOutside;
   const double surprise = geometry::cornerDistance(found.at.g, g_, frame_);
-  if (known_ && !(surprise <= kSurprise + kDeviations * errorAtCorners())) return Reason::kJump;
+  if (known_ && !(surprise <= kSurprise + kDeviations * expectedError())) return Reason::kJump;
   g_ = found.at.g;
   covariance_ = found.covariance;
   result_.share = found.share;
@@ -173,7 +162,7 @@ const AnchoredResult& AnchoredMotion::Implementation::track(const cv::Mat& image
   result_.since_anchored = stamp - anchored_stamp_;
   result_.in_view = shareInView(g_, frame_);
   result_.covariance = covariance_;
-  result_.expected_error = errorAtCorners();
+  result_.expected_error = expectedError();
   if (result_.state != State::kTracking) {
     features::setUnknown(result_.covariance);
     result_.expected_error = kInfinite;
@@ -181,9 +170,9 @@ const AnchoredResult& AnchoredMotion::Implementation::track(const cv::Mat& image
   return result_;
 }
 
-AnchoredMotion::AnchoredMotion(const MotionConfig& config, double max_drift) {
+AnchoredMotion::AnchoredMotion(const MotionConfig& config) {
   validation::throwErrors("motion", validate(config));
-  implementation_ = std::make_unique<Implementation>(config, max_drift);
+  implementation_ = std::make_unique<Implementation>(config);
 }
 
 AnchoredMotion::AnchoredMotion(AnchoredMotion&&) noexcept = default;

@@ -1,17 +1,17 @@
 #include "motion/cell_votes.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
+
+#include "laparoscope_servo/robust/draws.h"
 
 namespace laparoscope_servo::motion {
 
 namespace {
 
 using geometry::Vector8d;
-using Matrix8 = Eigen::Matrix<double, 8, 8>;
+using tracking::Matrix8d;
 
 constexpr int kMostVotes = 200;
 constexpr int kFewest = 12;
@@ -20,34 +20,18 @@ constexpr double kFar = 1.5;        // px of the level: a vote that is further o
 constexpr double kTolerance = 0.4;  // px of the level: what votes that agree differ by
 constexpr int kDraws = 160;         // of four: with 60 % of the votes right one of eight is
 constexpr int kRefinements = 4;
-
-// Numbers that look random, the same ones each time.
-class Draws {
- public:
-  std::size_t below(std::size_t count) {
-    state_ = state_ * 6364136223846793005ULL + 1442695040888963407ULL;
-    return static_cast<std::size_t>((state_ >> 33) % count);
-  }
-
- private:
-  std::uint64_t state_ = 1;
-};
+constexpr double kSingular = 1e-6;  // see tracking::Factors::conditioning
 
 // Solves for the first `unknowns` of a; false when they are not determined.
-bool solve(const Matrix8& normal, const Vector8d& right, int unknowns, Vector8d& a) {
-  const Vector8d units = normal.diagonal().cwiseMax(1e-12).cwiseSqrt().cwiseInverse();
-  Matrix8 scaled = units.asDiagonal() * normal * units.asDiagonal();
-  for (int k = unknowns; k < 8; ++k) {
-    scaled.row(k).setZero();
-    scaled.col(k).setZero();
-    scaled(k, k) = 1.0;
-  }
-  Vector8d b = units.cwiseProduct(right);
-  b.tail(8 - unknowns).setZero();
-  const Eigen::LDLT<Matrix8> factors(scaled);
-  if (!(factors.vectorD().minCoeff() > 1e-6)) return false;
-  a = units.cwiseProduct(factors.solve(b));
-  a.tail(8 - unknowns).setZero();
+bool solve(Matrix8d normal, Vector8d right, int unknowns, Vector8d& a) {
+  const int without = 8 - unknowns;
+  normal.rightCols(without).setZero();
+  normal.bottomRows(without).setZero();
+  normal.diagonal().tail(without).setOnes();
+  right.tail(without).setZero();
+  const tracking::Factors<8> factors(normal);
+  if (!(factors.conditioning() > kSingular)) return false;
+  a = factors.solve(right);
   return a.allFinite();
 }
 
@@ -105,10 +89,10 @@ double CellVotes::agreement(const Vector8d& a, double tolerance) const {
 std::optional<Vector8d> CellVotes::drawn(int unknowns, double tolerance) const {
   std::optional<Vector8d> best;
   double most = 0.0;
-  Draws draws;
+  robust::Draws draws;
   const int count = unknowns / 2;
   for (int k = 0; k < kDraws; ++k) {
-    Matrix8 normal = Matrix8::Zero();
+    Matrix8d normal = Matrix8d::Zero();
     Vector8d right = Vector8d::Zero(), a;
     for (int i = 0; i < count; ++i) {
       const Vote& vote = votes_[draws.below(votes_.size())];
@@ -125,7 +109,7 @@ std::optional<Vector8d> CellVotes::drawn(int unknowns, double tolerance) const {
 }
 
 bool CellVotes::refine(Vector8d& a, int unknowns, double tolerance) const {
-  Matrix8 normal = Matrix8::Zero();
+  Matrix8d normal = Matrix8d::Zero();
   Vector8d right = Vector8d::Zero();
   for (const Vote& vote : votes_) {
     const double squared = (vote.shift - vote.jacobian * a).squaredNorm() / (tolerance * tolerance);

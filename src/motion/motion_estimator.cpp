@@ -1,7 +1,6 @@
 #include "motion/motion_estimator.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace laparoscope_servo::motion {
 
@@ -11,16 +10,6 @@ using features::Reason;
 
 constexpr double kInView = 0.25;        // of the region's area, that has to be in the image
 constexpr double kLeastTexture = 0.02;  // of all cells, that have to have a say
-
-double errorAtCorners(const geometry::Quadrilateral& region, const Eigen::Vector2d& centre,
-                      const tracking::Matrix8d& covariance) {
-  double worst = 0.0;
-  for (const Eigen::Vector2d& corner : region) {
-    const auto j = fieldJacobian(corner - centre);
-    worst = std::max(worst, std::sqrt((j * covariance * j.transpose()).trace()));
-  }
-  return worst;
-}
 
 }  // namespace
 

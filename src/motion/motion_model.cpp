@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace laparoscope_servo::motion {
 
@@ -40,12 +41,14 @@ Eigen::Vector2d MotionField::at(const Eigen::Vector2d& pixel) const {
   return fieldJacobian(pixel - centre) * a;
 }
 
-MotionField scaled(const MotionField& field, double factor) {
-  MotionField result = field;
-  result.a.head<2>() *= factor;
-  result.a.tail<2>() /= factor;
-  result.centre *= factor;
-  return result;
+double errorAtCorners(const geometry::Quadrilateral& corners, const Eigen::Vector2d& centre,
+                      const Eigen::Matrix<double, 8, 8>& covariance) {
+  double worst = 0.0;
+  for (const Eigen::Vector2d& corner : corners) {
+    const Eigen::Matrix<double, 2, 8> j = fieldJacobian(corner - centre);
+    worst = std::max(worst, std::sqrt((j * covariance * j.transpose()).trace()));
+  }
+  return worst;
 }
 
 // geometry::sl3Hat(x) moves (u, v) by (x1 + x3 v + (x5 - x6) u - x7 u^2 - x8 u v,
@@ -75,19 +78,6 @@ MotionField fieldOf(const Eigen::Matrix3d& g, const Eigen::Vector2d& centre) {
   field.centre = centre;
   field.a = fieldFromSl3(unit) * stepsAbout(centre, unit).minus(g, Eigen::Matrix3d::Identity());
   return field;
-}
-
-geometry::Vector8d planeMotion(const Eigen::Vector3d& v, const Eigen::Vector3d& w, double depth, double g1, double g2) {
-  geometry::Vector8d a;
-  a << -v.x() / depth - w.y(),       // a0
-      -v.y() / depth + w.x(),        // a1
-      (g1 * v.x() + v.z()) / depth,  // a2
-      g2 * v.x() / depth + w.z(),    // a3
-      g1 * v.y() / depth - w.z(),    // a4
-      (g2 * v.y() + v.z()) / depth,  // a5
-      -g1 * v.z() / depth - w.y(),   // a6
-      -g2 * v.z() / depth + w.x();   // a7
-  return a;
 }
 
 }  // namespace laparoscope_servo::motion

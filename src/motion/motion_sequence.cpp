@@ -23,15 +23,14 @@ constexpr double kLeastRegion = 48.0;  // px
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 void check(const cv::Mat& image, double stamp, const cv::Mat& mask) {
-  image::checkType(image);
   if (image.cols < kLeastImage || image.rows < kLeastImage) {
     std::ostringstream text;
     text << "image of " << image.cols << " x " << image.rows << " px, expected at least " << kLeastImage << " x "
          << kLeastImage;
     throw std::invalid_argument(text.str());
   }
+  image::checkImage(image, stamp);
   image::checkMask(mask, image);
-  if (!std::isfinite(stamp)) throw std::invalid_argument("stamp is not finite, expected seconds");
 }
 
 void check(const geometry::Rectangle& region, const cv::Mat& image) {
@@ -53,7 +52,8 @@ MotionSequence::MotionSequence(const MotionConfig& config)
 }
 
 void MotionSequence::reset(Reason reason) {
-  has_last_ = has_region_ = believed_ = false;
+  sequence_.end();
+  has_region_ = believed_ = false;
   velocity_.setZero();
   estimator_.forget();
   keeper_.reset(reason);
@@ -65,10 +65,7 @@ void MotionSequence::start(const cv::Mat& image, double stamp, const std::option
                            const cv::Mat& mask, Reason reason) {
   last_.take(image, mask, config_);
   reset(reason);
-  has_last_ = true;
-  size_ = image.size();
-  type_ = image.type();
-  last_stamp_ = stamp;
+  sequence_.begin(image, stamp);
   has_region_ = region.has_value();
   region_ =
       region.value_or(geometry::Rectangle{0.0, 0.0, static_cast<double>(image.cols), static_cast<double>(image.rows)})
@@ -125,18 +122,16 @@ Reason MotionSequence::estimate(const std::optional<Eigen::Matrix3d>& motion) {
 const MotionResult& MotionSequence::track(const cv::Mat& image, double stamp,
                                           const std::optional<Eigen::Matrix3d>& motion, const cv::Mat& mask) {
   check(image, stamp, mask);
-  if (!has_last_ || stamp < last_stamp_ || image.size() != size_ || image.type() != type_) {
-    const Reason why = !has_last_            ? Reason::kFirstImage
-                       : stamp < last_stamp_ ? Reason::kTimeJumpedBack
-                                             : Reason::kImageChanged;
-    start(image, stamp, std::nullopt, mask, why);
+  const Reason anew = sequence_.judge(image, stamp);
+  if (anew != Reason::kNone) {
+    start(image, stamp, std::nullopt, mask, anew);
     return result_;
   }
   current_.take(image, mask, config_);
   const Eigen::Vector2d centre = result_.field.centre;
   result_ = MotionResult();
   result_.field.centre = centre;
-  result_.interval = stamp - last_stamp_;
+  result_.interval = stamp - sequence_.stamp();
   const bool first = keeper_.state() == State::kIdle;
   if (first) keeper_.select(stamp);
   const Reason why = estimate(motion);
@@ -150,7 +145,7 @@ const MotionResult& MotionSequence::track(const cv::Mat& image, double stamp,
     features::setUnknown(result_.covariance);
   }
   std::swap(last_, current_);
-  last_stamp_ = stamp;
+  sequence_.goOn(stamp);
   return result_;
 }
 

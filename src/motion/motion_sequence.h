@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "laparoscope_servo/features/image_sequence.h"
 #include "laparoscope_servo/motion/dominant_motion.h"
 #include "motion/motion_estimator.h"
 
@@ -39,10 +40,7 @@ class MotionSequence {
   features::StateKeeper keeper_;
   MotionEstimator estimator_;
   MotionImage last_, current_;
-  bool has_last_ = false;
-  cv::Size size_;
-  int type_ = 0;
-  double last_stamp_ = 0.0;
+  features::ImageSequence sequence_;
   bool has_region_ = false;
   geometry::Quadrilateral region_{};                          // in the last image
   geometry::Vector8d velocity_ = geometry::Vector8d::Zero();  // by s, of the last image that was believed

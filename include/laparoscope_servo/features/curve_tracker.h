@@ -14,6 +14,7 @@
 #include "laparoscope_servo/features/edge_config.h"
 #include "laparoscope_servo/features/edge_fit.h"
 #include "laparoscope_servo/features/feature_state.h"
+#include "laparoscope_servo/features/image_sequence.h"
 
 namespace laparoscope_servo::features {
 
@@ -51,11 +52,9 @@ class CurveTrackerBase {
   EdgeConfig config_;
   EdgeFit fit_;
   StateKeeper keeper_;
-  double stamp_ = 0.0;
+  ImageSequence sequence_;
 
  private:
-  cv::Size size_;
-  int type_ = 0;
   Eigen::Vector2d velocity_ = Eigen::Vector2d::Zero();  // px/s
   double tracked_stamp_ = 0.0;
   double usual_jump_ = 0.0;
@@ -103,7 +102,7 @@ class CurveTracker : public CurveTrackerBase {
     }
     keeper_.step(report.reason, stamp);
     if (keeper_.state() == State::kTracking) {
-      now_.settle(fit_.findings(), fit_.covariance(), stamp - stamp_);
+      now_.settle(fit_.findings(), fit_.covariance(), stamp - sequence_.stamp());
       if (tracking) {
         measureVelocity(last_, now_, stamp);
         noteJump(fit_.jump());
@@ -117,7 +116,7 @@ class CurveTracker : public CurveTrackerBase {
       // What is not confirmed yet is looked for where it was; what failed, where the curve was seen last.
       last_ = report.reason == Reason::kNone ? now_ : home_;
     }
-    stamp_ = stamp;
+    sequence_.goOn(stamp);
     tell(report, last_);
     return result_;
   }

@@ -31,9 +31,8 @@ struct AnchoredResult {
 
 class AnchoredMotion {
  public:
-  // `max_drift`: px, expected error of integration, from which on it is not believed. Throws std::invalid_argument that
-  // lists every error of the configuration.
-  explicit AnchoredMotion(const MotionConfig& config = {}, double max_drift = 5.0);
+  // Throws std::invalid_argument that lists every error of the configuration.
+  explicit AnchoredMotion(const MotionConfig& config = {});
   AnchoredMotion(AnchoredMotion&&) noexcept;
   AnchoredMotion& operator=(AnchoredMotion&&) noexcept;
   ~AnchoredMotion();

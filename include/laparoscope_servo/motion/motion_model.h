@@ -36,9 +36,10 @@ struct MotionField {
 // The derivative of MotionField::at by a, at `p` from the centre.
 Eigen::Matrix<double, 2, 8> fieldJacobian(const Eigen::Vector2d& p);
 
-// The field in an image in which all lengths are `factor` times as large: 2 from a level of a pyramid to the next finer
-// one. a0, a1 grow, a2 to a5 remain, a6, a7 shrink.
-MotionField scaled(const MotionField& field, double factor);
+// Px, the standard deviation of MotionField::at at the worst of these corners, px: the root of the sum of the variances
+// of its two components. `covariance`: of a, about `centre`, px.
+double errorAtCorners(const geometry::Quadrilateral& corners, const Eigen::Vector2d& centre,
+                      const Eigen::Matrix<double, 8, 8>& covariance);
 
 // Where pixels are after a unit of time, determinant 1.
 Eigen::Matrix3d homographyOf(const MotionField& field);
@@ -47,9 +48,5 @@ MotionField fieldOf(const Eigen::Matrix3d& g, const Eigen::Vector2d& centre);
 
 // From x of sl(3), in coordinates about the centre whose unit is `unit` px (see geometry::Sl3Steps), to a: a = T x.
 Eigen::Matrix<double, 8, 8> fieldFromSl3(double unit);
-
-// a of normalised points (metres at 1 m, by s): what a camera with the velocity (v, w) [m/s, rad/s] in its own frame
-// sees of the plane Z = depth + g1 X + g2 Y [m] at rest.
-geometry::Vector8d planeMotion(const Eigen::Vector3d& v, const Eigen::Vector3d& w, double depth, double g1, double g2);
 
 }  // namespace laparoscope_servo::motion

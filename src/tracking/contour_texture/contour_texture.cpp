@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "laparoscope_servo/features/edge_fit.h"
+#include "laparoscope_servo/features/image_sequence.h"
 #include "laparoscope_servo/features/spline.h"
 #include "laparoscope_servo/geometry/homography.h"
 #include "laparoscope_servo/image/image_type.h"
@@ -74,9 +75,7 @@ class ContourTextureTracker::Implementation {
   MotionFilter filter_;
   ContourFit fit_;
   EsmState last_;  // last estimate that was believed, or has to be confirmed
-  cv::Size size_;
-  int type_ = 0;
-  double stamp_ = 0.0;
+  features::ImageSequence sequence_;
 };
 
 void ContourTextureTracker::Implementation::select(const cv::Mat& image, double stamp,
@@ -86,9 +85,7 @@ void ContourTextureTracker::Implementation::select(const cv::Mat& image, double 
   fresh.fit_.setReference(image, splineOf(image, selected, config_, seen.share));
   fresh.filter_.start(fresh.fit_.roi(), fresh.fit_.normalisation(), stamp);
   fresh.keeper_.select(stamp);
-  fresh.size_ = image.size();
-  fresh.type_ = image.type();
-  fresh.stamp_ = stamp;
+  fresh.sequence_.begin(image, stamp);
   features::begin(fresh.told_, {selected});
   fresh.told_.features[0].kind = features::FeatureKind::kHomography;
   *this = std::move(fresh);
@@ -98,11 +95,10 @@ void ContourTextureTracker::Implementation::select(const cv::Mat& image, double 
 
 void ContourTextureTracker::Implementation::track(const cv::Mat& image, double stamp,
                                                   const std::optional<Eigen::Matrix3d>& motion) {
-  image::checkImage(image, stamp);
+  const Reason ended = sequence_.judge(image, stamp);
   if (keeper_.state() == features::State::kIdle) return;
-  if (image.size() != size_ || image.type() != type_) return reset(Reason::kImageChanged);
-  if (stamp < stamp_) return reset(Reason::kTimeJumpedBack);
-  stamp_ = stamp;
+  if (ended != Reason::kNone) return reset(ended);
+  sequence_.goOn(stamp);
   const bool tracking = keeper_.state() == features::State::kTracking;
   std::optional<Eigen::Matrix3d> carried;
   if (motion && motion->allFinite() && motion->determinant() > 1e-12)

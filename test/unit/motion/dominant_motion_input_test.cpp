@@ -89,6 +89,11 @@ TEST_F(DominantMotionInput, BeginsAnewWithAnotherSizeOrType) {
   EXPECT_EQ(motion_.track(grey, 0.2).state, State::kTracking);
 }
 
+TEST_F(DominantMotionInput, NamesTheImageWhereTimeJumpsBackAsWell) {
+  EXPECT_EQ(motion_.track(movingTissue(2, field_)(cv::Rect(0, 0, 200, 200)), 0.01).state, State::kIdle);
+  EXPECT_EQ(motion_.result().reason, Reason::kImageChanged);
+}
+
 // Two images at one time have a motion between them, but no velocity.
 TEST_F(DominantMotionInput, BearsAStampThatRepeats) {
   EXPECT_EQ(motion_.track(movingTissue(2, field_), 0.04).state, State::kTracking);

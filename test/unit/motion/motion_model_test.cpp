@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <random>
 
 namespace laparoscope_servo::motion {
@@ -15,6 +18,21 @@ MotionField randomField(std::mt19937& random, double size = 1.0) {
   field.a << 5.0 * normal(random), 5.0 * normal(random), 0.02 * normal(random), 0.02 * normal(random),
       0.02 * normal(random), 0.02 * normal(random), 3e-5 * normal(random), 3e-5 * normal(random);
   return field;
+}
+
+// a of normalised points (metres at 1 m, by s): what a camera with the velocity (v, w) [m/s, rad/s] in its own frame
+// sees of the plane Z = depth + g1 X + g2 Y [m] at rest.
+geometry::Vector8d planeMotion(const Eigen::Vector3d& v, const Eigen::Vector3d& w, double depth, double g1, double g2) {
+  geometry::Vector8d a;
+  a << -v.x() / depth - w.y(),       // a0
+      -v.y() / depth + w.x(),        // a1
+      (g1 * v.x() + v.z()) / depth,  // a2
+      g2 * v.x() / depth + w.z(),    // a3
+      g1 * v.y() / depth - w.z(),    // a4
+      (g2 * v.y() + v.z()) / depth,  // a5
+      -g1 * v.z() / depth - w.y(),   // a6
+      -g2 * v.z() / depth + w.x();   // a7
+  return a;
 }
 
 TEST(MotionModel, CoefficientsAreThoseOfTheSurvey) {
@@ -108,17 +126,6 @@ TEST(MotionModel, FewerParametersAreSubgroups) {
             1e-12);
 }
 
-TEST(MotionModel, ScalesFromLevelToLevel) {
-  std::mt19937 random(9);
-  const MotionField coarse = randomField(random);
-  const MotionField fine = scaled(coarse, 2.0);
-  EXPECT_EQ(fine.a.head<2>(), (2.0 * coarse.a.head<2>()).eval());
-  EXPECT_EQ((fine.a.segment<4>(2)), (coarse.a.segment<4>(2)));
-  EXPECT_EQ(fine.a.tail<2>(), (0.5 * coarse.a.tail<2>()).eval());
-  const Eigen::Vector2d p(100.0, 30.0);
-  EXPECT_LT((fine.at(2.0 * p) - 2.0 * coarse.at(p)).norm(), 1e-12);
-}
-
 TEST(MotionModel, DirectionsOfSl3AreTheModels) {
   const double unit = 320.0;
   const Eigen::Vector2d p(120.0, -50.0);
@@ -145,6 +152,29 @@ TEST(MotionModel, TheFieldsJacobianIsItsDerivative) {
     more.a[k] += 1.0;
     EXPECT_LT((more.at(p) - field.at(p) - j.col(k)).norm(), 1e-9 * (1.0 + j.col(k).norm())) << "a" << k;
   }
+}
+
+// Of fields drawn by the covariance, where they move the corners.
+TEST(MotionModel, TheErrorAtCornersIsThatOfTheWorstOne) {
+  const Eigen::Vector2d centre(100.0, 80.0);
+  const geometry::Quadrilateral corners = geometry::Rectangle{60.0, 50.0, 120.0, 100.0}.corners();
+  std::mt19937 random(11);
+  std::normal_distribution<double> normal(0.0, 1.0);
+  geometry::Vector8d deviations;
+  deviations << 0.5, 0.2, 0.01, 0.003, 0.004, 0.006, 2e-5, 5e-5;
+  Eigen::Matrix<double, 8, 8> mixed = Eigen::Matrix<double, 8, 8>::NullaryExpr([&] { return normal(random); });
+  mixed = (deviations.asDiagonal() * mixed).eval();
+  constexpr int kFields = 20000;
+  std::array<double, 4> squares{};
+  for (int k = 0; k < kFields; ++k) {
+    MotionField field;
+    field.centre = centre;
+    field.a = mixed * geometry::Vector8d::NullaryExpr([&] { return normal(random); });
+    for (std::size_t i = 0; i < 4; ++i) squares[i] += field.at(corners[i]).squaredNorm() / kFields;
+  }
+  const double worst = std::sqrt(*std::max_element(squares.begin(), squares.end()));
+  EXPECT_NEAR(errorAtCorners(corners, centre, mixed * mixed.transpose()), worst, 0.03 * worst);
+  EXPECT_EQ(errorAtCorners(corners, centre, Eigen::Matrix<double, 8, 8>::Zero()), 0.0);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "seen.h"
 #include "support/synthetic_tissue.h"
 
 namespace laparoscope_servo::features {
@@ -14,12 +15,6 @@ namespace {
 
 const cv::Size kSize(200, 160);
 const Eigen::Vector2d kPlace(100.0, 80.0);
-
-PointImage seen(const cv::Mat& image) {
-  PointImage result;
-  result.take(image, 3, 250);
-  return result;
-}
 
 // About the place, which goes to place + shift.
 Eigen::Matrix3d affine(const Eigen::Matrix2d& shape, const Eigen::Vector2d& shift) {

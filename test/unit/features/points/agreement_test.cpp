@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "seen.h"
 #include "support/synthetic_tissue.h"
 
 namespace laparoscope_servo::features {
@@ -13,10 +14,8 @@ constexpr int kHalf = 10;
 const Eigen::Vector2d kPlace(100.0, 80.0);
 
 Window window(const cv::Mat& picture) {
-  PointImage image;
-  image.take(picture, 1, 250);
   Window result(kHalf);
-  result.sample(image, 0, kPlace, Eigen::Matrix2d::Identity());
+  result.sample(seen(picture), 0, kPlace, Eigen::Matrix2d::Identity());
   return result;
 }
 

@@ -2,18 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include "seen.h"
 #include "support/synthetic_tissue.h"
 
 namespace laparoscope_servo::features {
 namespace {
 
 const Eigen::Vector2d kPlace(160.0, 120.0);
-
-PointImage seen(const cv::Mat& image) {
-  PointImage result;
-  result.take(image, 4, 250);
-  return result;
-}
 
 class PointFlowTest : public testing::Test {
  protected:

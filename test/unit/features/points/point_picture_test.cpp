@@ -3,16 +3,11 @@
 #include <gtest/gtest.h>
 
 #include "laparoscope_servo/geometry/homography.h"
+#include "seen.h"
 #include "support/synthetic_tissue.h"
 
 namespace laparoscope_servo::features {
 namespace {
-
-PointImage seen(const cv::Mat& image) {
-  PointImage result;
-  result.take(image, 4, 250);
-  return result;
-}
 
 TEST(PointPicture, IsFoundShiftedTurnedAndLarger) {
   for (const cv::Size& size : {cv::Size(320, 240), cv::Size(800, 600)}) {  // the larger one is reduced

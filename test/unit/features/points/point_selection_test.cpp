@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "points_check.h"
+#include "seen.h"
 
 namespace laparoscope_servo::features {
 namespace {
@@ -12,9 +13,7 @@ namespace {
 class PointSelectionTest : public testing::Test {
  protected:
   PointChoice select(const cv::Mat& image, const std::vector<PointGroup>& groups) {
-    PointImage now;
-    now.take(image, config_.levels, config_.saturation);
-    return selectPoints(now, 2.0, groups, config_, comparer_);
+    return selectPoints(seen(image), 2.0, groups, config_, comparer_);
   }
 
   PointsConfig config_;
@@ -58,8 +57,7 @@ TEST_F(PointSelectionTest, SelectsWhatIsNotSeenOfAPictureThatIs) {
 TEST_F(PointSelectionTest, LooksForThePointsOfOnePictureByAMotion) {
   PointChoice choice = select(scene_, {{cv::Mat(), corners_}});
   const Eigen::Matrix3d g = motion({30.0, -12.0}, 0.5);
-  PointImage now;
-  now.take(test::view(scene_, g, 1.0, 0.0, 1.0), config_.levels, config_.saturation);
+  const PointImage now = seen(test::view(scene_, g, 1.0, 0.0, 1.0));
   for (TrackedPoint& point : choice.points) point.reason = Reason::kNotSeen;
   choice.points[0].reason = Reason::kNone;
   EXPECT_EQ(lookBy(g, 7, now, comparer_, choice.points), 0u);

@@ -5,15 +5,10 @@
 #include <cmath>
 
 #include "points_check.h"
+#include "seen.h"
 
 namespace laparoscope_servo::features {
 namespace {
-
-PointImage seen(const cv::Mat& image) {
-  PointImage result;
-  result.take(image, 4, 250);
-  return result;
-}
 
 TEST(TrackedPoint, IsPutWhereAMotionTakesItWithItsShape) {
   PointPose pose;

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "seen.h"
+
 namespace laparoscope_servo::features {
 namespace {
 
@@ -10,9 +12,7 @@ PointImage slope() {
   cv::Mat image(60, 60, CV_8UC1);
   image.forEach<unsigned char>(
       [](unsigned char& value, const int* at) { value = static_cast<unsigned char>(10 + at[1] + 2 * at[0]); });
-  PointImage seen;
-  seen.take(image, 2, 250);
-  return seen;
+  return seen(image);
 }
 
 std::size_t index(const Window& window, int i, int j) {
@@ -48,8 +48,7 @@ TEST(Window, TakesPlacesInPixelsOfTheImageOnEveryLevel) {
 TEST(Window, WhatIsPaddedOrOutsideOrSaturatedIsNotValid) {
   cv::Mat flat(60, 60, CV_8UC1, cv::Scalar(90));
   flat.at<unsigned char>(10, 10) = 255;
-  PointImage image;
-  image.take(flat, 1, 250);
+  const PointImage image = seen(flat);
   Window window(4);
   const Eigen::Matrix2d one = Eigen::Matrix2d::Identity();
   // Two columns of nine lie outside.
