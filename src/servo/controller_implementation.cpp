@@ -51,6 +51,7 @@ Controller::Implementation::Implementation(const ControllerConfig& config)
       servo_(config),
       machine_(config.safety),
       stick_(config.safety, config.limits.velocity),
+      tip_(config.centre_tip.dwell, config.centre_tip.still),
       repeats_(config.safety.max_repeated_errors),
       effect_(config.effect, {config.target.centre_noise, config.target.depth_noise, config.target.orientation_noise}),
       opposed_(config.dead_zone.width),
@@ -79,21 +80,6 @@ SafetyFacts Controller::Implementation::facts(const ControllerInput& input) cons
                    task.visible_fraction, task.corner_error};
   if (task.problem.empty() && task.valid) facts.tracker.problem = problemOf(task);
   return facts;
-}
-
-// What the present task goes by; in MANUAL nothing is.
-const TaskErrorInput& Controller::Implementation::seen(const ControllerInput& input) const {
-  return task_ == Task::kStabilise ? input.view : input.task_error;
-}
-
-std::string Controller::Implementation::problemOf(const TaskErrorInput& seen) const {
-  const std::string impossible = implausible(seen);
-  if (!impossible.empty()) return impossible;
-  if (task_ == Task::kStabilise && !(seen.corner_error <= config_.stabilise.max_error))
-    return "where the view is, is not known well enough: its expected error is above stabilise/max_error";
-  if (repeats_.repeats())
-    return "the picture repeats: the task error stays the same to the last digit while the scope moves";
-  return "";
 }
 
 EffectFacts Controller::Implementation::effectFacts() const {
@@ -210,6 +196,7 @@ ControllerOutput Controller::Implementation::update(const ControllerInput& input
   watchRepetition(seen(input));
   watchEffect(input);
   watchLeash(input);
+  watchTip(input.tip);
   // A non-finite time is ignored here, and the budget stays; the state machine stops the scope.
   const bool has_clock = std::isfinite(input.time);
   const double told_for = std::clamp(input.time - last_time_, 0.0, config_.predictor.command_lifetime);
@@ -220,8 +207,7 @@ ControllerOutput Controller::Implementation::update(const ControllerInput& input
   const bool moves = safety.state == ControllerState::kServo && !task_changed_;
   const std::string stick = stick_.update(input.manual, moves && task_ == Task::kManual, input.time);
   if (moves) {
-    output.command =
-        task_ == Task::kManual ? drive(input, stick) : servo_.command(servoInput(input), limits(safety, input.time));
+    output.command = task_ == Task::kManual ? drive(input, stick) : follow(input, safety);
     known.command_finite = output.command.vector().allFinite();
     if (!known.command_finite) {
       safety = machine_.step(known);
@@ -301,6 +287,14 @@ ServoInput Controller::Implementation::servoInput(const ControllerInput& input) 
   servo.insertion_point_T_tip = input.depth.insertion_point_T_tip;
   servo.period = has_time_ ? std::min(input.time - last_time_, config_.safety.max_period) : 0.0;
   return servo;
+}
+
+scope::Velocity Controller::Implementation::follow(const ControllerInput& input, const SafetyOutput& safety) {
+  if (task_ == Task::kCentreTip && told_.isZero(0.0) && !tip_.isStill()) {
+    servo_.stop(input.time);
+    return scope::Velocity();
+  }
+  return servo_.command(servoInput(input), limits(safety, input.time));
 }
 
 scope::Velocity Controller::Implementation::drive(const ControllerInput& input, const std::string& problem) {
