@@ -106,9 +106,13 @@ TEST_F(SimulateServo, LaterFilesOverrule) {
   EXPECT_NEAR(std::stod(readCsv("a.csv")[1][10]), 0.11, 1e-9);
 }
 
-double number(const std::vector<std::vector<std::string>>& rows, std::size_t row, const std::string& column) {
+std::string word(const std::vector<std::vector<std::string>>& rows, std::size_t row, const std::string& column) {
   const auto found = std::find(rows.at(0).begin(), rows.at(0).end(), column);
-  return std::stod(rows.at(row).at(static_cast<std::size_t>(found - rows[0].begin())));
+  return rows.at(row).at(static_cast<std::size_t>(found - rows[0].begin()));
+}
+
+double number(const std::vector<std::vector<std::string>>& rows, std::size_t row, const std::string& column) {
+  return std::stod(word(rows, row, column));
 }
 
 TEST_F(SimulateServo, SummaryHasALinePerRun) {
@@ -145,7 +149,7 @@ TEST_F(SimulateServo, SummaryHasALinePerRun) {
     EXPECT_LE(number(rows, k, "max_commanded_lateral_speed"), 1e-9);
     EXPECT_LE(number(rows, k, "max_lateral_speed"), 1e-9);
     EXPECT_LE(number(rows, k, "max_lateral_offset"), 1e-9);
-    EXPECT_EQ(rows[k].at(rows[k].size() - 9), "SERVO");
+    EXPECT_EQ(word(rows, k, "final_state"), "SERVO");
     EXPECT_EQ(number(rows, k, "stopped"), -1.0);
     EXPECT_EQ(number(rows, k, "holds"), 0.0);
   }
