@@ -15,11 +15,6 @@ ControllerConfig checked(const ControllerConfig& config) {
   return config;
 }
 
-// s, beyond the delay, after which a motion must be visible in the image. Derived: a command reaches the limit of 0.1
-// rad/s by 1 rad/s^2 in 0.1 s (limits/), and in half of that it has moved the picture by 1 px at a focal length of 800
-// px.
-constexpr double kShows = 0.1;
-
 // Share of the effect budget at which the scope stops. Derived: one more step, 0.02 s at 0.1 rad/s, is 4 % of 0.044 rad
 // (effect/unconfirmed_turn). It stops at once instead of slowing down, since fast motion shows its effect better than
 // slow motion.
@@ -105,38 +100,6 @@ void Controller::Implementation::correctDepth(const ControllerInput& input) {
   d2_correction_.update(input.time, wanted);
 }
 
-// Whether picture and pose may be compared.
-bool Controller::Implementation::isUsable(const ControllerInput& input) const {
-  const TaskErrorInput& task = seen(input);
-  return task_ != Task::kManual && task.problem.empty() && task.valid && task.image_time &&
-         implausible(task).empty() && input.depth.problem.empty() && input.depth.d2 > 0.0;
-}
-
-// Images are observed also before engaging, so that the tissue's own motion is known by then.
-void Controller::Implementation::watchEffect(const ControllerInput& input) {
-  if (!isUsable(input)) return;
-  const TaskErrorInput& task = seen(input);
-  EffectObservation image;
-  image.time = *task.image_time;
-  image.error = task.error;
-  image.region = task.region;
-  image.scope = {input.depth.camera_R_shaft, d2(input)};
-  image.desired_depth = config_.features.desired_depth;
-  image.corner_error = task.corner_error;
-  image.breath_known = servo_.breathingRate() > 0.0;
-  effect_.observe(image, servo_.history(), servo_.delay());
-}
-
-// It begins where somebody engages, or presses the dead-man switch, and looks.
-void Controller::Implementation::watchLeash(const ControllerInput& input) {
-  if (machine_.state() == SafetyState::kArmed || !engaged() || task_ == Task::kManual) leash_.restart();
-  if (!isUsable(input)) return;
-  const ServoInput servo = servoInput(input);
-  const TaskErrorInput& task = seen(input);
-  leash_.observe({*task.image_time, task.region, task.error, servo_.toTarget(servo), servo_.sinceImage(servo),
-                  input.depth.d2, servo.insertion_point_T_tip});
-}
-
 std::string Controller::Implementation::engage(const ControllerInput& input) {
   if (engaged()) return "";
   const std::string refusal = problem(input);
@@ -168,6 +131,7 @@ void Controller::Implementation::select(Task task) {
   task_ = task;
   task_changed_ = true;
   stick_.restart();
+  leash_.restart();
   effect_.anotherTracker();
   servo_.setUse(servoUse(task, config_));
   servo_.restart(last_time_);
@@ -250,12 +214,6 @@ std::string Controller::Implementation::caution(const SafetyOutput& safety, cons
   if (text.empty() && servo_.blocked()) text = "the robot does not do what it is told";
   if (!stick.empty()) text += (text.empty() ? "" : "; ") + stick;
   return text;
-}
-
-void Controller::Implementation::watchRepetition(const TaskErrorInput& task_error) {
-  if (!task_error.problem.empty() || !task_error.valid || !task_error.image_time) return;
-  const bool moves = moves_since_ && *task_error.image_time - *moves_since_ > servo_.delay() + kShows;
-  repeats_.take(*task_error.image_time, task_error.error, moves && task_ != Task::kManual);
 }
 
 ServoLimits Controller::Implementation::limits(const SafetyOutput& safety, double time) const {

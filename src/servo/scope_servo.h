@@ -82,6 +82,7 @@ class ScopeServo {
 
   // How the task that begins uses the law; with restart().
   void setUse(const ServoUse& use);
+  const ServoUse& use() const { return use_; }
 
   // Forgets everything.
   void reset();

@@ -13,7 +13,8 @@ struct ServoUse {
   SpinMode spin = SpinMode::kServo;
   bool insertion = true;  // false: neither depth nor insertion is controlled
   // The target moves as tissue does, and is followed ahead of its image. False: a hand moves it, it may stop or turn at
-  // any time, and is taken to be at rest.
+  // any time, and is taken to be at rest. It may be brought anywhere in the workspace, so the leash begins anew each
+  // time that the scope stands.
   bool is_tissue = true;
   std::optional<RestConfig> rest;  // bands of rest of its own; empty: those of the configuration
 
