@@ -4,11 +4,12 @@
 #include <cstdint>
 #include <deque>
 #include <limits>
-#include <random>
 #include <stdexcept>
 
+#include "closed_loop/noise.h"
 #include "laparoscope_servo/scope/geometry.h"
 #include "laparoscope_servo/scope/insertion_point.h"
+#include "laparoscope_servo/servo/tip_error.h"
 #include "laparoscope_servo/servo/view_region.h"
 
 namespace laparoscope_servo::closed_loop {
@@ -17,22 +18,6 @@ namespace {
 
 constexpr double kStep = 0.001;         // s, of the integration
 constexpr double kEnoughInView = 0.25;  // share of the reference image, as AnchoredMotion needs it
-
-// Normal noise by Box and Muller: the standard does not define the numbers of std::normal_distribution, and the same
-// seed must give the same run everywhere.
-class Noise {
- public:
-  explicit Noise(unsigned seed) : random_(seed) {}
-  Eigen::Vector2d draw(double sigma) {
-    const double radius = sigma * std::sqrt(-2.0 * std::log(uniform()));
-    const double angle = 2.0 * M_PI * uniform();
-    return {radius * std::cos(angle), radius * std::sin(angle)};
-  }
-
- private:
-  double uniform() { return (static_cast<double>(random_()) + 0.5) / 4294967296.0; }
-  std::mt19937 random_;
-};
 
 Eigen::Matrix3d pictureOf(const PictureConfig& config) {
   Eigen::Vector3d mirror = Eigen::Vector3d::Ones();
@@ -46,6 +31,7 @@ class Loop {
   Loop(const ControllerSetup& controller, const SimulationConfig& config, unsigned seed)
       : config_(config),
         shaft_R_camera_(scope::obliqueOptics(config.optics_angle, config.optics_roll).transpose()),
+        centre_tip_(controller.control.centre_tip),
         controller_(controller.control),
         actuator_(config.robot),
         patient_(config.patient, {0.0, 0.0, config.tissue_distance}),
@@ -55,6 +41,7 @@ class Loop {
         picture_(pictureOf(config.picture)),
         signs_(config.signs[0], config.signs[1], config.signs[2], config.signs[3]) {
     if (config.task == "STABILISE") controller_.select(servo::Task::kStabilise);
+    if (config.task == "CENTRE_TIP") controller_.select(servo::Task::kCentreTip);
   }
 
   bool seesRoi(double time) const { return nearestToBorder(cornersAt(time, config_.roi)) >= 0.0; }
@@ -67,14 +54,10 @@ class Loop {
     const double noise = config_.corner_noise * (1.0 + covered * (config_.crossing.noise - 1.0));
     input.visible_fraction = 1.0 - covered * config_.crossing.cover;
     input.corner_error = noise;
-    const bool whole = controller_.task() == servo::Task::kStabilise;
-    const geometry::Rectangle region = whole ? servo::viewRegion(config_.width, config_.height) : config_.roi;
-    geometry::Quadrilateral seen = cornersAt(time, region);
-    if (whole ? referenceInView(time) >= kEnoughInView : nearestToBorder(seen) >= 0.0) {
-      for (Eigen::Vector2d& corner : seen) corner += noise_.draw(noise);
-      const Eigen::Matrix3d g = geometry::fromCorners(region.corners(), seen);
-      input.error = servo::taskError(geometry::normalisedFromPixels(g, config_.camera), region, config_.camera);
-      input.valid = true;
+    if (controller_.task() == servo::Task::kCentreTip) {
+      exposeTip(time, noise, input);
+    } else {
+      exposeRegion(time, noise, input);
     }
     images_.emplace_back(time, input);
   }
@@ -87,7 +70,9 @@ class Loop {
       latest_ = images_.front();
       images_.pop_front();
     }
-    servo::TaskErrorInput& seen = controller_.task() == servo::Task::kStabilise ? input.view : input.task_error;
+    servo::TaskErrorInput& seen = controller_.task() == servo::Task::kStabilise   ? input.view
+                                  : controller_.task() == servo::Task::kCentreTip ? input.tip
+                                                                                  : input.task_error;
     seen = latest_.second;
     seen.image_time = latest_.first;
     seen.age = seen.image_age = std::max(0.0, time - latest_.first);
@@ -125,6 +110,25 @@ class Loop {
   }
 
  private:
+  void exposeTip(double time, double noise, servo::TaskErrorInput& input) {
+    const Eigen::Matrix3d g = geometry::pixelsFromNormalised(seenHomography(time), config_.camera);
+    const Eigen::Vector2d tip = geometry::apply(g, config_.roi.centre()) + noise_.draw(noise);
+    input.valid = tip.x() >= 0.0 && tip.y() >= 0.0 && tip.x() <= config_.width - 1.0 && tip.y() <= config_.height - 1.0;
+    input.error = servo::tipError((config_.camera.inverseMatrix() * tip.homogeneous()).head<2>(), centre_tip_);
+  }
+
+  void exposeRegion(double time, double noise, servo::TaskErrorInput& input) {
+    const bool whole = controller_.task() == servo::Task::kStabilise;
+    const geometry::Rectangle region = whole ? servo::viewRegion(config_.width, config_.height) : config_.roi;
+    geometry::Quadrilateral seen = cornersAt(time, region);
+    if (whole ? referenceInView(time) >= kEnoughInView : nearestToBorder(seen) >= 0.0) {
+      for (Eigen::Vector2d& corner : seen) corner += noise_.draw(noise);
+      const Eigen::Matrix3d g = geometry::fromCorners(region.corners(), seen);
+      input.error = servo::taskError(geometry::normalisedFromPixels(g, config_.camera), region, config_.camera);
+      input.valid = true;
+    }
+  }
+
   // The tip in the frame of the assumed insertion point, which is wrong by the factor along the shaft at the reference;
   // z points out of the body.
   Eigen::Isometry3d measuredPose() {
@@ -245,6 +249,7 @@ class Loop {
 
   SimulationConfig config_;
   Eigen::Matrix3d shaft_R_camera_;
+  servo::CentreTipConfig centre_tip_;
   servo::Controller controller_;
   sim::ScopeActuator actuator_;
   sim::Patient patient_;

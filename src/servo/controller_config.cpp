@@ -208,6 +208,8 @@ void describe(Table& table, ControllerConfig& c) {
   });
   table.group("stabilise", "the task STABILISE, which keeps the view of an anchor image by pan and tilt",
               [&] { describe(table, c.stabilise); });
+  table.group("centre_tip", "the task CENTRE_TIP, which brings an instrument's tip back to a zone of the image",
+              [&] { describe(table, c.centre_tip); });
   table.group("safety", "what the scope has to be sure of before it moves", [&] { describe(table, c.safety); });
 }
 

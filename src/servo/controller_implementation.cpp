@@ -15,11 +15,6 @@ ControllerConfig checked(const ControllerConfig& config) {
   return config;
 }
 
-// s, beyond the delay, after which a motion must be visible in the image. Derived: a command reaches the limit of 0.1
-// rad/s by 1 rad/s^2 in 0.1 s (limits/), and in half of that it has moved the picture by 1 px at a focal length of 800
-// px.
-constexpr double kShows = 0.1;
-
 // Share of the effect budget at which the scope stops. Derived: one more step, 0.02 s at 0.1 rad/s, is 4 % of 0.044 rad
 // (effect/unconfirmed_turn). It stops at once instead of slowing down, since fast motion shows its effect better than
 // slow motion.
@@ -51,6 +46,7 @@ Controller::Implementation::Implementation(const ControllerConfig& config)
       servo_(config),
       machine_(config.safety),
       stick_(config.safety, config.limits.velocity),
+      tip_(config.centre_tip.dwell, config.centre_tip.still),
       repeats_(config.safety.max_repeated_errors),
       effect_(config.effect, {config.target.centre_noise, config.target.depth_noise, config.target.orientation_noise}),
       opposed_(config.dead_zone.width),
@@ -81,21 +77,6 @@ SafetyFacts Controller::Implementation::facts(const ControllerInput& input) cons
   return facts;
 }
 
-// What the present task goes by; in MANUAL nothing is.
-const TaskErrorInput& Controller::Implementation::seen(const ControllerInput& input) const {
-  return task_ == Task::kStabilise ? input.view : input.task_error;
-}
-
-std::string Controller::Implementation::problemOf(const TaskErrorInput& seen) const {
-  const std::string impossible = implausible(seen);
-  if (!impossible.empty()) return impossible;
-  if (task_ == Task::kStabilise && !(seen.corner_error <= config_.stabilise.max_error))
-    return "where the view is, is not known well enough: its expected error is above stabilise/max_error";
-  if (repeats_.repeats())
-    return "the picture repeats: the task error stays the same to the last digit while the scope moves";
-  return "";
-}
-
 EffectFacts Controller::Implementation::effectFacts() const {
   if (!opposed_.words().empty()) return {Effect::kWrong, opposed_.words()};
   if (task_ == Task::kManual) return {};  // what the picture shows does not count
@@ -117,38 +98,6 @@ void Controller::Implementation::correctDepth(const ControllerInput& input) {
     wanted = shaftDepth(estimate, {tip.translation(), tip.linear().col(2)}, 0.0).d2 - input.depth.d2;
   }
   d2_correction_.update(input.time, wanted);
-}
-
-// Whether picture and pose may be compared.
-bool Controller::Implementation::isUsable(const ControllerInput& input) const {
-  const TaskErrorInput& task = seen(input);
-  return task_ != Task::kManual && task.problem.empty() && task.valid && task.image_time &&
-         implausible(task).empty() && input.depth.problem.empty() && input.depth.d2 > 0.0;
-}
-
-// Images are observed also before engaging, so that the tissue's own motion is known by then.
-void Controller::Implementation::watchEffect(const ControllerInput& input) {
-  if (!isUsable(input)) return;
-  const TaskErrorInput& task = seen(input);
-  EffectObservation image;
-  image.time = *task.image_time;
-  image.error = task.error;
-  image.region = task.region;
-  image.scope = {input.depth.camera_R_shaft, d2(input)};
-  image.desired_depth = config_.features.desired_depth;
-  image.corner_error = task.corner_error;
-  image.breath_known = servo_.breathingRate() > 0.0;
-  effect_.observe(image, servo_.history(), servo_.delay());
-}
-
-// It begins where somebody engages, or presses the dead-man switch, and looks.
-void Controller::Implementation::watchLeash(const ControllerInput& input) {
-  if (machine_.state() == SafetyState::kArmed || !engaged() || task_ == Task::kManual) leash_.restart();
-  if (!isUsable(input)) return;
-  const ServoInput servo = servoInput(input);
-  const TaskErrorInput& task = seen(input);
-  leash_.observe({*task.image_time, task.region, task.error, servo_.toTarget(servo), servo_.sinceImage(servo),
-                  input.depth.d2, servo.insertion_point_T_tip});
 }
 
 std::string Controller::Implementation::engage(const ControllerInput& input) {
@@ -182,6 +131,7 @@ void Controller::Implementation::select(Task task) {
   task_ = task;
   task_changed_ = true;
   stick_.restart();
+  leash_.restart();
   effect_.anotherTracker();
   servo_.setUse(servoUse(task, config_));
   servo_.restart(last_time_);
@@ -210,6 +160,7 @@ ControllerOutput Controller::Implementation::update(const ControllerInput& input
   watchRepetition(seen(input));
   watchEffect(input);
   watchLeash(input);
+  watchTip(input.tip);
   // A non-finite time is ignored here, and the budget stays; the state machine stops the scope.
   const bool has_clock = std::isfinite(input.time);
   const double told_for = std::clamp(input.time - last_time_, 0.0, config_.predictor.command_lifetime);
@@ -220,8 +171,7 @@ ControllerOutput Controller::Implementation::update(const ControllerInput& input
   const bool moves = safety.state == ControllerState::kServo && !task_changed_;
   const std::string stick = stick_.update(input.manual, moves && task_ == Task::kManual, input.time);
   if (moves) {
-    output.command =
-        task_ == Task::kManual ? drive(input, stick) : servo_.command(servoInput(input), limits(safety, input.time));
+    output.command = task_ == Task::kManual ? drive(input, stick) : follow(input, safety);
     known.command_finite = output.command.vector().allFinite();
     if (!known.command_finite) {
       safety = machine_.step(known);
@@ -266,12 +216,6 @@ std::string Controller::Implementation::caution(const SafetyOutput& safety, cons
   return text;
 }
 
-void Controller::Implementation::watchRepetition(const TaskErrorInput& task_error) {
-  if (!task_error.problem.empty() || !task_error.valid || !task_error.image_time) return;
-  const bool moves = moves_since_ && *task_error.image_time - *moves_since_ > servo_.delay() + kShows;
-  repeats_.take(*task_error.image_time, task_error.error, moves && task_ != Task::kManual);
-}
-
 ServoLimits Controller::Implementation::limits(const SafetyOutput& safety, double time) const {
   ServoLimits limits{safety.speed_scale, safety.insertion_allowed};
   if (!config_.effect.enabled) return limits;
@@ -301,6 +245,14 @@ ServoInput Controller::Implementation::servoInput(const ControllerInput& input) 
   servo.insertion_point_T_tip = input.depth.insertion_point_T_tip;
   servo.period = has_time_ ? std::min(input.time - last_time_, config_.safety.max_period) : 0.0;
   return servo;
+}
+
+scope::Velocity Controller::Implementation::follow(const ControllerInput& input, const SafetyOutput& safety) {
+  if (task_ == Task::kCentreTip && told_.isZero(0.0) && !tip_.isStill()) {
+    servo_.stop(input.time);
+    return scope::Velocity();
+  }
+  return servo_.command(servoInput(input), limits(safety, input.time));
 }
 
 scope::Velocity Controller::Implementation::drive(const ControllerInput& input, const std::string& problem) {

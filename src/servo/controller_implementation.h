@@ -13,6 +13,7 @@
 #include "servo/safety/repeat_watch.h"
 #include "servo/safety/safety_machine.h"
 #include "servo/scope_servo.h"
+#include "servo/task/tip_stillness.h"
 
 namespace laparoscope_servo::servo {
 
@@ -47,6 +48,8 @@ class Controller::Implementation {
   ServoLimits limits(const SafetyOutput& safety, double time) const;
   ServoInput servoInput(const ControllerInput& input) const;
   void watchRepetition(const TaskErrorInput& task_error);
+  void watchTip(const TaskErrorInput& tip);
+  scope::Velocity follow(const ControllerInput& input, const SafetyOutput& safety);
   scope::Velocity drive(const ControllerInput& input, const std::string& problem);
   std::string caution(const SafetyOutput& safety, const std::string& stick) const;
 
@@ -56,6 +59,7 @@ class Controller::Implementation {
   Task task_ = Task::kHoldView;
   bool task_changed_ = false;  // since the last step
   ManualStick stick_;
+  TipStillness tip_;
   RepeatWatch repeats_;
   EffectGuard effect_;
   OpposedMotion opposed_;

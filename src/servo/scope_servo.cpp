@@ -66,7 +66,8 @@ void ScopeServo::retune(const ControllerConfig& config) {
   feature_law_ = FeatureLaw(config_.features, use_.axes());
   RestConfig rest = config.rest;
   rest.enabled = config_.rest.enabled;
-  band_.retune(rest);
+  config_.rest = rest;
+  if (!use_.rest) band_.retune(rest);
   target_.setSignificance(config.target.significance);
 }
 
@@ -80,6 +81,7 @@ void ScopeServo::reset() {
 void ScopeServo::setUse(const ServoUse& use) {
   use_ = use;
   feature_law_ = FeatureLaw(config_.features, use_.axes());
+  band_.retune(use_.rest.value_or(config_.rest));
 }
 
 void ScopeServo::restart(double time) {
@@ -166,6 +168,8 @@ void ScopeServo::observe(const ServoInput& input) {
   to_target_ = displacementToTarget(error_, input.scope, config_.features.desired_depth);
   image_time_ = input.image_time;
   has_image_ = true;
+  // A hand that works about the zone's middle is no oscillation of the loop, and no breath.
+  if (!use_.is_tissue) return;
   TaskError controlled = error_;
   if (!use_.insertion) controlled.log_depth = controlled.desired_log_depth;
   oscillation_.update(image_time_, controlled);
@@ -191,7 +195,7 @@ scope::Velocity ScopeServo::command(const ServoInput& input, const ServoLimits& 
     const double middle = input.time + delay() + 0.5 * input.period;
     const Eigen::Vector4d under_way = history_.displacement(image_time_, middle, delay());
     Eigen::Vector4d displacement = under_way;  // if the displacement to the target is unknown: as for a target at rest
-    if (to_target_.allFinite() && !target_.empty()) {
+    if (use_.is_tissue && to_target_.allFinite() && !target_.empty()) {
       const TargetPrediction breath = breathing_.predict(middle);
       const TargetPrediction target = target_.predict(middle);
       const Eigen::Matrix4d inverse = jacobian_.inverse();

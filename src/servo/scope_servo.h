@@ -82,6 +82,7 @@ class ScopeServo {
 
   // How the task that begins uses the law; with restart().
   void setUse(const ServoUse& use);
+  const ServoUse& use() const { return use_; }
 
   // Forgets everything.
   void reset();
@@ -90,7 +91,7 @@ class ScopeServo {
   double gainFactor() const { return oscillation_.factor(); }
 
   // Breathing rate that is compensated [Hz]; 0: none.
-  double breathingRate() const { return breathing_.rate(); }
+  double breathingRate() const { return use_.is_tissue ? breathing_.rate() : 0.0; }
 
   // Whether the last command was cut at a bound of the workspace.
   bool atBound() const { return at_bound_; }

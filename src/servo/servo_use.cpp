@@ -2,10 +2,39 @@
 
 namespace laparoscope_servo::servo {
 
+namespace {
+
+// The paper's law is one of a region, by all four degrees of freedom.
+ServoUse stabilising(const ControllerConfig& config) {
+  ServoUse use;
+  use.spin = config.stabilise.spin ? config.spin : SpinMode::kReleased;
+  use.insertion = config.stabilise.insertion;
+  return use;
+}
+
+// The zone is a band of rest that is never widened: a tip that comes back to its border does not make it grow.
+ServoUse centringTip(const ControllerConfig& config) {
+  ServoUse use;
+  use.spin = SpinMode::kReleased;
+  use.insertion = false;
+  use.is_tissue = false;
+  use.rest = config.rest;
+  use.rest->enabled = true;
+  use.rest->centre_stop = config.centre_tip.inner;
+  use.rest->centre_start = config.centre_tip.zone;
+  use.rest->widening = 1.0;
+  return use;
+}
+
+}  // namespace
+
 ServoUse servoUse(Task task, const ControllerConfig& config) {
-  if (task != Task::kStabilise) return {config.law, config.spin, true};
-  // The paper's law is one of a region, by all four degrees of freedom.
-  return {LawKind::kFeatures, config.stabilise.spin ? config.spin : SpinMode::kReleased, config.stabilise.insertion};
+  if (task == Task::kStabilise) return stabilising(config);
+  if (task == Task::kCentreTip) return centringTip(config);
+  ServoUse use;
+  use.law = config.law;
+  use.spin = config.spin;
+  return use;
 }
 
 }  // namespace laparoscope_servo::servo

@@ -43,6 +43,7 @@ struct ControllerInput {
   std::string clock_jump;     // description of a jump of another clock since the last step; empty: none
   std::string ended;          // what has ended the engagement since the last step; empty: nothing
   TaskErrorInput task_error;  // of HOLD_VIEW: of the region of interest
+  TaskErrorInput tip;         // of CENTRE_TIP: see tipError()
   TaskErrorInput view;        // of STABILISE: of viewRegion(), from the anchor image to this one
   ManualInput manual;         // unusable input stops the scope at once
   DepthInput depth;

@@ -48,6 +48,7 @@ struct ControllerConfig {
   InsertionPointUse insertion_point;
   HorizonConfig horizon;
   StabiliseConfig stabilise;
+  CentreTipConfig centre_tip;
   EffectConfig effect;
   LeashConfig leash;
   SafetyConfig safety;

@@ -7,8 +7,9 @@ enum class Task {
   kHoldView,   // the control law, which keeps the region of interest at its place in the image
   kManual,     // a person, by four velocities; images are not used
   kStabilise,  // the control law, which keeps the whole view where it was in the anchor image
+  kCentreTip,  // the control law, which brings an instrument's tip back where it leaves a zone of the image
 };
 
-constexpr Task kTasks[] = {Task::kHoldView, Task::kManual, Task::kStabilise};
+constexpr Task kTasks[] = {Task::kHoldView, Task::kManual, Task::kStabilise, Task::kCentreTip};
 
 }  // namespace laparoscope_servo::servo

@@ -14,7 +14,20 @@ struct StabiliseConfig {
   double max_error = 2.0;  // px, expected error of the view at its worst corner, beyond which the scope stands
 };
 
+// The task CENTRE_TIP. Distances are from the zone's middle, normalised: px over the focal length.
+struct CentreTipConfig {
+  double x = 0.0;          // the zone's middle in the image, normalised
+  double y = 0.0;          // second coordinate
+  double inner = 0.1;      // distance at which the scope stops
+  double zone = 0.15;      // distance from which on it moves; within it nothing moves once it has stopped
+  double leave = 0.5;      // distance from which on the tip is taken to leave, and is not followed
+  double dwell = 0.5;      // s, for which the tip has to be held still before the scope begins to move
+  double still = 0.02;     // distance within which a tip is held still
+  double max_error = 4.0;  // px, expected error of the tip, beyond which the scope stands
+};
+
 // Adds the rows of all parameters, with range and meaning.
 void describe(parameters::Table& table, StabiliseConfig& config);
+void describe(parameters::Table& table, CentreTipConfig& config);
 
 }  // namespace laparoscope_servo::servo

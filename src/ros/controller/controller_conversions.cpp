@@ -83,6 +83,8 @@ std::string taskName(servo::Task task) {
       return ControllerState::MANUAL;
     case servo::Task::kStabilise:
       return ControllerState::STABILISE;
+    case servo::Task::kCentreTip:
+      return ControllerState::CENTRE_TIP;
   }
   return ControllerState::HOLD_VIEW;
 }

@@ -18,7 +18,7 @@ namespace laparoscope_servo {
 std::string taskName(servo::Task task);
 // Empty: there is none of that name.
 std::optional<servo::Task> taskNamed(const std::string& name);
-// All of them, for a text: "HOLD_VIEW, MANUAL or STABILISE".
+// All of them, for a text: "HOLD_VIEW, MANUAL, STABILISE or CENTRE_TIP".
 std::string taskNames();
 
 // Converts without checks; the result may be non-finite.

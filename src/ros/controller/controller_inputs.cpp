@@ -48,6 +48,8 @@ ControllerInputs::ControllerInputs(ros::NodeHandle& node, ros::NodeHandle& priva
                         config.control.safety.max_clock_difference),
       motion_input_(resolved(node, config.owners.motion), "motion features", "owners/motion",
                     config.control.safety.max_clock_difference),
+      instrument_input_(resolved(node, config.owners.instrument), "instruments", "owners/instrument",
+                        config.control.safety.max_clock_difference),
       camera_info_input_(resolved(node, config.owners.camera_info), "camera infos", "owners/camera_info",
                          config.control.safety.max_clock_difference),
       operating_state_input_(resolved(node, config.owners.operating_state), "operating states",
@@ -58,13 +60,15 @@ ControllerInputs::ControllerInputs(ros::NodeHandle& node, ros::NodeHandle& priva
                     config.control.safety.max_clock_difference),
       dead_man_input_(resolved(node, config.owners.dead_man), "words of the dead-man switch", "owners/dead_man",
                       config.control.safety.max_clock_difference),
-      view_input_(config.rectified_images),
+      camera_(config.rectified_images),
+      tip_input_(config.control.centre_tip),
       dead_man_(config.control.safety.max_dead_man_age) {
   // tcpNoDelay: a message must not wait for a full packet.
   const ros::TransportHints at_once = ros::TransportHints().tcpNoDelay();
   using Self = ControllerInputs;
   task_error_input_.subscriber = node.subscribe("task_error", kQueue, &Self::onTaskError, this, at_once);
   motion_input_.subscriber = node.subscribe("motion_features", kQueue, &Self::onMotion, this, at_once);
+  instrument_input_.subscriber = node.subscribe("instrument_features", kQueue, &Self::onInstrument, this, at_once);
   camera_info_input_.subscriber = node.subscribe("camera_info", kQueue, &Self::onCameraInfo, this, at_once);
   manual_input_.subscriber = private_node.subscribe("manual", kQueue, &Self::onManual, this, at_once);
   if (config_.control.safety.robot_required) {
@@ -94,12 +98,8 @@ void ControllerInputs::forgetStamps() {
   task_error_input_.stamps.clear();
   view_.forget();
   motion_input_.stamps.clear();
-}
-
-void ControllerInputs::Picture::forget() {
-  last = servo::TaskErrorInput();
-  last.problem = words.none;
-  watch.clear();
+  tip_.forget();
+  instrument_input_.stamps.clear();
 }
 
 void ControllerInputs::end(const std::string& why) {
@@ -108,17 +108,16 @@ void ControllerInputs::end(const std::string& why) {
 
 // `matters`: the input can move the arm now. If it cannot, ownership is released, so that the publisher of the last
 // message is accepted.
-template <typename Message>
-bool ControllerInputs::counts(Input& input, const ros::MessageEvent<Message const>& event, bool matters) {
+bool ControllerInputs::counts(Input& input, const std::string& publisher, const InputOwner::Connection& connection,
+                              bool matters) {
   if (!matters) input.owner.release();
   const double now = steadyNow();
-  switch (input.owner.judge(event.getPublisherName(), event.getConnectionHeaderPtr(), now)) {
+  switch (input.owner.judge(publisher, connection, now)) {
     case InputOwner::Verdict::kOwner:
       return true;
     case InputOwner::Verdict::kNewConnection:
       // The publisher was restarted, replaced by another process of its name, or joined by one.
-      end("the node of the " + input.owner.what() + ", " + shownName(event.getPublisherName()) +
-          ", has connected anew");
+      end("the node of the " + input.owner.what() + ", " + shownName(publisher) + ", has connected anew");
       return false;
     case InputOwner::Verdict::kStranger:
       break;
@@ -134,44 +133,6 @@ bool ControllerInputs::counts(Input& input, const ros::MessageEvent<Message cons
 bool ControllerInputs::isAhead(Input& input, const ros::Time& stamp) const {
   calls_.check_time();
   return input.stamps.isAhead(stamp, ros::Time::now());
-}
-
-// Whether the message is the owner's next one. `follows`: the present task goes by it.
-template <typename Message>
-bool ControllerInputs::takes(Input& input, Picture& picture, const ros::MessageEvent<Message const>& event,
-                             bool follows) {
-  if (!counts(input, event, engaged_ && follows)) return false;
-  calls_.check_time();
-  const ros::Time stamp = event.getConstMessage()->header.stamp;
-  const StampGate::Verdict verdict = input.stamps.judge(stamp, ros::Time::now());
-  if (verdict == StampGate::Verdict::kJumpedBack && follows) clock_jump_ = picture.words.jumped_back;
-  if (verdict != StampGate::Verdict::kCounts && verdict != StampGate::Verdict::kJumpedBack) return false;
-  picture.watch.arrived(stamp, steadyNow());
-  return true;
-}
-
-// Converts the stamp to steady time once per image, since the clocks may drift.
-void ControllerInputs::keep(Picture& picture, const servo::TaskErrorInput& seen) {
-  picture.last = seen;
-  picture.last.image_time = steadyNow() - picture.watch.stampAge(ros::Time::now());
-}
-
-void ControllerInputs::onTaskError(const ros::MessageEvent<TaskError const>& event) {
-  if (takes(task_error_input_, task_error_, event, task_ == servo::Task::kHoldView))
-    keep(task_error_, fromMessage(*event.getConstMessage()));
-}
-
-void ControllerInputs::onMotion(const ros::MessageEvent<TrackedFeatures const>& event) {
-  if (takes(motion_input_, view_, event, task_ == servo::Task::kStabilise))
-    keep(view_, view_input_.from(*event.getConstMessage()));
-}
-
-// Without a check of its stamp: a calibration does not grow old. With another one, what was measured by the last one
-// does not go on.
-void ControllerInputs::onCameraInfo(const ros::MessageEvent<sensor_msgs::CameraInfo const>& event) {
-  const bool matters = engaged_ && task_ == servo::Task::kStabilise;
-  if (!counts(camera_info_input_, event, matters)) return;
-  if (view_input_.takeCameraInfo(*event.getConstMessage()) && matters) end("camera_info has another calibration");
 }
 
 // A stop is accepted with any stamp.
@@ -243,6 +204,7 @@ void ControllerInputs::fill(servo::ControllerInput& input, double steady_now) co
   input.manual.age = std::max(steady_now - manual_arrival_, stampAge(manual_.header.stamp));
   input.task_error = agedOf(task_error_input_, task_error_, steady_now);
   input.view = agedOf(motion_input_, view_, steady_now);
+  input.tip = agedOf(instrument_input_, tip_, steady_now);
   input.robot_report = robot_report_;
   input.robot_report.age = steady_now - robot_report_arrival_;
 }
@@ -264,11 +226,11 @@ void ControllerInputs::taken() {
 }
 
 void ControllerInputs::describe(diagnostic_updater::DiagnosticStatusWrapper& status) {
-  for (Input* input : {&task_error_input_, &motion_input_, &camera_info_input_, &operating_state_input_,
-                       &measured_velocity_input_, &manual_input_, &dead_man_input_}) {
+  for (Input* input : {&task_error_input_, &motion_input_, &instrument_input_, &camera_info_input_,
+                       &operating_state_input_, &measured_velocity_input_, &manual_input_, &dead_man_input_}) {
     if (input->subscriber) describe(*input, status);
   }
-  for (const Input* input : {&task_error_input_, &motion_input_}) {
+  for (const Input* input : {&task_error_input_, &motion_input_, &instrument_input_}) {
     const StampGate& stamps = input->stamps;
     status.add(input->owner.what() + ": stamps late", stamps.late());
     status.add(input->owner.what() + ": stamps repeated", stamps.repeated());

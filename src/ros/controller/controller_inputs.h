@@ -26,7 +26,8 @@
 #include "ros/common/stamp_gate.h"
 #include "ros/common/stamp_watch.h"
 #include "ros/controller/controller_parameters.h"
-#include "ros/controller/view_input.h"
+#include "ros/controller/feature_camera.h"
+#include "ros/controller/tip_input.h"
 
 namespace laparoscope_servo {
 
@@ -84,8 +85,11 @@ class ControllerInputs {
     StampWatch watch;
   };
 
+  bool counts(Input& input, const std::string& publisher, const InputOwner::Connection& connection, bool matters);
   template <typename Message>
-  bool counts(Input& input, const ros::MessageEvent<Message const>& event, bool matters);
+  bool counts(Input& input, const ros::MessageEvent<Message const>& event, bool matters) {
+    return counts(input, event.getPublisherName(), event.getConnectionHeaderPtr(), matters);
+  }
   bool manualMatters() const { return engaged_ && task_ == servo::Task::kManual; }
   bool isAhead(Input& input, const ros::Time& stamp) const;
   template <typename Message>
@@ -94,6 +98,7 @@ class ControllerInputs {
   static servo::TaskErrorInput agedOf(const Input& input, const Picture& picture, double steady_now);
   void onTaskError(const ros::MessageEvent<TaskError const>& event);
   void onMotion(const ros::MessageEvent<TrackedFeatures const>& event);
+  void onInstrument(const ros::MessageEvent<TrackedFeatures const>& event);
   void onCameraInfo(const ros::MessageEvent<sensor_msgs::CameraInfo const>& event);
   void onOperatingState(const ros::MessageEvent<OperatingState const>& event);
   void onMeasuredVelocity(const ros::MessageEvent<geometry_msgs::TwistStamped const>& event);
@@ -112,6 +117,7 @@ class ControllerInputs {
 
   Input task_error_input_;
   Input motion_input_;
+  Input instrument_input_;
   Input camera_info_input_;
   Input operating_state_input_;
   Input measured_velocity_input_;
@@ -123,7 +129,10 @@ class ControllerInputs {
       {"task error", "no task error was received", "task error has no stamp", "stamps of the task error jumped back"}};
   Picture view_{{"motion of the view", "no motion of the view was received", "motion of the view has no stamp",
                  "stamps of the motion of the view jumped back"}};
-  ViewInput view_input_;
+  Picture tip_{{"tip of an instrument", "no tip of an instrument was received", "tip of an instrument has no stamp",
+                "stamps of the tip of an instrument jumped back"}};
+  FeatureCamera camera_;
+  TipInput tip_input_;
   servo::RobotFacts robot_;
   ros::Time robot_stamp_;
   double robot_arrival_ = 0.0;  // s, steady

@@ -25,6 +25,8 @@ const char* doing(servo::Task task) {
       return "is driven by hand";
     case servo::Task::kStabilise:
       return "keeps the view";
+    case servo::Task::kCentreTip:
+      return "keeps the tip in its zone";
   }
   return "";
 }
@@ -186,8 +188,9 @@ void ControllerNode::report(diagnostic_updater::DiagnosticStatusWrapper& status)
   const std::string problem = controller_.problem(last_input_);
   stops_.describe(steadyNow(), status);
   status.add("ready to move", problem.empty() ? "yes" : "no: " + problem);
-  const servo::TaskErrorInput& seen =
-      last_output_.task == servo::Task::kStabilise ? last_input_.view : last_input_.task_error;
+  const servo::TaskErrorInput& seen = last_output_.task == servo::Task::kStabilise   ? last_input_.view
+                                      : last_output_.task == servo::Task::kCentreTip ? last_input_.tip
+                                                                                     : last_input_.task_error;
   status.add("age of the task error [s]", seen.age);
   status.add("age of its image [s]", seen.image_age);
   status.add("visible fraction", seen.visible_fraction);

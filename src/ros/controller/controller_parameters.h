@@ -17,6 +17,7 @@ struct InputOwners {
   std::string task_error = "tracker";
   std::string operating_state = "aesop";  // also owns measured_cv
   std::string motion = "motion";
+  std::string instrument = "instrument";
   std::string camera_info;
   std::string manual;
   std::string dead_man;

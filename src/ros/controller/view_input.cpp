@@ -20,78 +20,23 @@ bool isAnchored(const TrackedFeatures& message) {
          message.features[1].id == message.features[0].id + " step";
 }
 
-// The pixel in the raw image of a rectified one, moved by `g`, and rectified again.
-Eigen::Vector2d movedThrough(const image::Lens& lens, const Eigen::Matrix3d& g, const Eigen::Vector2d& rectified) {
-  const std::optional<Eigen::Vector2d> raw = lens.toRaw(rectified);
-  const std::optional<Eigen::Vector2d> seen = raw ? lens.toRectified(geometry::apply(g, *raw)) : std::nullopt;
+// The pixel in the image of one without the lens, moved by `g`, and again without the lens.
+Eigen::Vector2d movedThrough(const FeatureCamera& camera, const Eigen::Matrix3d& g, const Eigen::Vector2d& pixel) {
+  const std::optional<Eigen::Vector2d> raw = camera.withLens(pixel);
+  const std::optional<Eigen::Vector2d> seen = raw ? camera.withoutLens(geometry::apply(g, *raw)) : std::nullopt;
   if (!seen) throw std::invalid_argument("the view is outside of what the lens shows");
   return *seen;
 }
 
-cv::Size sizeOf(const sensor_msgs::CameraInfo& info) {
-  const auto along = [](std::uint32_t sensor, std::uint32_t region, std::uint32_t binning) {
-    return static_cast<int>((region > 0 ? region : sensor) / std::max(1u, binning));
-  };
-  return {along(info.width, info.roi.width, info.binning_x), along(info.height, info.roi.height, info.binning_y)};
-}
-
-}  // namespace
-
-bool ViewInput::takeCameraInfo(const sensor_msgs::CameraInfo& info) {
-  if (info_ && sameCalibration(*info_, info)) return false;
-  const bool another = info_.has_value();
-  info_ = info;
-  lens_.reset();
-  size_ = sizeOf(info);
-  camera_problem_.clear();
-  try {
-    if (size_.empty()) throw std::invalid_argument("camera_info cannot be used: it has no size of the image");
-    if (rectified_) {
-      camera_ = cameraFromInfo(info, ImageKind::kRectified, size_);
-    } else {
-      lens_ = lensFromInfo(info, size_);
-      camera_ = lens_->parameters().rectified;
-    }
-  } catch (const std::invalid_argument& error) {
-    camera_problem_ = error.what();
-  }
-  return another;
-}
-
-servo::TaskErrorInput ViewInput::from(const TrackedFeatures& message) const {
-  servo::TaskErrorInput input;
-  input.problem.clear();
-  input.region = message.selection_stamp.toSec();
-  if (message.features.empty() || message.features[0].state != TrackedFeatures::TRACKING) return input;
-  if (!isAnchored(message)) {
-    input.problem = "no image was selected whose view is to be kept: select_features of the node of the motion";
-    return input;
-  }
-  if (!camera_problem_.empty()) {
-    input.problem = camera_problem_;
-    return input;
-  }
-  const TrackedFeature& motion = message.features[0];
-  try {
-    input.error = errorOf(motion);
-    input.valid = true;
-  } catch (const std::invalid_argument& error) {
-    input.problem = error.what();
-  }
-  // By integration alone nothing of the anchor is seen: then what follows the last step counts.
-  input.visible_fraction = motion.share > 0.0 ? motion.share : message.features[1].share;
-  input.corner_error = motion.expected_error;
-  return input;
-}
-
 // The texts have no numbers, which would change from image to image.
-servo::TaskError ViewInput::errorOf(const TrackedFeature& motion) const {
+servo::TaskError errorOf(const TrackedFeature& motion, const FeatureCamera& camera) {
   if (!motion.desired.empty()) throw std::invalid_argument("the motion has desired values, expected none");
   const std::size_t count = motion.parameters.size();
   if (count != 2 && count != 6 && count != 8)
     throw std::invalid_argument("the motion has neither 2, 6 nor 8 parameters");
   if (motion.outline.size() < 8) throw std::invalid_argument("the motion has no outline of four corners");
-  const geometry::Rectangle frame{0.0, 0.0, static_cast<double>(size_.width), static_cast<double>(size_.height)};
+  const geometry::Rectangle frame{0.0, 0.0, static_cast<double>(camera.size().width),
+                                  static_cast<double>(camera.size().height)};
   motion::MotionField field;
   field.centre = frame.centre();
   std::copy(motion.parameters.begin(), motion.parameters.end(), field.a.data());
@@ -104,14 +49,42 @@ servo::TaskError ViewInput::errorOf(const TrackedFeature& motion) const {
   const geometry::Rectangle region = servo::viewRegion(frame.width, frame.height);
   geometry::Quadrilateral seen = region.corners();
   for (Eigen::Vector2d& corner : seen) {
-    corner = lens_ ? movedThrough(*lens_, g, corner) : geometry::apply(g, corner);
+    corner = movedThrough(camera, g, corner);
   }
   try {
     const Eigen::Matrix3d moved = geometry::fromCorners(region.corners(), seen);
-    return servo::taskError(geometry::normalisedFromPixels(moved, camera_), region, camera_);
+    return servo::taskError(geometry::normalisedFromPixels(moved, camera.camera()), region, camera.camera());
   } catch (const std::invalid_argument&) {
     throw std::invalid_argument("the motion takes the view to where no camera sees it");
   }
+}
+
+}  // namespace
+
+servo::TaskErrorInput viewInput(const TrackedFeatures& message, const FeatureCamera& camera) {
+  servo::TaskErrorInput input;
+  input.problem.clear();
+  input.region = message.selection_stamp.toSec();
+  if (message.features.empty() || message.features[0].state != TrackedFeatures::TRACKING) return input;
+  if (!isAnchored(message)) {
+    input.problem = "no image was selected whose view is to be kept: select_features of the node of the motion";
+    return input;
+  }
+  if (!camera.problem().empty()) {
+    input.problem = camera.problem();
+    return input;
+  }
+  const TrackedFeature& motion = message.features[0];
+  try {
+    input.error = errorOf(motion, camera);
+    input.valid = true;
+  } catch (const std::invalid_argument& error) {
+    input.problem = error.what();
+  }
+  // By integration alone nothing of the anchor is seen: then what follows the last step counts.
+  input.visible_fraction = motion.share > 0.0 ? motion.share : message.features[1].share;
+  input.corner_error = motion.expected_error;
+  return input;
 }
 
 }  // namespace laparoscope_servo

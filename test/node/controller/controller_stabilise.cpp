@@ -35,8 +35,12 @@ class ControllerStabilise : public ControllerFixture {
   }
 
   void engageAndStabilise() {
-    // Again, where the calibration of the test before was still in force.
-    ASSERT_TRUE(waitFor([this] { return cart_.engageWhenReady() && cart_.moves(); })) << cart_.state().reason;
+    ASSERT_TRUE(cart_.engageWhenReady()) << cart_.answer();
+    // The controller may still have the camera_info of the test before, which ends the first engagement.
+    ASSERT_TRUE(waitFor([this] {
+      if (cart_.state().state == ControllerState::LOST) cart_.engageWhenReady();
+      return cart_.state().state == ControllerState::SERVO && cart_.moves();
+    })) << cart_.state().reason;
   }
   bool waitForReason(const std::string& reason) {
     return waitFor([&] { return cart_.state().reason.find(reason) != std::string::npos; });

@@ -1,5 +1,5 @@
-// Stands in for the node of the dominant motion and for the camera: publishes the motion of the view since an anchor
-// (25 Hz) and camera_info (10 Hz) from a thread of its own.
+// Stands in for a tracker of features and for the camera: publishes what was seen (25 Hz) and camera_info (10 Hz) from
+// a thread of its own.
 #pragma once
 
 #include <laparoscope_servo/TrackedFeatures.h>
@@ -44,9 +44,25 @@ inline TrackedFeatures viewOff(double u, double v) {
   return message;
 }
 
+// The tip of instrument `number` is seen at (u, v) px.
+inline TrackedFeatures tipAt(double u, double v, const std::string& number = "1") {
+  TrackedFeatures message;
+  message.state = TrackedFeatures::TRACKING;
+  TrackedFeature tip;
+  tip.id = number + " tip";
+  tip.kind = TrackedFeature::POINT;
+  tip.state = TrackedFeatures::TRACKING;
+  tip.share = 1.0;
+  tip.expected_error = 1.0;
+  tip.parameters = {u, v};
+  message.features = {tip};
+  return message;
+}
+
 class MotionFeed {
  public:
-  MotionFeed() : publisher_([this] { publishUntilEnd(); }) {}
+  explicit MotionFeed(const std::string& topic = "/motion_features")
+      : motion_(node_.advertise<TrackedFeatures>(topic, 1)), publisher_([this] { publishUntilEnd(); }) {}
   ~MotionFeed() { end(); }
   void end() {
     end_ = true;
@@ -89,7 +105,7 @@ class MotionFeed {
   }
 
   ros::NodeHandle node_;
-  ros::Publisher motion_ = node_.advertise<TrackedFeatures>("/motion_features", 1);
+  ros::Publisher motion_;
   ros::Publisher camera_info_ = node_.advertise<sensor_msgs::CameraInfo>("/camera_info", 1);
   std::mutex mutex_;
   MotionWords words_;

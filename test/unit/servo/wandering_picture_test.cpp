@@ -1,5 +1,5 @@
-// Pictures that run through, are zoomed or turned while a view is held look like tissue that moves: how far the scope
-// follows them, in simulated time. WANDERING_VERBOSE prints it.
+// Pictures that run through, are zoomed or turned while the scope follows them look like tissue, or like a hand, that
+// moves: how far the scope goes along, in simulated time. WANDERING_VERBOSE prints it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,6 +9,7 @@
 #include <iostream>
 #include <string>
 
+#include "laparoscope_servo/servo/tip_error.h"
 #include "support/simulated_cart.h"
 
 namespace laparoscope_servo::servo {
@@ -46,12 +47,25 @@ Picture turned(double rate, double most) {  // degrees a second
   return [=](double t) { return geometry::so3Exp({0.0, 0.0, std::min(rate * t, most) * kDegree}); };
 }
 
-// The fault begins `after` s after engaging.
-Followed follow(const Picture& picture, const scope::Velocity& start, double after, unsigned seed) {
-  test::SimulatedCart cart(ControllerConfig(), start, seed);
+// What the region's tracker sees is the input of each task: the region is the view, its centre the tip.
+void giveEachTask(ControllerInput& input, double) {
+  input.view = input.tip = input.task_error;
+  input.tip.error = tipError({input.task_error.error.x, input.task_error.error.y}, CentreTipConfig());
+}
+
+struct Case {
+  Task task = Task::kHoldView;
+  scope::Velocity start;  // rad, m
+  double after = 0.0;     // s, from engaging to the fault
+};
+
+Followed follow(const Picture& picture, const Case& c, unsigned seed) {
+  test::SimulatedCart cart(ControllerConfig(), c.start, seed);
+  cart.interference.input = giveEachTask;
+  cart.controller.select(c.task);
   cart.pass(1.0);
   EXPECT_EQ(cart.controller.engage(cart.input()), "");
-  cart.pass(after);
+  cart.pass(c.after);
   EXPECT_EQ(cart.output.state, ControllerState::kServo) << cart.output.reason;
   const double begin = cart.time();
   const Eigen::Isometry3d from = cart.pose();
@@ -92,10 +106,10 @@ std::vector<Row> rows() {
   };
 }
 
-void expectBounded(const Row& row, const test::ScopeTravel& allowed, const scope::Velocity& start, double after) {
+void expectBounded(const Row& row, const test::ScopeTravel& allowed, const Case& c) {
   Followed worst;
   for (unsigned seed = 1; seed <= 3; ++seed) {
-    const Followed followed = follow(row.picture, start, after, seed);
+    const Followed followed = follow(row.picture, c, seed);
     SCOPED_TRACE(row.name + ", seed " + std::to_string(seed) + ": " + followed.reason);
     EXPECT_TRUE(followed.state == "LOST" || followed.state == "FAULT") << followed.state;
     EXPECT_LE(followed.travel.angle / kDegree, allowed.angle);
@@ -106,17 +120,61 @@ void expectBounded(const Row& row, const test::ScopeTravel& allowed, const scope
     worst.time = std::max(worst.time, followed.time);
   }
   if (std::getenv("WANDERING_VERBOSE") == nullptr) return;
-  std::cout << row.name << ", " << after << " s: " << worst.travel.angle / kDegree << " deg, "
+  std::cout << row.name << ", " << c.after << " s: " << worst.travel.angle / kDegree << " deg, "
             << 1e3 * worst.travel.distance << " mm, " << worst.time << " s, " << worst.reason << std::endl;
 }
 
 TEST(WanderingPicture, IsFollowedOnlySoFarWhereTheViewWasReached) {
-  for (const Row& row : rows()) expectBounded(row, row.reached, {0.05, 0.02, 0.05, 0.004}, 8.0);
+  for (const Row& row : rows()) expectBounded(row, row.reached, {Task::kHoldView, {0.05, 0.02, 0.05, 0.004}, 8.0});
 }
 
 // What the scope had to go anyway, some 3 degrees of pan, is in it.
 TEST(WanderingPicture, IsFollowedOnlySoFarOnTheWay) {
-  for (const Row& row : rows()) expectBounded(row, row.on_the_way, {0.15, 0.0, 0.0, 0.0}, 1.2);
+  for (const Row& row : rows()) expectBounded(row, row.on_the_way, {Task::kHoldView, {0.15, 0.0, 0.0, 0.0}, 1.2});
+}
+
+std::vector<Row> runningRows() {
+  std::vector<Row> all = rows();
+  all.resize(4);
+  return all;
+}
+
+TEST(WanderingPicture, ThatRunsIsFollowedOnlySoFarInStabilise) {
+  for (const Row& row : runningRows()) expectBounded(row, {9.4, 1e-6}, {Task::kStabilise, {0.05, 0.02, 0.0, 0.0}, 8.0});
+}
+
+// Spin and insertion are not used: what would be followed by them takes the scope nowhere, and is no reason to stop.
+TEST(WanderingPicture, ThatIsZoomedOrTurnedChangesNothingInStabilise) {
+  for (const Row& row : rows()) {
+    if (row.name.find("running") != std::string::npos) continue;
+    for (unsigned seed = 1; seed <= 3; ++seed) {
+      const Followed followed = follow(row.picture, {Task::kStabilise, {0.05, 0.02, 0.0, 0.0}, 8.0}, seed);
+      EXPECT_EQ(followed.state, "SERVO") << followed.reason;
+      EXPECT_LT(followed.travel.angle / kDegree, 0.1) << row.name << ", seed " << seed;
+      EXPECT_LT(followed.travel.distance, 1e-9) << row.name << ", seed " << seed;
+    }
+  }
+}
+
+// A loop that never comes up with it would go on for ever: 21.9 degrees by 2.8 px an image, without a leash. Where the
+// picture runs as slowly as a hand that is still, it is followed, as that hand is.
+TEST(WanderingPicture, ThatRunsIsFollowedOnlySoFarOnTheWayToATip) {
+  for (const double right : {-3.0, -2.8, -2.4, -1.0, 1.0, 3.0}) {
+    const std::string name = "running to the right by " + std::to_string(right) + " px";
+    expectBounded({name, running(right, 0.0), {}, {}}, {16.3, 1e-6}, {Task::kCentreTip, {0.15, 0.0, 0.0, 0.0}, 0.3});
+  }
+}
+
+// A hand takes the tip 80 px further to the left every 5 s: more than the leash in all, less each time.
+TEST(WanderingPicture, IsFollowedAnywhereWhereAHandHoldsTheTipStill) {
+  const Picture by_hand = [](double t) {
+    Eigen::Matrix3d change = Eigen::Matrix3d::Identity();
+    change(0, 2) = -80.0 / kFocal * std::min(1.0 + std::floor(t / 5.0), 3.0);
+    return change;
+  };
+  const Followed followed = follow(by_hand, {Task::kCentreTip, scope::Velocity(), 1.0}, 1);
+  EXPECT_EQ(followed.state, "SERVO") << followed.reason;
+  EXPECT_GT(followed.travel.angle, 1.3 * LeashConfig().turn);
 }
 
 }  // namespace

@@ -66,14 +66,14 @@ TrackedFeatures anchored() {
   return anchored(geometry::pixelsFromNormalised(moved(), kCamera));
 }
 
-ViewInput calibrated() {
-  ViewInput input(false);
-  input.takeCameraInfo(pinhole());
-  return input;
+FeatureCamera calibrated() {
+  FeatureCamera camera(false);
+  camera.take(pinhole());
+  return camera;
 }
 
 TEST(ViewInput, IsTheTaskErrorOfTheViewsMiddle) {
-  const servo::TaskErrorInput input = calibrated().from(anchored());
+  const servo::TaskErrorInput input = viewInput(anchored(), calibrated());
   EXPECT_EQ(input.problem, "");
   ASSERT_TRUE(input.valid);
   const servo::TaskError expected = servo::taskError(moved(), servo::viewRegion(640.0, 480.0), kCamera);
@@ -91,25 +91,25 @@ TEST(ViewInput, IsTheTaskErrorOfTheViewsMiddle) {
 TEST(ViewInput, WithoutTheAnchorInViewTheLastStepSaysWhatIsSeen) {
   TrackedFeatures message = anchored();
   message.features[0].share = 0.0;
-  EXPECT_EQ(calibrated().from(message).visible_fraction, 0.6);
+  EXPECT_EQ(viewInput(message, calibrated()).visible_fraction, 0.6);
 }
 
 // The pixels are those of a lens that bends: the motion of its raw corners gives the pinhole camera's error.
 TEST(ViewInput, TakesTheLensOut) {
   const image::Lens lens(test::laparoscope(kSize, 500.0));
-  ViewInput input(false);
-  input.takeCameraInfo(test_support::lensInfo(lens, kSize));
-  const geometry::PinholeCamera& camera = lens.parameters().rectified;
+  FeatureCamera camera(false);
+  camera.take(test_support::lensInfo(lens, kSize));
+  const geometry::PinholeCamera& ideal = lens.parameters().rectified;
   const geometry::Rectangle region = servo::viewRegion(640.0, 480.0);
   geometry::Quadrilateral before, after;
   for (std::size_t k = 0; k < 4; ++k) {
     const Eigen::Vector2d corner = region.corners()[k];
     before[k] = *lens.toRaw(corner);
-    after[k] = *lens.toRaw(geometry::apply(geometry::pixelsFromNormalised(moved(), camera), corner));
+    after[k] = *lens.toRaw(geometry::apply(geometry::pixelsFromNormalised(moved(), ideal), corner));
   }
-  const servo::TaskErrorInput seen = input.from(anchored(geometry::fromCorners(before, after)));
+  const servo::TaskErrorInput seen = viewInput(anchored(geometry::fromCorners(before, after)), camera);
   ASSERT_TRUE(seen.valid) << seen.problem;
-  const servo::TaskError expected = servo::taskError(moved(), region, camera);
+  const servo::TaskError expected = servo::taskError(moved(), region, ideal);
   EXPECT_NEAR(seen.error.x, expected.x, 1e-6);
   EXPECT_NEAR(seen.error.y, expected.y, 1e-6);
   EXPECT_NEAR(seen.error.log_depth, expected.log_depth, 1e-6);
@@ -120,19 +120,19 @@ TEST(ViewInput, ReadsPOfRectifiedImages) {
   sensor_msgs::CameraInfo info = pinhole();
   info.K[0] = info.K[4] = 600.0;
   info.D[0] = -0.3;
-  ViewInput input(true);
-  input.takeCameraInfo(info);
-  EXPECT_NEAR(input.from(anchored()).error.x, servo::taskError(moved(), servo::viewRegion(640.0, 480.0), kCamera).x,
-              1e-9);
+  FeatureCamera camera(true);
+  camera.take(info);
+  EXPECT_NEAR(viewInput(anchored(), camera).error.x,
+              servo::taskError(moved(), servo::viewRegion(640.0, 480.0), kCamera).x, 1e-9);
 }
 
 TEST(ViewInput, NotTrackedItIsNotValid) {
   for (const std::uint8_t state : {TrackedFeatures::IDLE, TrackedFeatures::SEARCHING, TrackedFeatures::LOST}) {
     TrackedFeatures message = anchored();
     message.features[0].state = state;
-    EXPECT_FALSE(calibrated().from(message).valid) << int{state};
+    EXPECT_FALSE(viewInput(message, calibrated()).valid) << int{state};
   }
-  EXPECT_FALSE(calibrated().from(TrackedFeatures()).valid);
+  EXPECT_FALSE(viewInput(TrackedFeatures(), calibrated()).valid);
 }
 
 TEST(ViewInput, RefusesByName) {
@@ -158,42 +158,42 @@ TEST(ViewInput, RefusesByName) {
   for (const Bad& bad : all) {
     TrackedFeatures message = anchored();
     bad.apply(message);
-    const servo::TaskErrorInput input = calibrated().from(message);
+    const servo::TaskErrorInput input = viewInput(message, calibrated());
     EXPECT_FALSE(input.valid) << bad.problem;
     EXPECT_NE(input.problem.find(bad.problem), std::string::npos) << input.problem;
   }
 }
 
 TEST(ViewInput, NeedsAUsableCalibration) {
-  ViewInput input(false);
-  EXPECT_NE(input.from(anchored()).problem.find("no camera_info has come"), std::string::npos);
+  FeatureCamera camera(false);
+  EXPECT_NE(viewInput(anchored(), camera).problem.find("no camera_info has come"), std::string::npos);
   sensor_msgs::CameraInfo info = pinhole();
   info.width = info.height = 0;
-  input.takeCameraInfo(info);
-  EXPECT_NE(input.from(anchored()).problem.find("no size"), std::string::npos);
+  camera.take(info);
+  EXPECT_NE(viewInput(anchored(), camera).problem.find("no size"), std::string::npos);
   info = pinhole();
   info.K[0] = 0.0;
-  input.takeCameraInfo(info);
-  EXPECT_NE(input.from(anchored()).problem.find("camera_info cannot be used"), std::string::npos);
+  camera.take(info);
+  EXPECT_NE(viewInput(anchored(), camera).problem.find("camera_info cannot be used"), std::string::npos);
   info = pinhole();
   info.width = 320;
   info.height = 240;
   info.K = {250.0, 0.0, 155.0, 0.0, 250.0, 125.0, 0.0, 0.0, 1.0};
   info.P = {250.0, 0.0, 155.0, 0.0, 0.0, 250.0, 125.0, 0.0, 0.0, 0.0, 1.0, 0.0};
-  input.takeCameraInfo(info);
-  EXPECT_NE(input.from(anchored()).problem.find("another size"), std::string::npos);
-  input.takeCameraInfo(pinhole());
-  EXPECT_TRUE(input.from(anchored()).valid) << "it is mended by the next one";
+  camera.take(info);
+  EXPECT_NE(viewInput(anchored(), camera).problem.find("another size"), std::string::npos);
+  camera.take(pinhole());
+  EXPECT_TRUE(viewInput(anchored(), camera).valid) << "it is mended by the next one";
 }
 
-TEST(ViewInput, KnowsAnotherCalibration) {
-  ViewInput input(false);
-  EXPECT_FALSE(input.takeCameraInfo(pinhole())) << "the first one";
+TEST(FeatureCamera, KnowsAnotherCalibration) {
+  FeatureCamera camera(false);
+  EXPECT_FALSE(camera.take(pinhole())) << "the first one";
   sensor_msgs::CameraInfo info = pinhole();
   info.header.stamp = ros::Time(5);
-  EXPECT_FALSE(input.takeCameraInfo(info)) << "only the header differs";
+  EXPECT_FALSE(camera.take(info)) << "only the header differs";
   info.K[0] += 1.0;
-  EXPECT_TRUE(input.takeCameraInfo(info));
+  EXPECT_TRUE(camera.take(info));
 }
 
 }  // namespace

@@ -1,0 +1,61 @@
+// The messages by which tasks see the picture: one owner, one order of stamps, one form for all.
+#include "ros/common/clocks.h"
+#include "ros/controller/controller_conversions.h"
+#include "ros/controller/controller_inputs.h"
+#include "ros/controller/view_input.h"
+
+namespace laparoscope_servo {
+
+void ControllerInputs::Picture::forget() {
+  last = servo::TaskErrorInput();
+  last.problem = words.none;
+  watch.clear();
+}
+
+// Whether the message is the owner's next one. `follows`: the present task goes by it.
+template <typename Message>
+bool ControllerInputs::takes(Input& input, Picture& picture, const ros::MessageEvent<Message const>& event,
+                             bool follows) {
+  if (!counts(input, event, engaged_ && follows)) return false;
+  calls_.check_time();
+  const ros::Time stamp = event.getConstMessage()->header.stamp;
+  const StampGate::Verdict verdict = input.stamps.judge(stamp, ros::Time::now());
+  if (verdict == StampGate::Verdict::kJumpedBack && follows) clock_jump_ = picture.words.jumped_back;
+  if (verdict != StampGate::Verdict::kCounts && verdict != StampGate::Verdict::kJumpedBack) return false;
+  picture.watch.arrived(stamp, steadyNow());
+  return true;
+}
+
+// Converts the stamp to steady time once per image, since the clocks may drift.
+void ControllerInputs::keep(Picture& picture, const servo::TaskErrorInput& seen) {
+  picture.last = seen;
+  picture.last.image_time = steadyNow() - picture.watch.stampAge(ros::Time::now());
+}
+
+void ControllerInputs::onTaskError(const ros::MessageEvent<TaskError const>& event) {
+  if (takes(task_error_input_, task_error_, event, task_ == servo::Task::kHoldView))
+    keep(task_error_, fromMessage(*event.getConstMessage()));
+}
+
+void ControllerInputs::onMotion(const ros::MessageEvent<TrackedFeatures const>& event) {
+  if (takes(motion_input_, view_, event, task_ == servo::Task::kStabilise))
+    keep(view_, viewInput(*event.getConstMessage(), camera_));
+}
+
+// Another instrument is chosen only while nothing moves by this one.
+void ControllerInputs::onInstrument(const ros::MessageEvent<TrackedFeatures const>& event) {
+  const bool follows = task_ == servo::Task::kCentreTip;
+  if (!takes(instrument_input_, tip_, event, follows)) return;
+  if (!(engaged_ && follows)) tip_input_.release();
+  keep(tip_, tip_input_.from(*event.getConstMessage(), camera_));
+}
+
+// Without a check of its stamp: a calibration does not grow old. With another one, what was measured by the last one
+// does not go on.
+void ControllerInputs::onCameraInfo(const ros::MessageEvent<sensor_msgs::CameraInfo const>& event) {
+  const bool matters = engaged_ && (task_ == servo::Task::kStabilise || task_ == servo::Task::kCentreTip);
+  if (!counts(camera_info_input_, event, matters)) return;
+  if (camera_.take(*event.getConstMessage()) && matters) end("camera_info has another calibration");
+}
+
+}  // namespace laparoscope_servo

@@ -1,0 +1,85 @@
+// CENTRE_TIP in the closed loop: what it promises, and that a wrong picture stops it.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "laparoscope_servo/closed_loop/servo_runs.h"
+#include "laparoscope_servo/closed_loop/servo_simulation.h"
+
+namespace laparoscope_servo::closed_loop {
+namespace {
+
+constexpr double kDegree = M_PI / 180.0;
+constexpr double kZone = 60.0;  // px: centre_tip/zone at a focal length of 400 px
+
+SimulationConfig centring() {
+  SimulationConfig config;
+  config.task = "CENTRE_TIP";
+  config.start = {0.12, 0.08, 0.0, 0.0};
+  return config;
+}
+
+double offset(const SimulationConfig& config, const SimulationSample& s) {
+  return (Eigen::Vector2d(s.u, s.v) - config.roi.centre()).norm();
+}
+
+// A hand takes the tip by up to 100 px to another place, every 10 s, and holds it.
+TEST(CentreTipSimulation, TheTipIsBackInItsZoneAndNothingMovesThere) {
+  for (unsigned seed = 1; seed <= 3; ++seed) {
+    SimulationConfig config = centring();
+    config.patient.pull.distance = 0.02;
+    double outside_since = -1.0;
+    bool moved = false;
+    for (const SimulationSample& s : simulate(ControllerSetup(), config, seed, 60.0)) {
+      const double off = offset(config, s);
+      if (off <= kZone + 5.0 || s.state != servo::ControllerState::kServo) outside_since = s.t;
+      EXPECT_LT(s.t - outside_since, 4.0) << "seed " << seed << ", " << s.t << " s";
+      const bool moves = s.command.vector() != Eigen::Vector4d::Zero();
+      moved |= moves;
+      EXPECT_FALSE(moves && off < 30.0) << "seed " << seed << ", " << s.t << " s";
+      EXPECT_EQ(s.command.spin, 0.0);
+      EXPECT_EQ(s.command.insertion, 0.0);
+    }
+    EXPECT_TRUE(moved);
+  }
+}
+
+TEST(CentreTipSimulation, AnInstrumentThatLeavesIsNotFollowed) {
+  SimulationConfig config = centring();
+  config.start = {0.0, 0.0, 0.0, 0.0};
+  config.patient.drift = {0.03, 0.0, 0.0};  // 150 px/s, out of the image
+  const auto samples = simulate(ControllerSetup(), config, 1, 6.0);
+  for (const SimulationSample& s : samples) EXPECT_EQ(s.command.vector().norm(), 0.0) << s.t;
+  EXPECT_EQ(samples.back().state, servo::ControllerState::kLost);
+}
+
+TEST(CentreTipSimulation, AWrongPictureIsStopped) {
+  struct Fault {
+    const char* name;
+    void (*apply)(SimulationConfig&);
+  };
+  const Fault faults[] = {
+      {"mirrored, left for right", [](SimulationConfig& c) { c.picture.mirror = "left_right"; }},
+      {"mirrored, up for down", [](SimulationConfig& c) { c.picture.mirror = "up_down"; }},
+      {"rolled by 90 degrees", [](SimulationConfig& c) { c.picture.roll = 0.5 * M_PI; }},
+      {"rolled by 180 degrees", [](SimulationConfig& c) { c.picture.roll = M_PI; }},
+      {"frozen from the beginning", [](SimulationConfig& c) { c.picture.frozen_from = 0.0; }},
+      {"frozen from 0.6 s on", [](SimulationConfig& c) { c.picture.frozen_from = 0.6; }},
+      {"pan reversed", [](SimulationConfig& c) { c.signs[0] = -1.0; }},
+      {"tilt reversed", [](SimulationConfig& c) { c.signs[1] = -1.0; }},
+  };
+  for (const Fault& fault : faults) {
+    for (unsigned seed = 1; seed <= 5; ++seed) {
+      SimulationConfig config = centring();
+      fault.apply(config);
+      const RunSummary summary = summariseRun(simulate(ControllerSetup(), config, seed, 10.0), config, RunBounds{});
+      EXPECT_GE(summary.stopped, 0.0) << fault.name << ", seed " << seed;
+      EXPECT_LT(summary.turned_away, 3.0 * kDegree) << fault.name << ", seed " << seed;
+      EXPECT_EQ(summary.inserted, 0.0) << fault.name;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace laparoscope_servo::closed_loop
