@@ -18,8 +18,7 @@ std::string seconds(double value) {
 PictureWords pictureWords(const Picture& picture, double now, const std::string& playback) {
   if (picture.image.isNull() || picture.arrived_at < 0.0)
     return {false, "NO PICTURE", "The tracker has sent none yet."};
-  if (playback == "ENDED")
-    return {false, "ENDED", "This is its last picture. \"Again\" plays it once more."};
+  if (playback == "ENDED") return {false, "ENDED", "This is its last picture. \"Again\" plays it once more."};
   // The player is paused on purpose, which the bar below shows.
   if (playback == "HOLDING" || playback == "PAUSED") return {true, "", ""};
   const double age = now - picture.arrived_at + std::max(0.0, picture.age_at_arrival);

@@ -36,7 +36,8 @@ TEST(FeatureTrackers, RefusesAKindThatIsNone) {
     makeFeatureTracker("lines", {}, "", input, errors);
     FAIL();
   } catch (const std::invalid_argument& error) {
-    EXPECT_STREQ(error.what(), "tracker 'lines', expected one of dots, edges, points, contour, instrument, model, motion");
+    EXPECT_STREQ(error.what(),
+                 "tracker 'lines', expected one of dots, edges, points, contour, instrument, model, motion");
   }
 }
 
