@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <vector>
 
 #include "laparoscope_servo/closed_loop/servo_runs.h"
 #include "laparoscope_servo/closed_loop/servo_simulation.h"
+#include "unit/closed_loop/wrong_pictures.h"
 
 namespace laparoscope_servo::closed_loop {
 namespace {
@@ -55,20 +58,8 @@ TEST(CentreTipSimulation, AnInstrumentThatLeavesIsNotFollowed) {
 }
 
 TEST(CentreTipSimulation, AWrongPictureIsStopped) {
-  struct Fault {
-    const char* name;
-    void (*apply)(SimulationConfig&);
-  };
-  const Fault faults[] = {
-      {"mirrored, left for right", [](SimulationConfig& c) { c.picture.mirror = "left_right"; }},
-      {"mirrored, up for down", [](SimulationConfig& c) { c.picture.mirror = "up_down"; }},
-      {"rolled by 90 degrees", [](SimulationConfig& c) { c.picture.roll = 0.5 * M_PI; }},
-      {"rolled by 180 degrees", [](SimulationConfig& c) { c.picture.roll = M_PI; }},
-      {"frozen from the beginning", [](SimulationConfig& c) { c.picture.frozen_from = 0.0; }},
-      {"frozen from 0.6 s on", [](SimulationConfig& c) { c.picture.frozen_from = 0.6; }},
-      {"pan reversed", [](SimulationConfig& c) { c.signs[0] = -1.0; }},
-      {"tilt reversed", [](SimulationConfig& c) { c.signs[1] = -1.0; }},
-  };
+  std::vector<Fault> faults(std::begin(kWrongPictures), std::end(kWrongPictures));
+  faults.push_back({"frozen from 0.6 s on", [](SimulationConfig& c) { c.picture.frozen_from = 0.6; }});
   for (const Fault& fault : faults) {
     for (unsigned seed = 1; seed <= 5; ++seed) {
       SimulationConfig config = centring();

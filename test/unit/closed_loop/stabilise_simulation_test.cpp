@@ -7,6 +7,7 @@
 
 #include "laparoscope_servo/closed_loop/servo_runs.h"
 #include "laparoscope_servo/closed_loop/servo_simulation.h"
+#include "unit/closed_loop/wrong_pictures.h"
 
 namespace laparoscope_servo::closed_loop {
 namespace {
@@ -54,20 +55,7 @@ TEST(StabiliseSimulation, ComesBackFromWhereItWasPushed) {
 
 // Three degrees, beside what goes along the line of a mirror: there the motion is as it should be.
 TEST(StabiliseSimulation, AWrongPictureIsStopped) {
-  struct Fault {
-    const char* name;
-    void (*apply)(SimulationConfig&);
-  };
-  const Fault faults[] = {
-      {"mirrored, left for right", [](SimulationConfig& c) { c.picture.mirror = "left_right"; }},
-      {"mirrored, up for down", [](SimulationConfig& c) { c.picture.mirror = "up_down"; }},
-      {"rolled by 90 degrees", [](SimulationConfig& c) { c.picture.roll = 0.5 * M_PI; }},
-      {"rolled by 180 degrees", [](SimulationConfig& c) { c.picture.roll = M_PI; }},
-      {"frozen from the beginning", [](SimulationConfig& c) { c.picture.frozen_from = 0.0; }},
-      {"pan reversed", [](SimulationConfig& c) { c.signs[0] = -1.0; }},
-      {"tilt reversed", [](SimulationConfig& c) { c.signs[1] = -1.0; }},
-  };
-  for (const Fault& fault : faults) {
+  for (const Fault& fault : kWrongPictures) {
     for (unsigned seed = 1; seed <= 5; ++seed) {
       SimulationConfig config = stabilising();
       fault.apply(config);
