@@ -139,6 +139,15 @@ inline std::string bytesOf(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
+// Writes into an AVI's header that its first stream is `units` of time long.
+inline void setAviLength(const std::string& path, std::int32_t units) {
+  const std::size_t header = bytesOf(path).find("strh");
+  if (header == std::string::npos) throw std::runtime_error(path + " is no AVI");
+  std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
+  file.seekp(static_cast<std::streamoff>(header) + 40);  // dwLength
+  for (int shift = 0; shift < 32; shift += 8) file.put(static_cast<char>(units >> shift & 0xff));
+}
+
 inline void writeBytes(const std::string& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
 }

@@ -198,10 +198,18 @@ bool VideoReader::readPacket() {
     ++packets_;
     const std::int64_t time = packet_->pts != AV_NOPTS_VALUE ? packet_->pts : packet_->dts;
     const double period = packet_->duration > 0 ? seconds(packet_->duration) : rate_ > 0.0 ? 1.0 / rate_ : 0.0;
-    if (time != AV_NOPTS_VALUE) end_ = std::max(end_, seconds(time) + period);
+    if (time != AV_NOPTS_VALUE) {
+      end_ = std::max(end_, seconds(time) + period);
+      if (packet_->size > 0) addStep(seconds(time));
+    }
     // Some recorders write an empty packet if nothing has changed; for the decoder it would mean the end.
     if (packet_->size > 0) return true;
   }
+}
+
+void VideoReader::addStep(double time) {
+  if (last_sent_ && time > *last_sent_) shortest_step_ = std::min(shortest_step_, time - *last_sent_);
+  last_sent_ = time;
 }
 
 void VideoReader::send() {
@@ -283,18 +291,23 @@ void VideoReader::addLost(const std::vector<PendingPictures::Sent>& pictures) {
 void VideoReader::finish() {
   ended_ = true;
   addLost(pending_.end());
+  double period = 1.0 / rate_;
+  if (every_period_is_there_ && std::isfinite(shortest_step_)) {
+    // The unit in which an AVI counts may be shorter than each of its pictures lasts, as the last one does.
+    end_ += std::max(0.0, shortest_step_ - period);
+    period = std::max(shortest_step_, period);
+  }
   Picture missing;
   missing.time = end_;
   const std::string where = "the video breaks off at " + timeText(end_);
   const auto read = static_cast<std::size_t>(packets_);
-  const double tolerance =
-      every_period_is_there_ ? 0.5 / rate_ : kMissingPeriods * std::max(longest_period_, 1.0 / rate_);
+  const double tolerance = every_period_is_there_ ? 0.5 * period : kMissingPeriods * std::max(longest_period_, period);
   if (read < promised_) {
     missing.count = promised_ - read;
     missing.error = where + ": " + std::to_string(missing.count) + " of its " + std::to_string(promised_) +
                     " pictures are not in the file";
   } else if (promised_end_ > 0.0 && rate_ > 0.0 && end_ + tolerance < promised_end_) {
-    missing.count = static_cast<std::size_t>(std::lround((promised_end_ - end_) * rate_));
+    missing.count = static_cast<std::size_t>(std::lround((promised_end_ - end_) / period));
     missing.error = where + ", expected at " + timeText(promised_end_);
   } else if (!read_error_.empty() || complaint_) {
     missing.error = where + " (" + (read_error_.empty() ? "the file ends within a picture" : read_error_) + ")";

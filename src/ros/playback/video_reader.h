@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -44,6 +45,7 @@ class VideoReader {
   void openDecoder();
   void learnLength();
   bool readPacket();
+  void addStep(double time);
   void send();
   void take(libav::Frame frame);
   void tellHidden(std::int64_t index, const std::optional<double>& time, std::size_t told);
@@ -70,11 +72,13 @@ class VideoReader {
   std::deque<Picture> ready_;
   std::map<std::int64_t, std::string> damaged_;  // incomplete packets
   std::int64_t packets_ = 0;
-  std::optional<std::int64_t> complaint_;  // packet before which the container is damaged
-  std::optional<double> last_time_;        // s, time of the last picture returned
-  double longest_period_ = 0.0;            // s, between two pictures
-  std::int64_t failures_ = 0;              // failures of reading in a row
-  double end_ = 0.0;                       // s, end of the packets read so far
+  std::optional<std::int64_t> complaint_;                           // packet before which the container is damaged
+  std::optional<double> last_time_;                                 // s, time of the last picture returned
+  double longest_period_ = 0.0;                                     // s, between two pictures
+  std::optional<double> last_sent_;                                 // s, time of the last packet with a picture
+  double shortest_step_ = std::numeric_limits<double>::infinity();  // s, between two such packets
+  std::int64_t failures_ = 0;                                       // failures of reading in a row
+  double end_ = 0.0;                                                // s, end of the packets read so far
   std::string read_error_;
   std::string decode_error_;
   std::size_t leading_ = 0;

@@ -133,6 +133,32 @@ TEST_F(VideoSourceTest, AnAviMayLeaveOutPicturesAndHoldH264) {
   }
 }
 
+// As of H.264, whose unit of time is half a picture.
+TEST_F(VideoSourceTest, AnAviWhosePicturesLastLongerThanItsUnitOfTimeIsWholeOrNot) {
+  TestVideo video;
+  video.codec = "mjpeg";
+  video.pixels = AV_PIX_FMT_YUVJ420P;
+  video.time_base = {1, 50};
+  video.rate = {50, 1};
+  for (const int units : {2, 3, 5}) {
+    SCOPED_TRACE(units);
+    video.times.clear();
+    for (int k = 0; k < kPictures; ++k) video.times.push_back(units * k);
+    const std::string path = write("whole.avi", video, pictures());
+    // The muxer ends with the last picture; other programs count all of its units.
+    for (const std::int32_t length : {units * (kPictures - 1) + 1, units * kPictures}) {
+      test_support::setAviLength(path, length);
+      const auto images = readAll(path);
+      EXPECT_EQ(images.size(), static_cast<std::size_t>(kPictures)) << length;
+      EXPECT_EQ(lostOf(images), 0u) << images.back().error;
+    }
+    test_support::setAviLength(path, units * (kPictures + 3));
+    const auto cut = readAll(path);
+    EXPECT_EQ(lostOf(cut), 3u) << cut.back().error;
+    EXPECT_NE(cut.back().error.find("breaks off"), std::string::npos) << cut.back().error;
+  }
+}
+
 // An arrow that points right, red on the left.
 TEST_F(VideoSourceTest, IsTurnedAsAPlayerTurnsIt) {
   cv::Mat stored(48, 64, CV_8UC3, cv::Scalar::all(128));
