@@ -31,7 +31,7 @@ class InstrumentFeatureTracker : public features::FeatureTracker {
 
  private:
   void tell();
-  features::TrackedFeature& add(const Instrument& instrument, const std::string& part, features::FeatureKind kind);
+  features::TrackedFeature& add(const Instrument& instrument, const char* part, features::FeatureKind kind);
   void addEdge(const Instrument& instrument, std::size_t side);
   void addTip(const Instrument& instrument);
   void addPose(const Instrument& instrument);
@@ -39,6 +39,7 @@ class InstrumentFeatureTracker : public features::FeatureTracker {
   InstrumentTracker tracker_;
   double radius_;  // m
   features::TrackedFeatures told_;
+  std::size_t count_ = 0;  // of the features that the present image has so far
 };
 
 }  // namespace laparoscope_servo::model

@@ -46,23 +46,30 @@ void InstrumentFeatureTracker::reset() {
 }
 
 void InstrumentFeatureTracker::tell() {
-  told_.features.clear();
+  count_ = 0;
   for (const Instrument& instrument : tracker_.result().instruments) {
     for (std::size_t side = 0; side < instrument.edges.size(); ++side) addEdge(instrument, side);
     addTip(instrument);
     addPose(instrument);
   }
+  told_.features.resize(count_);
   features::summarise(told_, kNone);
 }
 
-// Without parameters, and as uncertain as what is not seen.
-TrackedFeature& InstrumentFeatureTracker::add(const Instrument& instrument, const std::string& part, FeatureKind kind) {
-  TrackedFeature& told = told_.features.emplace_back();
-  told.id = std::to_string(instrument.id) + part;
+// Without parameters, and as uncertain as what is not seen. Where there was one in the image before, its memory serves.
+TrackedFeature& InstrumentFeatureTracker::add(const Instrument& instrument, const char* part, FeatureKind kind) {
+  if (count_ == told_.features.size()) told_.features.emplace_back();
+  TrackedFeature& told = told_.features[count_++];
+  told.id = std::to_string(instrument.id);
+  told.id += part;
   told.kind = kind;
   told.state = instrument.state;
   told.reason = reasonText(instrument.reason);
+  told.share = 0.0;
   told.expected_error = kInfinite;
+  told.outline.clear();
+  told.radius = 0.0;
+  told.sites.clear();
   return told;
 }
 
@@ -73,8 +80,9 @@ void InstrumentFeatureTracker::addEdge(const Instrument& instrument, std::size_t
   told.parameters = Eigen::Vector2d(edge.rho, edge.theta);
   features::setUnknown(told.covariance, 2);
   told.share = edge.fine ? 1.0 : 0.0;
-  told.outline = {edge.begin, edge.end};
-  told.sites = edge.sites;
+  told.outline.assign({edge.begin, edge.end});
+  told.sites.reserve(edge.sites.capacity());
+  told.sites.assign(edge.sites.begin(), edge.sites.end());
   if (told.state != State::kTracking) return;
   told.covariance = edge.covariance;
   told.expected_error = edge.expected_error;
@@ -84,7 +92,7 @@ void InstrumentFeatureTracker::addTip(const Instrument& instrument) {
   TrackedFeature& told = add(instrument, " tip", FeatureKind::kPoint);
   told.parameters = instrument.tip;
   features::setUnknown(told.covariance, 2);
-  told.outline = {instrument.tip};
+  told.outline.assign({instrument.tip});
   if (told.state != State::kTracking || !std::isfinite(instrument.tip_error + instrument.expected_error)) return;
   const Eigen::Vector2d across(-instrument.axis.y(), instrument.axis.x());
   told.covariance = instrument.tip_error * instrument.tip_error * instrument.axis * instrument.axis.transpose() +
@@ -101,7 +109,7 @@ void InstrumentFeatureTracker::addPose(const Instrument& instrument) {
   told.parameters.resize(6);
   told.parameters << pose.point, turn.angle() * turn.axis();
   features::setUnknown(told.covariance, 6);
-  told.outline = {instrument.entry, instrument.tip};
+  told.outline.assign({instrument.entry, instrument.tip});
   told.radius = radius_;
   if (told.state != State::kTracking) return;
   told.covariance = pose.covariance;

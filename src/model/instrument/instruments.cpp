@@ -164,7 +164,7 @@ class InstrumentTracker::Implementation {
 
   void tell(const GreyLevels& levels) {
     mask_.create(size_);
-    mask_.setTo(0);
+    std::fill(mask_.begin(), mask_.end(), uchar{0});
     result_.instruments.resize(tracks_.size());
     for (std::size_t i = 0; i < tracks_.size(); ++i) {
       tracks_[i].tell(map_, camera_, result_.instruments[i]);

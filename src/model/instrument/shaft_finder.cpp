@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace laparoscope_servo::model {
 
@@ -199,9 +200,13 @@ const std::vector<Shaft>& ShaftFinder::find(const GreyMap& map, const image::Fie
     Shaft shaft;
     if (single(scene, a, shaft)) candidates_.push_back(shaft);
   }
-  std::stable_sort(candidates_.begin(), candidates_.end(),
-                   [](const Shaft& a, const Shaft& b) { return a.score > b.score; });
-  for (const Shaft& s : candidates_) {
+  order_.resize(candidates_.size());
+  std::iota(order_.begin(), order_.end(), std::size_t{0});
+  std::sort(order_.begin(), order_.end(), [this](std::size_t a, std::size_t b) {
+    return candidates_[a].score > candidates_[b].score || (candidates_[a].score == candidates_[b].score && a < b);
+  });
+  for (const std::size_t k : order_) {
+    const Shaft& s = candidates_[k];
     if (static_cast<int>(shafts_.size()) == kMost) break;
     const bool free =
         std::none_of(shafts_.begin(), shafts_.end(), [&](const Shaft& t) { return overlaps(t, s) || overlaps(s, t); });

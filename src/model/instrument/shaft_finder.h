@@ -37,6 +37,7 @@ class ShaftFinder {
 
   GreyLines finder_;
   std::vector<Shaft> candidates_, shafts_;
+  std::vector<std::size_t> order_;  // of the candidates, best first
 };
 
 }  // namespace laparoscope_servo::model

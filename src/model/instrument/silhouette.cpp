@@ -1,8 +1,8 @@
 #include "model/instrument/silhouette.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <opencv2/imgproc.hpp>
 
 namespace laparoscope_servo::model {
 
@@ -37,7 +37,7 @@ bool Silhouette::mayBe(const Shaft& shaft, const Eigen::Vector2d& p) const {
 
 void Silhouette::grow(const GreyMap& map, const image::FieldOfView& view, double threshold, const Shaft& shaft) {
   cells_.create(map.size());
-  cells_.setTo(0);
+  std::fill(cells_.begin(), cells_.end(), uchar{0});
   stack_.clear();
   count_ = 0;
   const double strict = GreyMap::kZero + kStrict * (threshold - GreyMap::kZero);
@@ -132,52 +132,66 @@ void Silhouette::fillHoles() {
 }
 
 void Silhouette::draw(const GreyMap& map, double threshold, const Shaft& shaft, double margin, cv::Mat1b& mask) {
-  const auto pixel = [&](const Eigen::Vector2d& p) {
-    return cv::Point(static_cast<int>(std::lround(map.toPixel(p.x()))),
-                     static_cast<int>(std::lround(map.toPixel(p.y()))));
-  };
   drawn_.create(mask.size());
-  drawn_.setTo(0);
+  std::fill(drawn_.begin(), drawn_.end(), uchar{0});
   // The shaft, from beyond the border to where its edges end.
-  std::array<cv::Point, 4> corners;
+  std::array<Eigen::Vector2d, 4> corners;
   for (std::size_t k = 0; k < 2; ++k) {
     const GreyLine& e = shaft.edges[k];
     const Eigen::Vector2d along = e.direction() * (e.direction().dot(shaft.axis) < 0.0 ? -1.0 : 1.0);
     const auto at = [&](double s) {
       const double t = (s - shaft.axis.dot(e.point - shaft.entry)) / shaft.axis.dot(along);
-      return pixel(e.point + t * along);
+      const Eigen::Vector2d cell = e.point + t * along;
+      return Eigen::Vector2d(map.toPixel(cell.x()), map.toPixel(cell.y()));
     };
     corners[k == 0 ? 0 : 3] = at(-shaft.width - 10.0);
     corners[k == 0 ? 1 : 2] = at(shaft.length);
   }
-  cv::fillConvexPoly(drawn_, corners.data(), 4, 255);
-  if (count_ > 0) {
-    // What else is grey, at the image's resolution: colour between cells, where a cell of it is near.
-    const cv::Rect box =
-        cv::Rect(box_.tl() - cv::Point(2, 2), box_.br() + cv::Point(2, 2)) & cv::Rect(cv::Point(0, 0), map.size());
-    cv::dilate(cells_(box), near_, cv::Mat());
-    part_.create(box.size());
-    for (int y = 0; y < box.height; ++y) {
-      for (int x = 0; x < box.width; ++x) {
-        const bool hole = cells_(box.y + y, box.x + x) == kHole;
-        part_(y, x) = hole ? 0 : near_(y, x) ? map.colour()(box.y + y, box.x + x) : 255;
-      }
-    }
-    const int step = map.step();
-    const cv::Rect pixels(box.tl() * step, box.size() * step);
-    cv::resize(part_, large_, pixels.size(), 0, 0, cv::INTER_LINEAR);
-    cv::Mat1b target = drawn_(pixels);
-    for (int y = 0; y < large_.rows; ++y) {
-      const uchar* from = large_[y];
-      uchar* to = target[y];
-      for (int x = 0; x < large_.cols; ++x) to[x] = from[x] < threshold ? 255 : to[x];
+  cv::Rect box = drawQuadrangle(corners, drawn_);
+  if (count_ > 0) box |= drawGrey(map, threshold);
+  growth_.add(drawn_, box, std::clamp(static_cast<int>(std::ceil(margin)), 0, 254), mask);
+}
+
+// What else is grey, at the image's resolution: colour between cells, where a cell of it is near.
+cv::Rect Silhouette::drawGrey(const GreyMap& map, double threshold) {
+  const cv::Rect box =
+      cv::Rect(box_.tl() - cv::Point(2, 2), box_.br() + cv::Point(2, 2)) & cv::Rect(cv::Point(0, 0), map.size());
+  part_.create(map.size());
+  for (int y = 0; y < box.height; ++y) {
+    for (int x = 0; x < box.width; ++x) {
+      const cv::Point cell = box.tl() + cv::Point(x, y);
+      part_(y, x) = cells_(cell) == kHole ? 0 : isNear(cell, box) ? map.colour()(cell) : 255;
     }
   }
-  const int grown = static_cast<int>(std::ceil(margin));
-  if (grown > 0) {
-    cv::dilate(drawn_, drawn_, cv::getStructuringElement(cv::MORPH_ELLIPSE, {2 * grown + 1, 2 * grown + 1}));
+  // Between the centres of four cells, whose pixels have weights in steps of half a pixel.
+  const int step = map.step(), whole = 2 * step;
+  row_.resize(static_cast<std::size_t>(map.columns()));
+  const double limit = threshold * whole * whole;
+  for (int v = 0; v < box.height * step; ++v) {
+    const int at_v = std::clamp(2 * v + 1 - step, 0, (box.height - 1) * whole);
+    const int y = std::min(at_v / whole, std::max(0, box.height - 2)), below = at_v - y * whole;
+    const uchar *const upper = part_[y], *const lower = part_[std::min(y + 1, box.height - 1)];
+    for (int x = 0; x < box.width; ++x) {
+      row_[static_cast<std::size_t>(x)] = (whole - below) * upper[x] + below * lower[x];
+    }
+    uchar* const to = drawn_[box.y * step + v] + box.x * step;
+    for (int u = 0; u < box.width * step; ++u) {
+      const int at_u = std::clamp(2 * u + 1 - step, 0, (box.width - 1) * whole);
+      const int x = std::min(at_u / whole, std::max(0, box.width - 2)), right = at_u - x * whole;
+      const std::size_t left = static_cast<std::size_t>(x), next = std::min(left + 1, row_.size() - 1);
+      if ((whole - right) * row_[left] + right * row_[next] < limit) to[u] = 255;
+    }
   }
-  cv::bitwise_or(mask, drawn_, mask);
+  return {box.tl() * step, box.size() * step};
+}
+
+bool Silhouette::isNear(const cv::Point& cell, const cv::Rect& box) const {
+  for (int y = std::max(cell.y - 1, box.y); y <= std::min(cell.y + 1, box.y + box.height - 1); ++y) {
+    for (int x = std::max(cell.x - 1, box.x); x <= std::min(cell.x + 1, box.x + box.width - 1); ++x) {
+      if (cells_(y, x) != 0) return true;
+    }
+  }
+  return false;
 }
 
 }  // namespace laparoscope_servo::model

@@ -8,6 +8,7 @@
 
 #include "laparoscope_servo/image/field_of_view.h"
 #include "model/instrument/grey_map.h"
+#include "model/instrument/mask_drawing.h"
 #include "model/instrument/shaft_finder.h"
 
 namespace laparoscope_servo::model {
@@ -31,6 +32,8 @@ class Silhouette {
   void measure(const GreyMap& map, double threshold, const Shaft& shaft);
   void fillHoles();
   bool mayBe(const Shaft& shaft, const Eigen::Vector2d& p) const;
+  cv::Rect drawGrey(const GreyMap& map, double threshold);
+  bool isNear(const cv::Point& cell, const cv::Rect& box) const;
 
   cv::Mat1b cells_;  // 255 for its cells, less for holes in it
   std::vector<cv::Point> stack_;
@@ -38,7 +41,9 @@ class Silhouette {
   int count_ = 0;
   double fill_ = 0.0;
   Eigen::Vector2d tip_ = Eigen::Vector2d::Zero();
-  cv::Mat1b near_, part_, large_, drawn_;
+  cv::Mat1b part_, drawn_;
+  std::vector<int> row_;  // of cells, between two rows
+  MaskGrowth growth_;
 };
 
 }  // namespace laparoscope_servo::model
