@@ -118,7 +118,7 @@ double seconds(const FaultRow& row) {
 bool goesOn(const FaultRow& row, Situation situation, const Reaction& r) {
   if (row.outcome == Outcome::kStands) return false;
   if (situation == Situation::kManual)
-    return r.state == "SERVO" && r.travel.degrees < 1.2 * kStick * seconds(row) * 180.0 / M_PI;
+    return r.state == "SERVO" && r.travel.degrees < 1.2 * kStick * r.lasted * 180.0 / M_PI;
   if (r.away > row.degrees) return false;
   if (r.state == "SERVO") return r.nearer >= 0.0;
   return row.outcome == Outcome::kEither && r.nearer > 0.0;

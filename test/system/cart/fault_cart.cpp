@@ -238,8 +238,9 @@ void FaultCart::mark() {
 Reaction FaultCart::watch(double seconds, double calm) {
   Reaction reaction;
   double moved = marked_at_;
+  const double begin = steadyNow();  // later than the mark by what the fault itself takes
   const double distance = travel(kinematics_, marked_, home_).degrees;
-  const double lately = steadyNow() + seconds - 2.0;
+  const double lately = begin + seconds - 2.0;
   std::optional<aesop::JointVector> lowest, highest;
   bench.waitFor(
       [&] {
@@ -252,11 +253,12 @@ Reaction FaultCart::watch(double seconds, double calm) {
           lowest = lowest ? lowest->cwiseMin(now) : now;
           highest = highest ? highest->cwiseMax(now) : now;
         }
-        return steadyNow() - moved >= calm;
+        return steadyNow() - std::max(moved, begin) >= calm;
       },
       seconds);
   if (lowest) reaction.swing = travel(kinematics_, *lowest, *highest).degrees;
   reaction.stood = moved - marked_at_;
+  reaction.lasted = steadyNow() - marked_at_;
   reaction.state = state();
   reaction.reason = reason();
   reaction.robot = bench.state_ ? bench.state_->state : "";

@@ -30,6 +30,7 @@ struct Reaction {
   double away = 0.0;    // degrees, by which it was further from there meanwhile, at most
   double swing = 0.0;   // degrees, that a joint goes to and fro in the last 2 s; 0 where it is not watched to the end
   double stood = 0.0;   // s, after the fault; until the end of watching when it did not stand
+  double lasted = 0.0;  // s, from the mark until then
   std::string state;    // of the controller, when it stood
   std::string reason;
   std::string robot;  // the same, of the aesop node
