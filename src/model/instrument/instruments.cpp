@@ -164,7 +164,7 @@ class InstrumentTracker::Implementation {
 
   void tell(const GreyLevels& levels) {
     mask_.create(size_);
-    std::fill(mask_.begin(), mask_.end(), uchar{0});
+    std::fill_n(mask_.ptr(), mask_.total(), uchar{0});
     result_.instruments.resize(tracks_.size());
     for (std::size_t i = 0; i < tracks_.size(); ++i) {
       tracks_[i].tell(map_, camera_, result_.instruments[i]);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "laparoscope_servo/image/multiversion.h"
+
 namespace laparoscope_servo::model {
 
 namespace {
@@ -21,6 +23,16 @@ void rowDistances(const std::uint8_t* set, int count, std::uint8_t* distances) {
   for (int x = count - 1; x >= 0; --x) {
     distance = set[x] != 0 ? 0 : std::min(distance + 1, kFurthest);
     distances[x] = static_cast<std::uint8_t>(std::min<int>(distances[x], distance));
+  }
+}
+
+// Sets in `to` each of `count` pixels whose distance is at most `half`.
+LAPAROSCOPE_SERVO_CLONES
+void setNear(const std::uint8_t* __restrict distances, int count, int half, std::uint8_t* __restrict to) {
+  const auto limit = static_cast<std::uint8_t>(half);
+#pragma omp simd
+  for (int x = 0; x < count; ++x) {
+    to[x] = static_cast<std::uint8_t>(to[x] | (distances[x] <= limit ? 255 : 0));
   }
 }
 
@@ -75,10 +87,8 @@ void MaskGrowth::add(const cv::Mat1b& source, const cv::Rect& box, int radius, c
     const int half = halfWidth(radius, row);
     const int first = std::max(grown.y, box.y - row), last = std::min(grown.y + grown.height, box.y + box.height - row);
     for (int y = first; y < last; ++y) {
-      const std::uint8_t* const distances =
-          &distances_[static_cast<std::size_t>(y + row - box.y) * static_cast<std::size_t>(grown.width)];
-      std::uint8_t* const to = target[y] + grown.x;
-      for (int x = 0; x < grown.width; ++x) to[x] |= distances[x] <= half ? 255 : 0;
+      const std::size_t row_begin = static_cast<std::size_t>(y + row - box.y) * static_cast<std::size_t>(grown.width);
+      setNear(&distances_[row_begin], grown.width, half, target[y] + grown.x);
     }
   }
 }

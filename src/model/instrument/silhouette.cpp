@@ -37,7 +37,7 @@ bool Silhouette::mayBe(const Shaft& shaft, const Eigen::Vector2d& p) const {
 
 void Silhouette::grow(const GreyMap& map, const image::FieldOfView& view, double threshold, const Shaft& shaft) {
   cells_.create(map.size());
-  std::fill(cells_.begin(), cells_.end(), uchar{0});
+  std::fill_n(cells_.ptr(), cells_.total(), uchar{0});
   stack_.clear();
   count_ = 0;
   const double strict = GreyMap::kZero + kStrict * (threshold - GreyMap::kZero);
@@ -133,7 +133,7 @@ void Silhouette::fillHoles() {
 
 void Silhouette::draw(const GreyMap& map, double threshold, const Shaft& shaft, double margin, cv::Mat1b& mask) {
   drawn_.create(mask.size());
-  std::fill(drawn_.begin(), drawn_.end(), uchar{0});
+  std::fill_n(drawn_.ptr(), drawn_.total(), uchar{0});
   // The shaft, from beyond the border to where its edges end.
   std::array<Eigen::Vector2d, 4> corners;
   for (std::size_t k = 0; k < 2; ++k) {
@@ -165,24 +165,38 @@ cv::Rect Silhouette::drawGrey(const GreyMap& map, double threshold) {
   }
   // Between the centres of four cells, whose pixels have weights in steps of half a pixel.
   const int step = map.step(), whole = 2 * step;
+  const int limit = static_cast<int>(std::ceil(threshold * whole * whole));
   row_.resize(static_cast<std::size_t>(map.columns()));
-  const double limit = threshold * whole * whole;
   for (int v = 0; v < box.height * step; ++v) {
-    const int at_v = std::clamp(2 * v + 1 - step, 0, (box.height - 1) * whole);
-    const int y = std::min(at_v / whole, std::max(0, box.height - 2)), below = at_v - y * whole;
+    const int at = std::clamp(2 * v + 1 - step, 0, (box.height - 1) * whole);
+    const int y = at / whole, below = at % whole;
     const uchar *const upper = part_[y], *const lower = part_[std::min(y + 1, box.height - 1)];
     for (int x = 0; x < box.width; ++x) {
       row_[static_cast<std::size_t>(x)] = (whole - below) * upper[x] + below * lower[x];
     }
-    uchar* const to = drawn_[box.y * step + v] + box.x * step;
-    for (int u = 0; u < box.width * step; ++u) {
-      const int at_u = std::clamp(2 * u + 1 - step, 0, (box.width - 1) * whole);
-      const int x = std::min(at_u / whole, std::max(0, box.width - 2)), right = at_u - x * whole;
-      const std::size_t left = static_cast<std::size_t>(x), next = std::min(left + 1, row_.size() - 1);
+    drawRow(step, box.width, limit, drawn_[box.y * step + v] + box.x * step);
+  }
+  return {box.tl() * step, box.size() * step};
+}
+
+// From the centre of each cell of row_ to that of the next one; beyond the first and the last one as there.
+void Silhouette::drawRow(int step, int cells, int limit, uchar* to) const {
+  const int whole = 2 * step, first = step / 2;
+  if (whole * row_[0] < limit) std::fill(to, to + first, uchar{255});
+  for (int x = 0; x < cells; ++x) {
+    const std::size_t left = static_cast<std::size_t>(x),
+                      next = std::min(left + 1, static_cast<std::size_t>(cells) - 1);
+    const int begin = first + x * step, end = std::min(begin + step, cells * step);
+    if (whole * std::min(row_[left], row_[next]) >= limit) continue;
+    if (whole * std::max(row_[left], row_[next]) < limit) {
+      std::fill(to + begin, to + end, uchar{255});
+      continue;
+    }
+    for (int u = begin; u < end; ++u) {
+      const int right = 2 * u + 1 - step - x * whole;
       if ((whole - right) * row_[left] + right * row_[next] < limit) to[u] = 255;
     }
   }
-  return {box.tl() * step, box.size() * step};
 }
 
 bool Silhouette::isNear(const cv::Point& cell, const cv::Rect& box) const {

@@ -33,6 +33,7 @@ class Silhouette {
   void fillHoles();
   bool mayBe(const Shaft& shaft, const Eigen::Vector2d& p) const;
   cv::Rect drawGrey(const GreyMap& map, double threshold);
+  void drawRow(int step, int cells, int limit, uchar* to) const;
   bool isNear(const cv::Point& cell, const cv::Rect& box) const;
 
   cv::Mat1b cells_;  // 255 for its cells, less for holes in it
