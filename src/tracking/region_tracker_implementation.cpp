@@ -21,6 +21,10 @@ constexpr double kReach = 4.0;
 constexpr double kLeastReach = 12.0;   // lengthUnit()s
 constexpr double kSearchReach = 0.25;  // of the ROI's larger side, when it has been lost
 
+void checkStamp(double stamp) {
+  if (!std::isfinite(stamp)) throw std::invalid_argument("image stamp is not finite");
+}
+
 }  // namespace
 
 void RegionTracker::Implementation::setLens(const std::optional<image::Lens>& lens) {
@@ -33,6 +37,7 @@ void RegionTracker::Implementation::setLens(const std::optional<image::Lens>& le
 
 double RegionTracker::Implementation::setReference(const cv::Mat& image, double stamp,
                                                    const geometry::Rectangle& wanted, const cv::Mat& mask) {
+  checkStamp(stamp);
   // Everything is built aside, so that a ROI that is refused leaves the tracker as it was.
   Implementation fresh(config_, lens_);
   const double error = takeReference(image, wanted, mask, config_, lens_.get(), fresh.aligner_);
@@ -66,6 +71,7 @@ TrackResult RegionTracker::Implementation::select(const cv::Mat& image, double s
 
 void RegionTracker::Implementation::recall(const cv::Mat& reference, double reference_stamp,
                                            const geometry::Rectangle& wanted, double now) {
+  checkStamp(now);
   setReference(reference, reference_stamp, wanted);
   history_.startUnseen(aligner_.roi(), aligner_.esm().normalisation(), reference_stamp, now);
   state_ = State::kSearching;
@@ -83,7 +89,7 @@ const TrackResult& RegionTracker::Implementation::track(const cv::Mat& image, do
     reset_reason_.clear();
     return result;
   }
-  if (!std::isfinite(stamp)) throw std::invalid_argument("image stamp is not finite");
+  checkStamp(stamp);
   const std::string why = whyAnotherSequence(image, stamp);
   if (!why.empty()) {
     reset();
@@ -171,7 +177,7 @@ Attempt RegionTracker::Implementation::attempt(const cv::Mat& image, double stam
 }
 
 Attempt RegionTracker::Implementation::search(const cv::Mat& image, double stamp) {
-  search_.begin(history_.last(), carried_);
+  search_.begin(history_.last(), carried_, confirmation_.awaited());
   while (const std::optional<SearchPlace> place = search_.next(image, aligner_)) {
     aligner_.startAfresh();
     const bool confirming = place->by == Suggestion::kConfirmation;
@@ -183,7 +189,7 @@ Attempt RegionTracker::Implementation::search(const cv::Mat& image, double stamp
 
 void RegionTracker::Implementation::decide(const Attempt& best, const MotionPrior& prior, double stamp) {
   if (!best.doubt.empty()) {
-    search_.confirmation().forget();
+    confirmation_.forget();
     history_.addMiss();
     if (state_ == State::kTracking) {
       state_ = State::kSearching;
@@ -195,17 +201,16 @@ void RegionTracker::Implementation::decide(const Attempt& best, const MotionPrio
   if (state_ == State::kTracking) {
     history_.addTracked(best.evidence, prior, stamp, carried_);
   } else {
-    if (!search_.confirmation().add(best.evidence.esm, aligner_.roi(), history_.record())) return;
+    if (!confirmation_.add(best.evidence.esm, aligner_.roi(), history_.record())) return;
     state_ = State::kTracking;
     history_.addFoundAgain(best.evidence, stamp);
   }
-  search_.confirmation().forget();
+  confirmation_.forget();
 }
 
 // The G to report: while searching, the candidate that is not confirmed yet.
 const Eigen::Matrix3d& RegionTracker::Implementation::shown() const {
-  const Confirmation& found = search_.confirmation();
-  return state_ != State::kTracking && found.waiting() ? found.candidate().g : history_.last().g;
+  return state_ != State::kTracking && confirmation_.waiting() ? confirmation_.candidate().g : history_.last().g;
 }
 
 // Keeps the memory of the result before.
@@ -245,6 +250,7 @@ void RegionTracker::Implementation::retune(const TrackerConfig& config) {
   aligner_.retune(config_);
   history_.setDamping(config_.velocity_damping);
   search_.retune(config_);
+  confirmation_.retune(config_.quality);
 }
 
 void RegionTracker::Implementation::reset() {

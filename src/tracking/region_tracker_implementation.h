@@ -11,6 +11,7 @@
 #include "laparoscope_servo/tracking/region_tracker.h"
 #include "tracking/align/region_aligner.h"
 #include "tracking/region_history.h"
+#include "tracking/search/confirmation.h"
 #include "tracking/search/region_search.h"
 
 namespace laparoscope_servo::tracking {
@@ -22,7 +23,8 @@ class RegionTracker::Implementation {
         lens_(lens),
         aligner_(config, lens),
         history_(config.velocity_damping),
-        search_(config, lens) {}
+        search_(config, lens),
+        confirmation_(config.quality) {}
 
   void setLens(const std::optional<image::Lens>& lens);
   TrackResult select(const cv::Mat& image, double stamp, const geometry::Rectangle& roi, const cv::Mat& mask);
@@ -59,6 +61,7 @@ class RegionTracker::Implementation {
   RegionAligner aligner_;
   RegionHistory history_;
   RegionSearch search_;
+  Confirmation confirmation_;
   image::FieldMask field_;  // of the last image
 
   State state_ = State::kIdle;
