@@ -86,4 +86,17 @@ double checkedCornerError(RegionAligner& aligner, double max_error) {
   throw std::invalid_argument(message.str());
 }
 
+double takeReference(const cv::Mat& image, const geometry::Rectangle& wanted, const cv::Mat& mask,
+                     const TrackerConfig& config, const image::Lens* lens, RegionAligner& aligner) {
+  checkImage(image);
+  image::checkMask(mask, image);
+  image::FieldMask field;
+  field.look(image);
+  const geometry::Rectangle roi = checkedRoi(image, wanted, config.min_roi_side, lens);
+  checkWithinField(roi, field, lens);
+  aligner.setMask(field.joined(mask));
+  aligner.setReference(image, roi);
+  return checkedCornerError(aligner, config.min_texture);
+}
+
 }  // namespace laparoscope_servo::tracking

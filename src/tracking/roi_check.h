@@ -6,6 +6,7 @@
 #include "laparoscope_servo/geometry/homography.h"
 #include "laparoscope_servo/image/field_mask.h"
 #include "laparoscope_servo/image/lens.h"
+#include "laparoscope_servo/tracking/tracker_config.h"
 #include "tracking/align/region_aligner.h"
 
 namespace laparoscope_servo::tracking {
@@ -24,5 +25,11 @@ void checkWithinField(const geometry::Rectangle& roi, const image::FieldMask& fi
 // px, the corner error that noise causes in the aligner's reference, see ReferenceTexture. Throws std::invalid_argument
 // when it is more than `max_error`: the ROI has too little texture.
 double checkedCornerError(RegionAligner& aligner, double max_error);
+
+// All of these checks: makes the ROI the reference of `aligner`, whose configuration and lens (null: none) are those
+// that are given, and returns its corner error. Throws std::invalid_argument as they do; the aligner's reference is
+// then not to be used. `mask`: see RegionTracker::select.
+double takeReference(const cv::Mat& image, const geometry::Rectangle& wanted, const cv::Mat& mask,
+                     const TrackerConfig& config, const image::Lens* lens, RegionAligner& aligner);
 
 }  // namespace laparoscope_servo::tracking

@@ -10,52 +10,13 @@
 #include <memory>
 #include <opencv2/core.hpp>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "laparoscope_servo/geometry/homography.h"
 #include "laparoscope_servo/image/lens.h"
-#include "laparoscope_servo/tracking/area_cause.h"
+#include "laparoscope_servo/tracking/track_result.h"
 #include "laparoscope_servo/tracking/tracker_config.h"
 
 namespace laparoscope_servo::tracking {
-
-// The values are those of Homography.msg and of the offline tool's table.
-enum class State { kIdle = 0, kTracking = 1, kSearching = 2, kLost = 3 };
-
-const char* stateName(State state);
-
-// The ROI's areas, row by row. Empty while no ROI is selected.
-struct AreaReport {
-  int rows = 0;
-  int columns = 0;
-  std::vector<float> distance;  // eq. (2), 0 to 1; NaN where an area could not be compared
-  std::vector<bool> occluded;   // true: the area did not drive ESM
-  std::vector<AreaCause> cause;
-};
-
-struct TrackResult {
-  State state = State::kIdle;
-  std::string reason;                               // why the state is not TRACKING; empty when it is
-  Eigen::Matrix3d g = Eigen::Matrix3d::Identity();  // reference to current pixels, determinant 1; finite in every state
-  geometry::Rectangle roi;                          // in the reference image, px
-  double reference_stamp = 0.0;                     // s
-  double visible_fraction = 0.0;                    // 0 to 1, share of the ROI's pixels that the estimate used
-  double zncc = 0.0;                                // -1 to 1, over those pixels, with the mean of each area subtracted
-  int iterations = 0;                               // iterations of ESM, over all levels
-  // px, expected standard deviation of the worst corner, by residuals, motion prior and what the tissue deforms by
-  double corner_error = 0.0;
-  // px, expected standard deviation of the ROI's centre, which may be small where corner_error is large
-  double centre_error = 0.0;
-  double corner_scatter = 0.0;  // px, corner_error without deformation: how the worst corner varies between images
-  double sigma = 0.0;           // grey levels, robust standard deviation of the residual
-  double gain = 1.0;            // gain * image + bias has the illumination of the reference
-  double bias = 0.0;            // grey levels
-  bool colour_used = false;     // false: the image has no colour, the colour gate is inactive
-  AreaReport areas;
-  bool selected_now = false;  // this image is the reference
-  bool motion_used = false;   // this estimate started from the `motion` given
-};
 
 class RegionTracker {
  public:
@@ -99,12 +60,12 @@ class RegionTracker {
   // the tracker then goes on as if the image had not come. `motion`: the ego-motion of the scope from another source
   // than the images (the robot), as a homography of any scale from pixels of the last image in state TRACKING to pixels
   // of this one. The search starts where it puts the ROI; only the motion that remains beside it is predicted to go on.
-  // A motion that is no homography, or that leads to no accepted estimate, is ignored. `external_mask`: of this image, in
-  // its own pixels (CV_8UC1, its size): what is not 0 is known to be covered, by an instrument, and is left out before the
-  // gates decide; empty: nothing is known. Another size or type throws std::invalid_argument, as an image of another type
-  // does. Does not allocate while
-  // tracking, but for a view that it stores now and then. The result belongs to the tracker and is valid until the next
-  // call of select(), track() or reset(), or until the tracker is moved from.
+  // A motion that is no homography, or that leads to no accepted estimate, is ignored. `external_mask`: of this image,
+  // in its own pixels (CV_8UC1, its size): what is not 0 is known to be covered, by an instrument, and is left out
+  // before the gates decide; empty: nothing is known. Another size or type throws std::invalid_argument, as an image of
+  // another type does. Does not allocate while tracking, but for a view that it stores now and then. The result belongs
+  // to the tracker and is valid until the next call of select(), track() or reset(), or until the tracker is moved
+  // from.
   const TrackResult& track(const cv::Mat& image, double stamp,
                            const std::optional<Eigen::Matrix3d>& motion = std::nullopt,
                            const cv::Mat& external_mask = cv::Mat());

@@ -1,6 +1,9 @@
 #include "ros/tracker/image_backlog.h"
 
 #include <algorithm>
+#include <vector>
+
+#include "laparoscope_servo/robust/median.h"
 
 namespace laparoscope_servo {
 
@@ -18,10 +21,8 @@ void ImageBacklog::Recent::add(double value) {
 double ImageBacklog::Recent::median() const {
   const std::size_t size = std::min(count, kRemembered);
   if (size == 0) return 0.0;
-  std::array<double, kRemembered> sorted = values;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(size / 2);
-  std::nth_element(sorted.begin(), middle, sorted.begin() + static_cast<std::ptrdiff_t>(size));
-  return *middle;
+  std::vector<double> known(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(size));
+  return robust::median(known);
 }
 
 bool ImageBacklog::takes(const ros::Time& stamp, double waited) {

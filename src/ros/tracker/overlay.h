@@ -5,7 +5,7 @@
 #include <string>
 
 #include "laparoscope_servo/image/lens.h"
-#include "laparoscope_servo/tracking/region_tracker.h"
+#include "laparoscope_servo/tracking/track_result.h"
 
 namespace laparoscope_servo {
 

@@ -1,6 +1,6 @@
 #include "ros/tracker/tracker_state_report.h"
 
-#include "laparoscope_servo/tracking/region_tracker.h"
+#include "laparoscope_servo/tracking/track_result.h"
 #include "ros/tracker/region_proposal.h"
 
 namespace laparoscope_servo {

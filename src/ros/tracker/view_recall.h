@@ -12,7 +12,7 @@
 
 #include "laparoscope_servo/geometry/camera.h"
 #include "laparoscope_servo/image/lens.h"
-#include "laparoscope_servo/tracking/region_tracker.h"
+#include "laparoscope_servo/tracking/track_result.h"
 #include "laparoscope_servo/tracking/view_config.h"
 #include "laparoscope_servo/tracking/view_store.h"
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "tracking/esm/normal_equations.h"
 
@@ -11,12 +12,13 @@ namespace {
 
 constexpr double kSingular = 1e-12;  // conditioning below which the equations count as singular
 
-// px in the image, standard deviation of the image of a point of the ROI.
+// px in the image, standard deviation of the image of a point of the ROI; infinite where the covariance gives none.
 double pointError(const Eigen::Matrix3d& g, const geometry::Rectangle& roi, const Eigen::Vector2d& point,
                   const Matrix8d& covariance) {
   const Eigen::Matrix<double, 2, 8> j =
       halfSize(roi) * geometry::derivative(g, point) * pointJacobian(geometry::apply(templateFromPixels(roi), point));
-  return std::sqrt((j * covariance * j.transpose()).trace());
+  const double variance = (j * covariance * j.transpose()).trace();
+  return variance >= 0.0 ? std::sqrt(variance) : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace

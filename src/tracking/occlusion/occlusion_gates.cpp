@@ -230,19 +230,18 @@ void OcclusionGates::learnLight(double gain, double sigma) {
   if (2 * alike > passed) light_change_.learn(light_);
 }
 
-void OcclusionGates::causes(std::vector<AreaCause>& causes) const {
-  causes.resize(grid_.count());
-  for (int row = 0; row < grid_.rows(); ++row) {
-    for (int column = 0; column < grid_.columns(); ++column) {
-      const int area = row * grid_.columns() + column;
-      causes[area] = hidden(row, column);
-      if (causes[area] != AreaCause::kNone) continue;
-      if (colour_rejects_[area] != 0) {
-        causes[area] = AreaCause::kColour;
-      } else if (held_[area] > 0) {
-        causes[area] = AreaCause::kStructure;
-      }
-    }
+void OcclusionGates::report(AreaReport& areas) const {
+  areas.rows = grid_.rows();
+  areas.columns = grid_.columns();
+  areas.distance = distances_;
+  areas.occluded.resize(grid_.count());
+  areas.cause.resize(grid_.count());
+  for (int area = 0; area < grid_.count(); ++area) {
+    AreaCause cause = hidden(area / grid_.columns(), area % grid_.columns());
+    areas.occluded[area] = occluded(area) || cause == AreaCause::kBorder;
+    if (cause == AreaCause::kNone && occluded(area))
+      cause = colour_rejects_[area] != 0 ? AreaCause::kColour : AreaCause::kStructure;
+    areas.cause[area] = cause;
   }
 }
 

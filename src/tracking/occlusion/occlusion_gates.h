@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "laparoscope_servo/image/area_grid.h"
-#include "laparoscope_servo/tracking/area_cause.h"
+#include "laparoscope_servo/tracking/area_report.h"
 #include "laparoscope_servo/tracking/tracker_config.h"
 #include "tracking/occlusion/colour_gate.h"
 #include "tracking/occlusion/light_change.h"
@@ -74,8 +74,8 @@ class OcclusionGates {
   bool covered(int area) const {
     return occluded(area) || hidden(area / grid_.columns(), area % grid_.columns()) == AreaCause::kBorder;
   }
-  // Causes for all areas, for display only: no decision depends on them.
-  void causes(std::vector<AreaCause>& causes) const;
+  // All areas, with their causes, for display only: no decision depends on it. Keeps the memory of `areas`.
+  void report(AreaReport& areas) const;
   const std::vector<float>& distances() const { return distances_; }
   const image::AreaGrid& grid() const { return grid_; }
 

@@ -20,6 +20,13 @@ Eigen::Matrix3d Confirmation::expected() const {
   return geometry::normaliseDeterminant(candidate_.g * step_);
 }
 
+std::optional<EsmState> Confirmation::awaited() const {
+  if (!waiting()) return std::nullopt;
+  EsmState state = candidate_;
+  state.g = expected();
+  return state;
+}
+
 bool Confirmation::add(const EsmResult& found, const geometry::Rectangle& roi, const TrackRecord& record) {
   // The target may move at a steady speed, so the expected place includes the last step.
   if (count_ > 0) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "tracking/align/quality.h"
 #include "tracking/esm/esm.h"
@@ -25,10 +26,12 @@ class Confirmation {
   bool waiting() const { return count_ > 0; }
   // The estimate of the last image in which the ROI was found.
   const EsmState& candidate() const { return candidate_; }
-  // The expected G in the next image at constant motion; determinant 1.
-  Eigen::Matrix3d expected() const;
+  // The candidate as it is expected in the next image, at constant motion; empty if none waits. Determinant of G: 1.
+  std::optional<EsmState> awaited() const;
 
  private:
+  Eigen::Matrix3d expected() const;
+
   QualityConfig config_;
   int count_ = 0;
   EsmState candidate_;

@@ -33,8 +33,7 @@ RegionSearch::RegionSearch(const TrackerConfig& config, std::shared_ptr<const im
       lens_(lens),
       keyframes_(config.search.keyframes, lens),
       feature_search_(config, lens),
-      start_check_(lens),
-      confirmation_(config.quality) {}
+      start_check_(lens) {}
 
 void RegionSearch::setReference(const cv::Mat& image, RegionAligner& aligner) {
   keyframes_.setReference(image, aligner.roi(), aligner.weights());
@@ -55,7 +54,6 @@ void RegionSearch::keepKeyframe(const cv::Mat& image, double stamp, const Eviden
 void RegionSearch::retune(const TrackerConfig& config) {
   config_ = config;
   feature_search_.retune(config);
-  confirmation_.retune(config.quality);
 }
 
 void RegionSearch::restart() {
@@ -67,7 +65,8 @@ void RegionSearch::restart() {
 
 // The order of the places: the candidate of the last image, then places of earlier images for which there was no time,
 // then the place by the ego-motion, then that of the last accepted estimate.
-void RegionSearch::begin(const EsmState& last, const std::optional<Eigen::Matrix3d>& carried) {
+void RegionSearch::begin(const EsmState& last, const std::optional<Eigen::Matrix3d>& carried,
+                         const std::optional<EsmState>& awaited) {
   budget_.start(config_.search.budget);
   last_ = last;
   began_ = false;
@@ -75,18 +74,13 @@ void RegionSearch::begin(const EsmState& last, const std::optional<Eigen::Matrix
   likeliest_ = 0.0;
   best_by_ = Suggestion::kLast;
   aligned_ = false;
-  const bool waiting = confirmation_.waiting();
-  hungry_ = !worked_ && !waiting;
+  hungry_ = !worked_ && !awaited;
   worked_ = false;
   const auto stale = [&](const SearchPlace& place) {
-    return waiting || (place.by != Suggestion::kFeatures && place.by != Suggestion::kCorrelation);
+    return awaited || (place.by != Suggestion::kFeatures && place.by != Suggestion::kCorrelation);
   };
   suggested_.erase(std::remove_if(suggested_.begin(), suggested_.end(), stale), suggested_.end());
-  if (waiting) {
-    EsmState start = confirmation_.candidate();
-    start.g = confirmation_.expected();
-    suggested_.push_back({start, Suggestion::kConfirmation});
-  }
+  if (awaited) suggested_.push_back({*awaited, Suggestion::kConfirmation});
   if (carried) suggest(*carried, Suggestion::kCarried);
   suggest(last.g, Suggestion::kLast);
 }

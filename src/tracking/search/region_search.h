@@ -14,7 +14,6 @@
 #include "laparoscope_servo/tracking/tracker_config.h"
 #include "tracking/align/quality.h"
 #include "tracking/align/region_aligner.h"
-#include "tracking/search/confirmation.h"
 #include "tracking/search/feature_search.h"
 #include "tracking/search/search_budget.h"
 #include "tracking/search/start_check.h"
@@ -60,8 +59,10 @@ class RegionSearch {
   // Starts the search, when the ROI has been lost.
   void restart();
 
-  // Begins the next image. `last`: the last accepted estimate; `carried`: its G moved by the ego-motion.
-  void begin(const EsmState& last, const std::optional<Eigen::Matrix3d>& carried);
+  // Begins the next image. `last`: the last accepted estimate; `carried`: its G moved by the ego-motion; `awaited`: see
+  // Confirmation.
+  void begin(const EsmState& last, const std::optional<Eigen::Matrix3d>& carried,
+             const std::optional<EsmState>& awaited = std::nullopt);
   // The next place at which to align `aligner`'s reference with the image, likely places first; empty if no place or no
   // budget is left. Call again after each attempt until one is accepted.
   std::optional<SearchPlace> next(const cv::Mat& image, const RegionAligner& aligner);
@@ -72,10 +73,6 @@ class RegionSearch {
   // The accepted attempt in this image; if there is none, the attempt with the highest correlation, for its reason.
   const Attempt& best() const { return best_; }
   Suggestion suggestedBy() const { return best_by_; }
-
-  // Holds the candidate until it is confirmed.
-  Confirmation& confirmation() { return confirmation_; }
-  const Confirmation& confirmation() const { return confirmation_; }
 
  private:
   std::string whyNone() const;
@@ -93,7 +90,6 @@ class RegionSearch {
   std::optional<double> recent_stamp_;  // s, of the most recent keyframe; at first, of the first image
   FeatureSearch feature_search_;
   StartCheck start_check_;
-  Confirmation confirmation_;
 
   // State of a pass over one image, by points and then by correlation, which may last for several images.
   bool passing_ = false;

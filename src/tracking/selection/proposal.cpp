@@ -4,8 +4,11 @@
 #include <array>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <stdexcept>
 #include <vector>
 
+#include "tracking/align/region_aligner.h"
+#include "tracking/roi_check.h"
 #include "tracking/search/coarse_image.h"
 
 namespace laparoscope_servo::tracking {
@@ -19,6 +22,9 @@ constexpr double kFurthest = 1.5;  // sides of the region, a shift
 constexpr int kShifts = 6;         // of a side, in each direction
 constexpr int kMostAsked = 5;
 constexpr double kMoreTexture = 2.0;  // of what was not enough, is looked for next
+// Of min_texture, what noise may do in a region that is proposed. Of 92 regions on eight films the 60 in which it did
+// less than this were held for a second in 42 cases, the others in 15 of 32.
+constexpr double kClearly = 0.3;
 
 struct Candidate {
   geometry::Rectangle roi;
@@ -103,6 +109,29 @@ std::optional<geometry::Rectangle> proposeRegion(const cv::Mat& image, const geo
     too_little = candidate.texture;
   }
   return std::nullopt;
+}
+
+std::optional<geometry::Rectangle> proposeRegion(const cv::Mat& image, const geometry::Rectangle& wanted,
+                                                 const TrackerConfig& config,
+                                                 const std::shared_ptr<const image::Lens>& lens) {
+  checkImage(image);
+  if (!(wanted.width >= 1.0 && wanted.height >= 1.0) ||
+      !std::isfinite(wanted.x + wanted.y + wanted.width + wanted.height))
+    throw std::invalid_argument("the ROI is too small, expected at least 1 px in width and height, and finite numbers");
+  geometry::Rectangle least = wanted;
+  least.width = std::max<double>(wanted.width, config.min_roi_side);
+  least.height = std::max<double>(wanted.height, config.min_roi_side);
+  TrackerConfig clearly = config;
+  clearly.min_texture *= kClearly;
+  RegionAligner aligner(clearly, lens);
+  return proposeRegion(image, least, lens.get(), [&](const geometry::Rectangle& roi) {
+    try {
+      takeReference(image, roi, cv::Mat(), clearly, lens.get(), aligner);
+      return true;
+    } catch (const std::invalid_argument&) {
+      return false;
+    }
+  });
 }
 
 }  // namespace laparoscope_servo::tracking

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <opencv2/core.hpp>
 #include <optional>
 
 #include "laparoscope_servo/geometry/homography.h"
 #include "laparoscope_servo/image/lens.h"
+#include "laparoscope_servo/tracking/tracker_config.h"
 
 namespace laparoscope_servo::tracking {
 
@@ -17,5 +19,11 @@ namespace laparoscope_servo::tracking {
 std::optional<geometry::Rectangle> proposeRegion(const cv::Mat& image, const geometry::Rectangle& wanted,
                                                  const image::Lens* lens,
                                                  const std::function<bool(const geometry::Rectangle&)>& would_do);
+
+// The same, of regions that a tracker of this configuration would take, with texture that is clearly enough. Throws
+// std::invalid_argument as RegionTracker::propose does.
+std::optional<geometry::Rectangle> proposeRegion(const cv::Mat& image, const geometry::Rectangle& wanted,
+                                                 const TrackerConfig& config,
+                                                 const std::shared_ptr<const image::Lens>& lens);
 
 }  // namespace laparoscope_servo::tracking

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "laparoscope_servo/robust/median.h"
 #include "laparoscope_servo/tracking/region_tracker.h"
 #include "support/synthetic_tissue.h"
 
@@ -129,9 +130,7 @@ Outcome run(const Camera& camera, double bend) {
 }
 
 double median(std::vector<double> values) {
-  if (values.empty()) return -1.0;
-  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-  return values[values.size() / 2];
+  return values.empty() ? -1.0 : robust::median(values);
 }
 
 // The worst corner, px of once the size.

@@ -34,6 +34,9 @@ TEST_F(RegionTrackerInputTest, ImagesThatAreNoneAreRefusedAndChangeNothing) {
   EXPECT_THROW(tracker_.track(cv::Mat(), 0.04), std::invalid_argument);
   EXPECT_THROW(tracker_.track(cv::Mat(kSize, CV_16UC1, cv::Scalar(1)), 0.04), std::invalid_argument);
   EXPECT_THROW(tracker_.track(image(1), std::nan("")), std::invalid_argument);
+  EXPECT_THROW(tracker_.select(scene_, std::nan(""), kRoi), std::invalid_argument);
+  EXPECT_THROW(tracker_.recall(scene_, 0.0, kRoi, std::nan("")), std::invalid_argument);
+  EXPECT_THROW(tracker_.recall(scene_, std::nan(""), kRoi, 0.0), std::invalid_argument);
   EXPECT_EQ(tracker_.track(image(1), 0.04).state, State::kTracking);
 }
 

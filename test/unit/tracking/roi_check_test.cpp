@@ -138,5 +138,33 @@ TEST(CheckedCornerError, IsThatOfTheImagesOwnNoiseWhereThatIsMoreThanUsual) {
   }
 }
 
+TEST(TakeReference, MakesEveryCheckAndLeavesTheMasksPixelsOut) {
+  const cv::Mat scene = test::tissue(cv::Size(160, 140), 5);
+  const geometry::Rectangle wanted = {40.6, 30.2, 80.0, 80.9};
+  TrackerConfig config;
+  RegionAligner aligner(config);
+  const double error = takeReference(scene, wanted, cv::Mat(), config, nullptr, aligner);
+  EXPECT_EQ(aligner.roi().x, 40.0);
+  EXPECT_EQ(aligner.roi().height, 80.0);
+  EXPECT_GT(error, 0.0);
+
+  cv::Mat1b mask = cv::Mat1b::zeros(scene.size());
+  mask(cv::Rect(40, 30, 40, 80)).setTo(255);
+  RegionAligner half(config);
+  EXPECT_GT(takeReference(scene, wanted, mask, config, nullptr, half), error);
+  EXPECT_LT(cv::mean(half.weights())[0], 0.6 * cv::mean(aligner.weights())[0]);
+
+  const auto refused = [&](const cv::Mat& image, const geometry::Rectangle& roi, const cv::Mat& covered) {
+    RegionAligner other(config);
+    EXPECT_THROW(takeReference(image, roi, covered, config, nullptr, other), std::invalid_argument);
+  };
+  refused(cv::Mat(), wanted, cv::Mat());
+  refused(scene, {100, 30, 80, 80}, cv::Mat());
+  refused(scene, wanted, cv::Mat1b::zeros(10, 10));
+  refused(cv::Mat(scene.size(), CV_8UC3, cv::Scalar(90, 90, 90)), wanted, cv::Mat());
+  config.min_texture = 0.9 * error;
+  refused(scene, wanted, cv::Mat());
+}
+
 }  // namespace
 }  // namespace laparoscope_servo::tracking

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "laparoscope_servo/robust/median.h"
 #include "laparoscope_servo/tracking/region_tracker.h"
 #include "support/synthetic_tissue.h"
 
@@ -44,8 +45,7 @@ struct Layers {
         if (mask(static_cast<int>(y), static_cast<int>(x)) == 0) all.push_back((geometry::apply(g, p) - p).norm());
       }
     }
-    std::nth_element(all.begin(), all.begin() + all.size() / 2, all.end());
-    return all[all.size() / 2];
+    return robust::median(all);
   }
 };
 

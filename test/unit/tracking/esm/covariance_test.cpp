@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -123,6 +124,15 @@ TEST(CornerError, IsTheSpreadOfTheWorstCornerAndThatOfTheCentreIsTheCentres) {
   EXPECT_NEAR(cornerError(g, kRoi, root * root.transpose()), spread, 0.05 * spread);
   const double of_middle = std::sqrt(of_centre / kDraws);
   EXPECT_NEAR(centreError(g, kRoi, root * root.transpose()), of_middle, 0.05 * of_middle);
+}
+
+// Not 0, which is what a maximum makes of NaN.
+TEST(CornerError, IsInfiniteForWhatIsNoCovariance) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const Matrix8d& none : {Matrix8d(nan * Matrix8d::Identity()), Matrix8d(-Matrix8d::Identity())}) {
+    EXPECT_EQ(cornerError(Eigen::Matrix3d::Identity(), kRoi, none), std::numeric_limits<double>::infinity());
+    EXPECT_EQ(centreError(Eigen::Matrix3d::Identity(), kRoi, none), std::numeric_limits<double>::infinity());
+  }
 }
 
 }  // namespace

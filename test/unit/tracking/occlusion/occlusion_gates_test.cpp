@@ -233,8 +233,9 @@ TEST_F(OcclusionGatesTest, TheStructureGateHoldsForTheConfiguredImages) {
 TEST_F(OcclusionGatesTest, SayWhyAnAreaIsHidden) {
   OcclusionGates gates(config_, 250);
   gates.setReference(seen(patch_), kSize);
-  std::vector<AreaCause> causes;
-  gates.causes(causes);
+  AreaReport areas;
+  gates.report(areas);
+  const std::vector<AreaCause>& causes = areas.cause;
   EXPECT_EQ(causes, std::vector<AreaCause>(gates.grid().count(), AreaCause::kNone)) << "before the first image";
 
   const auto area = [&](int i, int j) { return static_cast<std::size_t>(gates.grid().areaOf(i, j)); };
@@ -248,7 +249,9 @@ TEST_F(OcclusionGatesTest, SayWhyAnAreaIsHidden) {
   cv::Mat part = other.view()(cv::Rect(60, 100, 20, 20));
   cv::randu(part, 0, 255);
   observe(gates, other);
-  gates.causes(causes);
+  gates.report(areas);
+  EXPECT_EQ(areas.rows * areas.columns, gates.grid().count());
+  EXPECT_EQ(areas.distance.size(), causes.size());
   EXPECT_EQ(causes[area(12, 12)], AreaCause::kColour);
   EXPECT_EQ(causes[area(45, 45)], AreaCause::kHighlight);
   EXPECT_EQ(causes[area(16, 60)], AreaCause::kNone);
@@ -259,6 +262,7 @@ TEST_F(OcclusionGatesTest, SayWhyAnAreaIsHidden) {
     const bool decided = causes[k] == AreaCause::kColour || causes[k] == AreaCause::kStructure;
     EXPECT_LE(decided, gates.occluded(static_cast<int>(k)));
     EXPECT_LE(gates.occluded(static_cast<int>(k)), causes[k] != AreaCause::kNone);
+    EXPECT_EQ(areas.occluded[k], gates.covered(static_cast<int>(k)));
   }
 }
 

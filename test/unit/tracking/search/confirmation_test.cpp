@@ -35,6 +35,7 @@ TEST_F(ConfirmationTest, TakesAsManyImagesAsAreAskedFor) {
 
 TEST_F(ConfirmationTest, WaitsWithWhatWasFoundLast) {
   EXPECT_FALSE(confirmation_.waiting());
+  EXPECT_FALSE(confirmation_.awaited());
   add(at(3.0));
   EXPECT_TRUE(confirmation_.waiting());
   EXPECT_EQ(confirmation_.candidate().g(0, 2), 3.0);
@@ -44,10 +45,10 @@ TEST_F(ConfirmationTest, WaitsWithWhatWasFoundLast) {
 
 TEST_F(ConfirmationTest, ExpectsItToGoOnAsItWent) {
   add(at(0.0));
-  EXPECT_NEAR(confirmation_.expected()(0, 2), 0.0, 1e-12);
+  EXPECT_NEAR(confirmation_.awaited()->g(0, 2), 0.0, 1e-12);
   add(at(10.0));
-  EXPECT_NEAR(confirmation_.expected()(0, 2), 20.0, 1e-9);
-  EXPECT_NEAR(confirmation_.expected().determinant(), 1.0, 1e-12);
+  EXPECT_NEAR(confirmation_.awaited()->g(0, 2), 20.0, 1e-9);
+  EXPECT_NEAR(confirmation_.awaited()->g.determinant(), 1.0, 1e-12);
   EXPECT_TRUE(add(at(20.0)));
 }
 
@@ -56,7 +57,7 @@ TEST_F(ConfirmationTest, WhatIsElsewhereStartsAgain) {
   add(at(0.0));
   add(at(60.0));
   EXPECT_TRUE(confirmation_.waiting());
-  EXPECT_NEAR(confirmation_.expected()(0, 2), 60.0, 1e-9);  // its motion is not known again
+  EXPECT_NEAR(confirmation_.awaited()->g(0, 2), 60.0, 1e-9);  // its motion is not known again
   EXPECT_FALSE(add(at(60.0)));
   EXPECT_TRUE(add(at(60.0)));
 }

@@ -40,9 +40,9 @@ class RegionSearchTest : public ::testing::Test {
   }
   // One image; believes what an alignment with it brought to the truth.
   const Attempt& searchIn(const cv::Mat& image, Setup& s, const std::optional<Eigen::Matrix3d>& carried = std::nullopt,
-                          const EsmState& last = EsmState()) {
+                          const EsmState& last = EsmState(), const std::optional<EsmState>& awaited = std::nullopt) {
     tried_.clear();
-    s.search.begin(last, carried);
+    s.search.begin(last, carried, awaited);
     while (const auto place = s.search.next(image, s.aligner)) {
       tried_.push_back(*place);
       Attempt attempt;
@@ -144,10 +144,9 @@ TEST_F(RegionSearchTest, WhereItWasCarriedComesBeforeAndIsSaid) {
 
 TEST_F(RegionSearchTest, WhatWaitsForConfirmationComesFirst) {
   Setup s = setup();
-  EsmResult found;
-  found.state.g = truth_;
-  s.search.confirmation().add(found, kRoi, TrackRecord());
-  EXPECT_EQ(searchIn(seen(), s, shift(0.0, 5.0)).doubt, "");
+  EsmState awaited;
+  awaited.g = truth_;
+  EXPECT_EQ(searchIn(seen(), s, shift(0.0, 5.0), EsmState(), awaited).doubt, "");
   ASSERT_EQ(tried_.size(), 1u);
   EXPECT_EQ(tried_[0].by, Suggestion::kConfirmation);
   EXPECT_LT(geometry::cornerDistance(tried_[0].start.g, truth_, kRoi), 1e-9);
