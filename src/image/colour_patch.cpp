@@ -1,6 +1,7 @@
 #include "laparoscope_servo/image/colour_patch.h"
 
 #include <algorithm>
+#include <cstring>
 #include <stdexcept>
 #include <string>
 
@@ -60,6 +61,18 @@ void place(const float* __restrict u, const float* __restrict v, ByteFrame frame
     const Pixel pixel = pixelAt(frame, u[i] + 0.5f, v[i] + 0.5f, true);
     offset[i] = pixel.offset;
     valid[i] = pixel.valid;
+  }
+}
+
+// Splits pixels of four bytes, the last of which is not used.
+LAPAROSCOPE_SERVO_CLONES
+void split(const unsigned char* __restrict pixels, const unsigned char* __restrict valid, int count,
+           unsigned char* __restrict blue, unsigned char* __restrict green, unsigned char* __restrict red) {
+#pragma omp simd
+  for (int i = 0; i < count; ++i) {
+    blue[i] = pixels[4 * i] & valid[i];
+    green[i] = pixels[4 * i + 1] & valid[i];
+    red[i] = pixels[4 * i + 2] & valid[i];
   }
 }
 
@@ -132,8 +145,11 @@ void warpRows(const cv::Mat& image, const Eigen::Matrix3d& g, const LensLoop* le
   }
   const ByteFrame frame = {static_cast<float>(image.cols), static_cast<float>(image.rows),
                            static_cast<int>(image.step[0]), image.channels()};
+  // Pixels are read with the byte behind them, which the image's last one does not have.
+  const int last = static_cast<int>(image.step[0]) * (image.rows - 1) + 3 * (image.cols - 1);
   int offset[kChunk];
   float u[kChunk], v[kChunk];
+  unsigned char pixels[4 * kChunk] = {};
   for (int j = 0; j < size.height; ++j) {
     const Eigen::Vector3f start = (g.col(1) * j + g.col(2)).cast<float>();
     const Eigen::Vector3f step = g.col(0).cast<float>();
@@ -152,14 +168,15 @@ void warpRows(const cv::Mat& image, const Eigen::Matrix3d& g, const LensLoop* le
         for (int i = 0; i < count; ++i) blue[i] = image.data[offset[i]] & valid[i];
         continue;
       }
-      unsigned char* green = patch.green.ptr<unsigned char>(j) + first;
-      unsigned char* red = patch.red.ptr<unsigned char>(j) + first;
       for (int i = 0; i < count; ++i) {
-        const unsigned char* pixel = image.data + offset[i];
-        blue[i] = pixel[0] & valid[i];
-        green[i] = pixel[1] & valid[i];
-        red[i] = pixel[2] & valid[i];
+        if (offset[i] < last) {
+          std::memcpy(pixels + 4 * i, image.data + offset[i], 4);
+        } else {
+          std::memcpy(pixels + 4 * i, image.data + offset[i], 3);
+        }
       }
+      split(pixels, valid, count, blue, patch.green.ptr<unsigned char>(j) + first,
+            patch.red.ptr<unsigned char>(j) + first);
     }
   }
 }

@@ -106,10 +106,11 @@ void BlockMatching::setReference(const image::RegionPyramid& reference, const ge
 void BlockMatching::look(const image::RegionPyramid& current, const Eigen::Matrix3d& g) {
   const int l = std::min(level_, current.levels() - 1);
   if (lens_) {
-    image::warpBilinear(current.level(l), g * reference_T_crop_, *lens_,
-                        {current.origin(), static_cast<double>(current.scale(l))}, warped_, valid_);
+    all_valid_ = image::warpBilinear(current.level(l), g * reference_T_crop_, *lens_,
+                                     {current.origin(), static_cast<double>(current.scale(l))}, warped_, valid_);
   } else {
-    image::warpBilinear(current.level(l), current.levelFromImage(l) * g * reference_T_crop_, warped_, valid_);
+    all_valid_ =
+        image::warpBilinear(current.level(l), current.levelFromImage(l) * g * reference_T_crop_, warped_, valid_);
   }
   contrast();
 }
@@ -204,7 +205,7 @@ const std::vector<BlockShift>& BlockMatching::measure(const image::RegionPyramid
   if (blocks_.empty()) return shifts_;
   look(current, g);
   for (const cv::Point& block : blocks_) {
-    if (cv::mean(valid_(cv::Rect(block.x, block.y, kSide, kSide)))[0] < kLeastValid) continue;
+    if (!all_valid_ && cv::mean(valid_(cv::Rect(block.x, block.y, kSide, kSide)))[0] < kLeastValid) continue;
     const Peak peak = find(block);
     BlockShift found;
     found.centre = centreOf(block);

@@ -76,6 +76,7 @@ class BlockMatching {
   double scale_ = 1.0;  // px of the reference per px of the level
   Eigen::Matrix3d reference_T_crop_ = Eigen::Matrix3d::Identity();
   cv::Mat1f warped_, valid_, detail_, reference_;
+  bool all_valid_ = false;
   std::vector<float> column_sums_;
   std::vector<cv::Point> blocks_;  // first pixel of each block in the crop
   std::vector<BlockShift> shifts_;

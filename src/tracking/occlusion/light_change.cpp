@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "laparoscope_servo/robust/median.h"
 #include "tracking/occlusion/colour_gate.h"
 
 namespace laparoscope_servo::tracking {
@@ -19,6 +18,10 @@ constexpr float kLeastClipped = 0.1f;
 // Grey levels. Illuminations that differ by less, the noise of a pixel, count as equal.
 constexpr float kSameLight = 2.0f;
 
+float relit(const ChannelLight& light, unsigned char value) {
+  return std::max(0.0f, light.gain * static_cast<float>(value) + light.offset);
+}
+
 }  // namespace
 
 LightChange::LightChange(const image::ColourPatch& reference, int bins, const image::AreaGrid& grid)
@@ -31,11 +34,10 @@ LightChange::LightChange(const image::ColourPatch& reference, int bins, const im
       relit_(bins) {
   reference_colours_.compute(reference_, grid_);
   colours_ = reference_colours_;
-  int most = 0;
-  for (int area = 0; area < grid.count(); ++area) most = std::max(most, grid.pixelsIn(area));
-  for (std::vector<Colour>* pixels : {&before_, &now_}) pixels->reserve(most);  // no allocation while tracking
-  channel_.reserve(most);
-  for (int area = 0; area < grid.count(); ++area) reference_clipped_.push_back(clippedShare(reference_, area));
+  for (int area = 0; area < grid.count(); ++area) {
+    reference_clipped_.push_back(clippedShare(reference_, area));
+    reference_medians_.push_back(medians(reference_, ColourLight(), area));
+  }
 }
 
 std::optional<ColourLight> LightChange::propose(const std::vector<char>& use, const ColourLight* start,
@@ -62,49 +64,61 @@ float LightChange::clippedShare(const image::ColourPatch& patch, int area) const
   return static_cast<float>(clipped) / std::max(1.0f, static_cast<float>(valid));
 }
 
-void LightChange::collect(const image::ColourPatch& patch, const ColourLight& light, int area,
-                          std::vector<Colour>& pixels) const {
-  pixels.clear();
+// The light's gain is positive, so the median under it is that of the pixel values, relit.
+LightChange::Medians LightChange::medians(const image::ColourPatch& patch, const ColourLight& light, int area) const {
+  std::array<std::array<int, 256>, 3> counts = {};
+  Medians result;
+  const int row = area / grid_.columns(), column = area % grid_.columns();
+  for (int j = grid_.rowBegin(row); j < grid_.rowBegin(row + 1); ++j) {
+    const unsigned char* const b = patch.blue.ptr<unsigned char>(j);
+    const unsigned char* const g = patch.green.ptr<unsigned char>(j);
+    const unsigned char* const r = patch.red.ptr<unsigned char>(j);
+    const unsigned char* const valid = patch.valid.ptr<unsigned char>(j);
+    for (int i = grid_.columnBegin(column); i < grid_.columnBegin(column + 1); ++i) {
+      const int counted = valid[i] & 1;
+      counts[0][b[i]] += counted;
+      counts[1][g[i]] += counted;
+      counts[2][r[i]] += counted;
+      result.pixels += counted;
+    }
+  }
+  for (int c = 0; c < 3; ++c) {
+    int value = 0;
+    for (int below = counts[c][0]; value < 255 && below <= result.pixels / 2; below += counts[c][value]) ++value;
+    result.colour[c] = relit(light[c], static_cast<unsigned char>(value));
+  }
+  return result;
+}
+
+void LightChange::fill(const image::ColourPatch& patch, const ColourLight& light, int area, float gain,
+                       const Colour& ceiling, std::vector<float>& histogram) const {
+  std::fill(histogram.begin(), histogram.end(), 0.0f);
+  float pixels = 0.0f;
   const int row = area / grid_.columns(), column = area % grid_.columns();
   for (int j = grid_.rowBegin(row); j < grid_.rowBegin(row + 1); ++j) {
     for (int i = grid_.columnBegin(column); i < grid_.columnBegin(column + 1); ++i) {
       if (!patch.valid(j, i)) continue;
-      const std::array<unsigned char, 3> seen = {patch.blue(j, i), patch.green(j, i), patch.red(j, i)};
-      Colour colour;
-      for (int c = 0; c < 3; ++c) colour[c] = std::max(0.0f, light[c].gain * seen[c] + light[c].offset);
-      pixels.push_back(colour);
+      Colour seen = {relit(light[0], patch.blue(j, i)), relit(light[1], patch.green(j, i)),
+                     relit(light[2], patch.red(j, i))};
+      for (int c = 0; c < 3; ++c) seen[c] = std::min(ceiling[c], gain * seen[c]);
+      histogram[normalisedBin(normalisedFeature(seen[2], seen[1], seen[0]), bins_)] += 1.0f;
+      pixels += 1.0f;
     }
   }
-}
-
-float LightChange::median(const std::vector<Colour>& pixels, int channel) {
-  channel_.clear();
-  for (const Colour& pixel : pixels) channel_.push_back(pixel[channel]);
-  return robust::median(channel_);
-}
-
-void LightChange::fill(const std::vector<Colour>& pixels, float gain, const Colour& ceiling,
-                       std::vector<float>& histogram) const {
-  std::fill(histogram.begin(), histogram.end(), 0.0f);
-  const float share = 1.0f / static_cast<float>(pixels.size());
-  for (const Colour& pixel : pixels) {
-    Colour seen;
-    for (int c = 0; c < 3; ++c) seen[c] = std::min(ceiling[c], gain * pixel[c]);
-    histogram[normalisedBin(normalisedFeature(seen[2], seen[1], seen[0]), bins_)] += share;  // eq. (1)
-  }
+  for (float& share : histogram) share /= pixels;  // eq. (1)
 }
 
 float LightChange::clippedDistance(const image::ColourPatch& current, const ColourLight& light, int area) {
   constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
   if (std::max(reference_clipped_[area], clippedShare(current, area)) < kLeastClipped) return kNone;
-  collect(reference_, ColourLight(), area, before_);
-  collect(current, light, area, now_);
+  const Medians& of_reference = reference_medians_[area];
+  const Medians of_current = medians(current, light, area);
   const int needed = (grid_.pixelsIn(area) + 1) / 2;
-  if (static_cast<int>(std::min(before_.size(), now_.size())) < needed) return kNone;
+  if (std::min(of_reference.pixels, of_current.pixels) < needed) return kNone;
 
   float before = kWhite, now = kWhite;
   for (int c = 0; c < 3; ++c) {
-    const float a = median(before_, c), b = median(now_, c);
+    const float a = of_reference.colour[c], b = of_current.colour[c];
     if (std::max(a, b) >= std::max(before, now)) continue;
     before = a;
     now = b;
@@ -116,8 +130,8 @@ float LightChange::clippedDistance(const image::ColourPatch& current, const Colo
   for (int c = 0; c < 3; ++c) {
     ceiling[c] = std::min(gain_before * kWhite, gain_now * (light[c].gain * kWhite + light[c].offset));
   }
-  fill(before_, gain_before, ceiling, histogram_);
-  fill(now_, gain_now, ceiling, relit_);
+  fill(reference_, ColourLight(), area, gain_before, ceiling, histogram_);
+  fill(current, light, area, gain_now, ceiling, relit_);
   return bhattacharyyaDistance(histogram_.data(), relit_.data(), bins_);  // eq. (2)
 }
 

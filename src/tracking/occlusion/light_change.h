@@ -48,9 +48,14 @@ class LightChange {
   using Colour = std::array<float, 3>;  // blue, green, red
   // Share of an area's valid pixels that clip in any channel.
   float clippedShare(const image::ColourPatch& patch, int area) const;
-  void collect(const image::ColourPatch& patch, const ColourLight& light, int area, std::vector<Colour>& pixels) const;
-  float median(const std::vector<Colour>& pixels, int channel);
-  void fill(const std::vector<Colour>& pixels, float gain, const Colour& ceiling, std::vector<float>& histogram) const;
+  struct Medians {
+    Colour colour = {};
+    int pixels = 0;  // valid ones
+  };
+  // Of an area's valid pixels under `light`, channel by channel.
+  Medians medians(const image::ColourPatch& patch, const ColourLight& light, int area) const;
+  void fill(const image::ColourPatch& patch, const ColourLight& light, int area, float gain, const Colour& ceiling,
+            std::vector<float>& histogram) const;
   std::optional<ColourLight> propose(const std::vector<char>& use, const ColourLight* start, double least_correlation);
 
   // Least correlation of the areas' means in both images: that of an occluder's shading with the region's is random,
@@ -64,9 +69,9 @@ class LightChange {
   LightFit fit_;
   ColourLight known_;
   std::vector<char> all_;
-  std::vector<Colour> before_, now_;
-  std::vector<float> channel_, histogram_, relit_;
-  std::vector<float> reference_clipped_;  // clippedShare() of each area of the reference
+  std::vector<float> histogram_, relit_;
+  std::vector<float> reference_clipped_;    // clippedShare() of each area of the reference
+  std::vector<Medians> reference_medians_;  // of the same
 };
 
 }  // namespace laparoscope_servo::tracking
