@@ -12,14 +12,6 @@ namespace laparoscope_servo::tracking {
 
 namespace {
 
-// px, by which the saturated area is dilated, since a highlight has a bleached rim. If more than kMuch of the region is
-// saturated, the cause is the illumination, not a highlight; it is then dilated by kGrowClipped only, the reach of the
-// gradient, so that enough pixels remain.
-constexpr int kGrowSaturated = 2;
-constexpr int kGrowClipped = 1;
-constexpr double kMuch = 0.5;  // of the samples
-constexpr int kHidden = 2;     // an area is hidden if 1 / kHidden of its samples or more are unusable
-
 // A new illumination estimate is accepted in two cases. Either a share kLeastAgreed of the comparable areas agree under
 // the known one, a share kLeastKept of these also agree under the new one,
 constexpr double kLeastAgreed = 0.1;
@@ -35,15 +27,6 @@ constexpr double kAsBefore = 0.9;
 
 // Pixels that the histogram of an area needs: the areas of the paper have 14 x 14.
 constexpr int kSamples = 14 * 14;
-
-LAPAROSCOPE_SERVO_CLONES
-void combine(const unsigned char* __restrict bright, const unsigned char* __restrict bright_reference,
-             const unsigned char* __restrict valid, int count, float* __restrict usable) {
-#pragma omp simd
-  for (int i = 0; i < count; ++i) {
-    usable[i] = static_cast<float>(static_cast<int>((bright[i] | bright_reference[i] | (valid[i] ^ 255)) == 0));
-  }
-}
 
 LAPAROSCOPE_SERVO_CLONES
 void multiply(const float* __restrict a, const float* __restrict b, int count, float* __restrict product) {
@@ -64,19 +47,18 @@ int samplingStep(const cv::Size& size, const OcclusionConfig& config) {
 
 OcclusionGates::OcclusionGates(const OcclusionConfig& config, int saturation)
     : config_(config),
-      saturation_(saturation),
+      highlights_(saturation),
       reference_(config.colour, config.bins),
       current_(config.colour, config.bins) {}
 
 void OcclusionGates::setReference(const image::ColourPatch& patch, const cv::Size& size,
                                   const std::array<bool, 3>& tracked) {
-  for (int c = 0; c < 3; ++c) limits_[c] = tracked[c] ? saturation_ : 256;
   grid_ = image::AreaGrid(size.width, size.height, config_.rows, config_.columns);
-  step_ = samplingStep(size, config_);
-  const cv::Size sampled((size.width + step_ - 1) / step_, (size.height + step_ - 1) / step_);
+  const int step = samplingStep(size, config_);
+  const cv::Size sampled((size.width + step - 1) / step, (size.height + step - 1) / step);
   if (patch.size() != sampled) {
     throw std::invalid_argument("patch of " + text(patch.size()) + " px for a region of " + text(size) +
-                                " px, expected every " + std::to_string(step_) + ". pixel of it: " + text(sampled) +
+                                " px, expected every " + std::to_string(step) + ". pixel of it: " + text(sampled) +
                                 " px");
   }
   samples_ = image::AreaGrid(patch.size().width, patch.size().height, config_.rows, config_.columns);
@@ -85,12 +67,8 @@ void OcclusionGates::setReference(const image::ColourPatch& patch, const cv::Siz
     reference_.compute(patch, samples_);
     light_change_ = LightChange(patch, config_.bins, samples_);
   }
-  markSaturated(patch, reference_saturated_);
-  usable_.resize(size.width, size.height);
+  highlights_.setReference(patch, size, samples_, step, tracked);
   areas_.resize(size.width);
-  reference_saturated_.copyTo(saturated_);
-  patch.valid.copyTo(valid_);
-  spread(reference_saturated_, patch.valid);
   colour_used_ = reference_has_colour_;
   distances_.assign(grid_.count(), 0.0f);
   relit_distances_ = distances_;
@@ -100,38 +78,8 @@ void OcclusionGates::setReference(const image::ColourPatch& patch, const cv::Siz
   held_.assign(grid_.count(), 0);
 }
 
-void OcclusionGates::hideInReference(const cv::Mat1b& covered) {
-  reference_saturated_.setTo(255, covered);
-  spread(saturated_, valid_);
-}
-
-void OcclusionGates::markSaturated(const image::ColourPatch& patch, cv::Mat1b& mask) const {
-  image::saturatedPixels(patch, limits_, (kGrowSaturated + step_ - 1) / step_, mask);
-  if (step_ > 1 || cv::countNonZero(mask) <= kMuch * static_cast<double>(mask.total())) return;
-  image::saturatedPixels(patch, limits_, kGrowClipped, mask);
-}
-
-// Expands the masks of the samples to all pixels.
-void OcclusionGates::spread(const cv::Mat1b& saturated, const cv::Mat1b& valid) {
-  row_.resize(samples_.width());
-  for (int j = 0; j < samples_.height(); ++j) {
-    float* const first = usable_.row(j * step_);
-    float* const samples = step_ == 1 ? first : row_.data();
-    combine(saturated.ptr<unsigned char>(j), reference_saturated_.ptr<unsigned char>(j), valid.ptr<unsigned char>(j),
-            samples_.width(), samples);
-    if (step_ == 1) continue;
-    for (int i = 0; i < samples_.width(); ++i) {
-      std::fill(first + i * step_, first + std::min((i + 1) * step_, grid_.width()), samples[i]);
-    }
-    for (int k = 1; k < step_ && j * step_ + k < grid_.height(); ++k)
-      std::copy_n(first, grid_.width(), usable_.row(j * step_ + k));
-  }
-}
-
 void OcclusionGates::observeColour(const image::ColourPatch& patch) {
-  markSaturated(patch, saturated_);
-  patch.valid.copyTo(valid_);
-  spread(saturated_, patch.valid);
+  highlights_.observe(patch);
   colour_used_ = reference_has_colour_ && patch.has_colour;
   if (!colour_used_) {
     std::fill(distances_.begin(), distances_.end(), std::numeric_limits<float>::quiet_NaN());
@@ -237,7 +185,7 @@ void OcclusionGates::report(AreaReport& areas) const {
   areas.occluded.resize(grid_.count());
   areas.cause.resize(grid_.count());
   for (int area = 0; area < grid_.count(); ++area) {
-    AreaCause cause = hidden(area / grid_.columns(), area % grid_.columns());
+    AreaCause cause = highlights_.hidden(area);
     areas.occluded[area] = occluded(area) || cause == AreaCause::kBorder;
     if (cause == AreaCause::kNone && occluded(area))
       cause = colour_rejects_[area] != 0 ? AreaCause::kColour : AreaCause::kStructure;
@@ -245,27 +193,11 @@ void OcclusionGates::report(AreaReport& areas) const {
   }
 }
 
-AreaCause OcclusionGates::hidden(int row, int column) const {
-  const int begin = samples_.columnBegin(column), end = samples_.columnBegin(column + 1);
-  int outside = 0, saturated = 0;
-  for (int j = samples_.rowBegin(row); j < samples_.rowBegin(row + 1); ++j) {
-    const unsigned char* const valid = valid_.ptr<unsigned char>(j);  // 255 or 0, as the other two
-    const unsigned char* const here = saturated_.ptr<unsigned char>(j);
-    const unsigned char* const in_reference = reference_saturated_.ptr<unsigned char>(j);
-    for (int i = begin; i < end; ++i) {
-      outside += (valid[i] ^ 255) & 1;
-      saturated += valid[i] & (here[i] | in_reference[i]) & 1;
-    }
-  }
-  const int pixels = samples_.pixelsIn(row * samples_.columns() + column);
-  if (kHidden * (outside + saturated) < pixels || pixels == 0) return AreaCause::kNone;
-  return outside > saturated ? AreaCause::kBorder : AreaCause::kHighlight;
-}
-
 int OcclusionGates::observeStructure(const PatchPair* channels, int count, const image::Patch& valid, double gain,
                                      double sigma) {
+  const image::Patch& usable = highlights_.usable();
   unsaturated_.resize(grid_.width(), grid_.height());
-  for (int j = 0; j < grid_.height(); ++j) multiply(valid.row(j), usable_.row(j), grid_.width(), unsaturated_.row(j));
+  for (int j = 0; j < grid_.height(); ++j) multiply(valid.row(j), usable.row(j), grid_.width(), unsaturated_.row(j));
   statistics_.compute(channels, count, unsaturated_, grid_);
   if (colour_used_) learnLight(gain, sigma);
   if (!config_.structure) return 0;
@@ -314,6 +246,7 @@ void OcclusionGates::advance() {
 }
 
 const image::Patch& OcclusionGates::weights() {
+  const image::Patch& usable = highlights_.usable();
   weights_.resize(grid_.width(), grid_.height());
   for (int row = 0; row < grid_.rows(); ++row) {
     for (int column = 0; column < grid_.columns(); ++column) {
@@ -321,7 +254,7 @@ const image::Patch& OcclusionGates::weights() {
       std::fill(areas_.begin() + grid_.columnBegin(column), areas_.begin() + grid_.columnBegin(column + 1), weight);
     }
     for (int j = grid_.rowBegin(row); j < grid_.rowBegin(row + 1); ++j) {
-      multiply(areas_.data(), usable_.row(j), grid_.width(), weights_.row(j));
+      multiply(areas_.data(), usable.row(j), grid_.width(), weights_.row(j));
     }
   }
   return weights_;

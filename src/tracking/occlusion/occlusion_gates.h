@@ -12,6 +12,7 @@
 #include "laparoscope_servo/tracking/area_report.h"
 #include "laparoscope_servo/tracking/tracker_config.h"
 #include "tracking/occlusion/colour_gate.h"
+#include "tracking/occlusion/highlight_mask.h"
 #include "tracking/occlusion/light_change.h"
 #include "tracking/occlusion/structure_gate.h"
 
@@ -32,7 +33,7 @@ class OcclusionGates {
                     const std::array<bool, 3>& tracked = {true, true, true});
 
   // After setReference(): what is not 0 in `covered`, which has the size of that patch, is never used.
-  void hideInReference(const cv::Mat1b& covered);
+  void hideInReference(const cv::Mat1b& covered) { highlights_.hideInReference(covered); }
 
   // Call before ESM. `patch`: the current image at the expected place of the ROI, sampled with the same step, see
   // image::warpNearest. If areas differ in colour, the current illumination is estimated and the colours are compared
@@ -71,27 +72,21 @@ class OcclusionGates {
   bool colourUsed() const { return colour_used_; }
   bool occluded(int area) const { return colour_rejects_[area] || held_[area] > 0; }
   // Occluded, or most of it is not valid: outside of the image, or covered by what patches leave out.
-  bool covered(int area) const {
-    return occluded(area) || hidden(area / grid_.columns(), area % grid_.columns()) == AreaCause::kBorder;
-  }
+  bool covered(int area) const { return occluded(area) || highlights_.hidden(area) == AreaCause::kBorder; }
   // All areas, with their causes, for display only: no decision depends on it. Keeps the memory of `areas`.
   void report(AreaReport& areas) const;
   const std::vector<float>& distances() const { return distances_; }
   const image::AreaGrid& grid() const { return grid_; }
 
  private:
-  void markSaturated(const image::ColourPatch& patch, cv::Mat1b& mask) const;
   bool rejectByColour();
   bool explains(const std::vector<float>& distances, bool by_all) const;
   void accountForLight(const image::ColourPatch& patch);
   void forgiveClipping(const image::ColourPatch& patch);
   void learnLight(double gain, double sigma);
-  void spread(const cv::Mat1b& saturated, const cv::Mat1b& valid);
-  AreaCause hidden(int row, int column) const;
 
   OcclusionConfig config_;
-  int saturation_;
-  std::array<int, 3> limits_ = {256, 256, 256};  // grey levels: saturation of each channel; 256: none
+  HighlightMask highlights_;
   image::AreaGrid grid_;
   ColourHistograms reference_;
   ColourHistograms current_;
@@ -99,11 +94,7 @@ class OcclusionGates {
   ColourLight light_;  // illumination of the current image, by its colours
   bool reference_has_colour_ = false;
   bool colour_used_ = false;
-  int step_ = 1;
-  image::AreaGrid samples_;                    // the areas in the sampled patches
-  cv::Mat1b reference_saturated_, saturated_;  // 255 or 0 per sample
-  cv::Mat1b valid_;                            // 255 per sample in the image, or 0
-  image::Patch usable_;           // 1 per pixel of the ROI, or 0: saturated in image or reference, or not valid
+  image::AreaGrid samples_;       // the areas in the sampled patches
   std::vector<float> distances_;  // eq. (2) of each area
   std::vector<float> relit_distances_;
   std::vector<char> colour_rejects_;  // 1 if the colour gate rejects the area in this image
@@ -113,7 +104,7 @@ class OcclusionGates {
   std::vector<int> held_;  // images for which the structure gate still rejects the area
   StructureStatistics statistics_;
   image::Patch unsaturated_;  // 1 where the aligned image is valid and neither it nor the reference saturated
-  std::vector<float> row_, areas_;
+  std::vector<float> areas_;
   image::Patch weights_;
 };
 
