@@ -26,9 +26,9 @@ DrivePanel::DrivePanel(RosLink& link, QWidget* parent) : QWidget(parent), link_(
   auto* tasks = new QHBoxLayout;
   tasks->setSpacing(4);
   for (const TaskWords& words : taskWords()) {
+    // Without a tool tip, which would hide the line below that says more.
     QPushButton* button = makeButton(
-        QString::fromStdString(words.name), QString::fromStdString(words.task),
-        [this, task = words.task] { link_.selectTask(task); }, this);
+        QString::fromStdString(words.name), "", [this, task = words.task] { link_.selectTask(task); }, this);
     button->setProperty("task", true);
     button->setFixedHeight(kTaskHeight);
     button->installEventFilter(this);

@@ -9,7 +9,7 @@ const std::vector<TaskWords>& taskWords() {
       {"HOLD_VIEW", "Hold region", "the scope brings the region back to where it was selected, and holds it there.",
        "a region, and the camera's calibration.", "The scope follows the region."},
       {"MANUAL", "By hand", "the scope moves while a slider or a stick is held. No picture is looked at, but by you.",
-       "a hand.", "The scope is driven by hand."},
+       "the sliders below, or a stick.", "The scope is driven by hand."},
       {"STABILISE", "Hold view",
        "the scope turns so that all of the view stays as it was when \"Keep this view\" was pressed.",
        "the node motion, and the camera's calibration.", "The scope holds the whole view."},
