@@ -15,7 +15,7 @@ namespace {
 constexpr int kTaskHeight = 28;    // px
 constexpr int kLeastPromise = 42;  // px: three lines of the smallest font, on a display of 768 px
 constexpr int kMostPromise = 50;   // px: three lines of the largest one
-constexpr int kKeepWidth = 110;    // px
+constexpr int kKeepWidth = 118;    // px
 
 }  // namespace
 

@@ -6,15 +6,14 @@ namespace laparoscope_servo::screen {
 
 const std::vector<TaskWords>& taskWords() {
   static const std::vector<TaskWords> all{
-      {"HOLD_VIEW", "Hold region", "the scope brings the region back to where it was selected, and holds it there.",
-       "a region, and the camera's calibration.", "The scope follows the region."},
-      {"MANUAL", "By hand", "the scope moves while a slider or a stick is held. No picture is looked at, but by you.",
-       "the sliders below, or a stick.", "The scope is driven by hand."},
-      {"STABILISE", "Hold view",
-       "the scope turns so that all of the view stays as it was when \"Keep this view\" was pressed.",
-       "the node motion, and the camera's calibration.", "The scope holds the whole view."},
-      {"CENTRE_TIP", "Centre tip", "the scope turns to an instrument whose tip is held still away from the middle.",
-       "the node instrument, and the camera's calibration.", "The scope keeps the tip near the middle."}};
+      {"HOLD_VIEW", "Hold region", "the scope brings the region back to where it was selected, and holds it.",
+       "a region and a calibrated camera.", "The scope follows the region."},
+      {"MANUAL", "By hand", "the scope moves while a slider or stick is held. Only you watch the picture.",
+       "the sliders below or a stick.", "The scope is driven by hand."},
+      {"STABILISE", "Hold view", "the scope turns to keep the view as it was at \"Keep this view\".",
+       "the node motion and a calibrated camera.", "The scope holds the whole view."},
+      {"CENTRE_TIP", "Centre tip", "the scope turns to a tip that is held still away from the middle.",
+       "the node instrument and a calibrated camera.", "The scope keeps the tip near the middle."}};
   return all;
 }
 

@@ -218,7 +218,7 @@ TEST_F(ScreenWindow, ATaskIsExplainedBeforeItIsSelected) {
   ASSERT_TRUE(promise.text().startsWith("Once engaged, the scope brings the region back"))
       << promise.text().toStdString();
   hands(moveTo(centreOf(find<QPushButton>("centre_tip"))));
-  EXPECT_TRUE(waitFor([&] { return promise.text().startsWith("Once engaged, the scope turns to an instrument"); }))
+  EXPECT_TRUE(waitFor([&] { return promise.text().startsWith("Once engaged, the scope turns to a tip"); }))
       << promise.text().toStdString();
   EXPECT_TRUE(nodes_.tasks().empty()) << "pointing at it selects nothing";
   click("centre_tip");

@@ -7,20 +7,21 @@
 
 #include "ros/reasons/reason_table.h"
 #include "screen/fitted_label.h"
+#include "screen/task_words.h"
 
 namespace laparoscope_servo::screen {
 namespace {
 
 constexpr int kWidth = 340, kHeight = 32;  // px
 
-QImage drawn(const QString& text, int smallest = 10, const QSize& size = {kWidth, kHeight}) {
+QImage drawn(const QString& text, int smallest = 10, const QSize& size = {kWidth, kHeight}, bool bold = true) {
   QImage image(size + QSize(40, 40), QImage::Format_RGB32);
   image.fill(Qt::black);
   QPainter painter(&image);
   painter.setPen(Qt::white);
   QFont font;
   font.setPixelSize(13);
-  font.setBold(true);
+  font.setBold(bold);
   drawFitted(painter, QRectF(QPointF(20, 20), size), text, font, smallest);
   return image;
 }
@@ -78,6 +79,19 @@ TEST(FittedText, EverySentenceOfTheTableFitsABand) {
       for (const std::string& text : {row.sentence, row.cure}) {
         const QString whole = QString::fromStdString(text);
         EXPECT_NE(drawn(whole), drawn(whole + "xx")) << text;
+      }
+    }
+  }
+}
+
+// Beside the button of the task, in three lines on a display of 768 px.
+TEST(FittedText, WhatATaskWillDoIsReadWhole) {
+  for (const TaskWords& words : taskWords()) {
+    for (const bool engaged : {false, true}) {
+      for (const std::string current : {"HOLD_VIEW", "STABILISE"}) {
+        const QString whole = QString::fromStdString(promise(words, current, engaged, false));
+        const QSize room(276, 42);
+        EXPECT_NE(drawn(whole, 11, room, false), drawn(whole + "xx", 11, room, false)) << whole.toStdString();
       }
     }
   }
