@@ -170,8 +170,9 @@ void Tracker::publishState(const std::optional<TrackerState>& state) {
 }
 
 void Tracker::refused(const std::string& error, Refusal cause) {
-  state_report_.refused(error);
-  statistics_->refused(steadyNow(), error, cause);
+  const double now = steadyNow();
+  state_report_.refused(now, error);
+  statistics_->refused(now, error, cause);
 }
 
 bool Tracker::reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {

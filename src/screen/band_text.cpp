@@ -9,6 +9,7 @@
 
 #include "ros/playback/corners_apart.h"
 #include "ros/reasons/reason_table.h"
+#include "screen/task_words.h"
 
 namespace laparoscope_servo::screen {
 
@@ -18,6 +19,7 @@ namespace {
 // others their states or commands at least ten times a second.
 constexpr double kTrackerSilence = 2.5;
 constexpr double kSilence = 1.0;
+constexpr double kTrackerPatience = 1.0;  // s without an image, after which the tracker says NO_IMAGE
 
 // Text for a node from which no message has come yet, or that is silent; empty if it publishes.
 BandText absence(const Facts& facts, const std::string& who, bool connected, double heard_at, double patience,
@@ -56,7 +58,14 @@ std::string percent(double share) {
   return std::isfinite(share) ? std::to_string(std::lround(100.0 * share)) + " %" : "?";
 }
 
-// No camera has failed where a recording does not play. Empty while it plays, and without one.
+std::string seconds(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g s", value);
+  return text;
+}
+
+// No camera has failed where a recording does not play, or plays more slowly than the tracker waits for an image. Empty
+// while it plays, and without one.
 BandText standingRecording(const PlaybackFacts& playback) {
   if (!playback.connected) return {};
   if (playback.state == "ENDED")
@@ -67,6 +76,9 @@ BandText standingRecording(const PlaybackFacts& playback) {
             Level::kResting};
   if (playback.state == "PAUSED")
     return {"PAUSED", "The recording is paused.", "Press \"Play\" or \"Step\".", "", Level::kResting};
+  if (playback.state == "PLAYING" && playback.period > kTrackerPatience)
+    return {"PLAYS", "The recording plays slowly: one picture in " + seconds(playback.period) + ".", "Wait.", "",
+            Level::kResting};
   if (playback.state == "WAITING") return {"WAITING", "The recording has not begun yet.", "Wait.", "", Level::kResting};
   return {};
 }
@@ -112,6 +124,8 @@ BandText trackerBand(const Facts& facts, double now) {
     band.sentence = "The region is followed.";
     if (facts.result) band.sentence += " " + percent(facts.result->visible_fraction) + " of it is visible.";
     band.cure.clear();
+    if (facts.result && !facts.result->calibrated && facts.controller.connected)
+      band.cure = "Without the camera's calibration the controller cannot use it.";
   }
   if (const std::string beside = besideRecorded(facts); !beside.empty())
     band.cure += (band.cure.empty() ? "" : " ") + beside;
@@ -152,12 +166,18 @@ BandText featureBand(const Facts& facts, const FeatureTrackerFacts& tracker, dou
   return band;
 }
 
+bool controllerSpeaks(const Facts& facts, double now) {
+  const ControllerFacts& controller = facts.controller;
+  return absence(facts, "", controller.connected, controller.heard_at, kSilence, now).word.empty();
+}
+
 BandText controllerBand(const Facts& facts, double now) {
   const ControllerFacts& controller = facts.controller;
   BandText band = absence(facts, "controller", controller.connected, controller.heard_at, kSilence, now);
   if (!band.word.empty()) return band;
   if (controller.state.empty()) return {"WAITING", "The controller has not told its state yet.", "Wait.", "", {}};
-  const bool by_hand = controller.task == "MANUAL";
+  const TaskWords* task = wordsOfTask(controller.task);
+  band.note = "Task: " + nameOfTask(controller.task);
   band.word = controller.state;
   explainTo(band, Speaker::kController, controller.reason);
   band.level = Level::kBad;
@@ -165,7 +185,7 @@ BandText controllerBand(const Facts& facts, double now) {
   if (controller.state == "ARMED" || controller.state == "HOLD") band.level = Level::kWaiting;
   if (controller.state == "SERVO") {
     band.level = Level::kGood;
-    band.sentence = by_hand ? "The scope is driven by hand." : "The scope follows the region.";
+    band.sentence = task != nullptr ? task->serves : "The scope does its task.";
     band.cure.clear();
     if (!controller.caution.empty()) {
       explainTo(band, Speaker::kController, controller.caution);

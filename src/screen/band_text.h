@@ -22,10 +22,18 @@ struct BandText {
   std::string cure;      // what to do; empty: nothing
   std::string detail;    // the node's own text
   Level level = Level::kUnknown;
+  std::string note = {};  // beside the name of the node
+
+  bool operator==(const BandText& other) const {
+    return word == other.word && sentence == other.sentence && cure == other.cure && detail == other.detail &&
+           level == other.level && note == other.note;
+  }
 };
 
 BandText trackerBand(const Facts& facts, double now);
 BandText controllerBand(const Facts& facts, double now);
+// Whether what the controller said last is still true.
+bool controllerSpeaks(const Facts& facts, double now);
 BandText robotBand(const Facts& facts, double now);
 BandText featureBand(const Facts& facts, const FeatureTrackerFacts& tracker, double now);
 

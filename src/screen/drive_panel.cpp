@@ -1,14 +1,21 @@
 #include "screen/drive_panel.h"
 
+#include <QEvent>
+#include <QHBoxLayout>
 #include <QVBoxLayout>
+#include <QVariant>
 
+#include "screen/band_text.h"
 #include "screen/push_button.h"
 
 namespace laparoscope_servo::screen {
 
 namespace {
 
-constexpr int kTaskHeight = 32;  // px
+constexpr int kTaskHeight = 28;    // px
+constexpr int kLeastPromise = 42;  // px: three lines of the smallest font, on a display of 768 px
+constexpr int kMostPromise = 50;   // px: three lines of the largest one
+constexpr int kKeepWidth = 118;    // px
 
 }  // namespace
 
@@ -17,15 +24,28 @@ DrivePanel::DrivePanel(RosLink& link, QWidget* parent) : QWidget(parent), link_(
   layout->setContentsMargins(2, 2, 2, 2);
   layout->setSpacing(2);
   auto* tasks = new QHBoxLayout;
-  follow_ = makeButton(
-      "Follow", "The scope keeps the region where it was", [this] { link_.selectTask("HOLD_VIEW"); }, this);
-  drive_ = makeButton(
-      "Drive by hand", "The scope follows the sliders", [this] { link_.selectTask("MANUAL"); }, this);
-  for (QPushButton* button : {follow_, drive_}) {
+  tasks->setSpacing(4);
+  for (const TaskWords& words : taskWords()) {
+    // Without a tool tip, which would hide the line below that says more.
+    QPushButton* button = makeButton(
+        QString::fromStdString(words.name), "", [this, task = words.task] { link_.selectTask(task); }, this);
+    button->setProperty("task", true);
     button->setFixedHeight(kTaskHeight);
+    button->installEventFilter(this);
     tasks->addWidget(button);
+    tasks_.push_back(button);
   }
   layout->addLayout(tasks);
+  auto* row = new QHBoxLayout;
+  row->setSpacing(4);
+  row->addWidget(promise_ = new FittedLabel("promise", kLeastPromise, kMostPromise, this), 1);
+  keep_view_ = makeButton(
+      "Keep this view", "What is seen now is what the task Hold view keeps", [this] { link_.keepView(); }, this);
+  keep_view_->setProperty("task", true);
+  keep_view_->setFixedWidth(kKeepWidth);
+  keep_view_->setVisible(false);
+  row->addWidget(keep_view_);
+  layout->addLayout(row);
   const char* const names[4][3] = {
       {"Pan", "left", "right"}, {"Tilt", "down", "up"}, {"Spin", "left", "right"}, {"Insertion", "out", "deeper"}};
   for (std::size_t k = 0; k < sliders_.size(); ++k) {
@@ -37,6 +57,28 @@ DrivePanel::DrivePanel(RosLink& link, QWidget* parent) : QWidget(parent), link_(
   layout->addStretch(1);
 }
 
+// A task is explained before its button is pressed.
+bool DrivePanel::eventFilter(QObject* object, QEvent* event) {
+  if (event->type() != QEvent::Enter && event->type() != QEvent::Leave) return QWidget::eventFilter(object, event);
+  pointed_at_ = nullptr;
+  for (std::size_t k = 0; k < tasks_.size() && event->type() == QEvent::Enter; ++k) {
+    if (tasks_[k] == object) pointed_at_ = &taskWords()[k];
+  }
+  tellTask();
+  return QWidget::eventFilter(object, event);
+}
+
+void DrivePanel::tellTask() {
+  const std::string& current = controller_.task;
+  const TaskWords* words = pointed_at_ != nullptr ? pointed_at_ : wordsOfTask(current);
+  if (words != nullptr) {
+    const bool moves = controller_.state == "SERVO";
+    return promise_->say(QString::fromStdString(promise(*words, current, controller_.engaged, moves)));
+  }
+  promise_->say(current.empty() ? "No controller says which task it has."
+                                : QString::fromStdString("This screen does not know the task " + current + "."));
+}
+
 void DrivePanel::passShares() {
   std::array<double, 4> values{};
   for (std::size_t k = 0; k < values.size(); ++k) values[k] = sliders_[k] != nullptr ? sliders_[k]->share() : 0.0;
@@ -44,10 +86,12 @@ void DrivePanel::passShares() {
   link_.said();
 }
 
-void DrivePanel::show(const Facts& facts) {
-  const std::string task = facts.controller.connected ? facts.controller.task : "";
-  markActive(*follow_, task == "HOLD_VIEW");
-  markActive(*drive_, task == "MANUAL");
+void DrivePanel::show(const Facts& facts, double now) {
+  controller_ = controllerSpeaks(facts, now) ? facts.controller : ControllerFacts();
+  const std::string& task = controller_.task;
+  for (std::size_t k = 0; k < tasks_.size(); ++k) markActive(*tasks_[k], task == taskWords()[k].task);
+  keep_view_->setVisible(task == "STABILISE");
+  tellTask();
   const bool by_hand = task == "MANUAL" && facts.limits.has_value();
   for (std::size_t k = 0; k < sliders_.size(); ++k) {
     sliders_[k]->setEnabled(by_hand);

@@ -27,6 +27,7 @@ Result resultOf(const Homography& homography) {
   std::copy(homography.g.begin(), homography.g.end(), result.g.begin());
   std::copy(homography.corners.begin(), homography.corners.end(), result.corners.begin());
   result.visible_fraction = homography.visible_fraction;
+  result.calibrated = homography.has_intrinsics != 0;
   return result;
 }
 

@@ -57,6 +57,7 @@ struct Result {
   std::array<double, 9> g{};  // reference to current px
   std::array<double, 8> corners{};
   double visible_fraction = 0.0;
+  bool calibrated = false;  // the camera's intrinsics are known
 };
 
 struct Areas {
@@ -116,6 +117,16 @@ struct PlaybackFacts {
   std::string state;      // of PlaybackState
   double position = 0.0;  // s
   double duration = 0.0;  // s; 0: not known
+  double period = 0.0;    // s from one picture to the next; 0: not known
+};
+
+// The recorder of a case.
+struct RecorderFacts {
+  double heard_at = kNever;
+  int level = 0;  // of DiagnosticStatus
+  std::string message;
+  std::string file;           // without its folder
+  std::string written, free;  // MB
 };
 
 struct StoredView {
@@ -162,6 +173,7 @@ struct Facts {
   bool dead_man_wanted = false;    // a node subscribes to the dead-man switch
   std::optional<Limits> limits;    // pan, tilt, spin, insertion
   PlaybackFacts playback;
+  RecorderFacts recorder;
   std::optional<Verdict> verdict;
   std::optional<Drawn> drawn;  // the newest one, until a region is taken
   std::optional<Frozen> frozen;

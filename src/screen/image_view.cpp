@@ -83,7 +83,7 @@ ImageView::ImageView(const Region& drawn, const Region& changed, QWidget* parent
 
 // Repaints only if something has changed, since painting takes most of the screen's CPU time.
 void ImageView::show(const Facts& facts, double now) {
-  const PictureWords words = pictureWords(facts.picture, now, facts.playback.connected ? facts.playback.state : "");
+  const PictureWords words = pictureWords(facts.picture, now, facts.playback);
   const bool same = facts.master == facts_.master && sameFeatures(facts.features, facts_.features) &&
                     facts.picture.arrived_at == facts_.picture.arrived_at && sameResults(facts, facts_) &&
                     facts.tracker.reference_stamp == facts_.tracker.reference_stamp &&

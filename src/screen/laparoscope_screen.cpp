@@ -7,9 +7,12 @@
 #include <csignal>
 #include <exception>
 #include <iostream>
+#include <memory>
+#include <utility>
 
 #include "ros/common/unblocked_output.h"
 #include "screen/screen_widget.h"
+#include "screen/small_window.h"
 
 namespace {
 
@@ -47,9 +50,19 @@ int main(int argc, char** argv) {
     if (asked_to_end != 0 || !ros::ok()) QApplication::quit();
   });
   look.start(100);
-  laparoscope_servo::screen::ScreenWidget screen;
-  screen.setWindowTitle("Laparoscope");
-  screen.resize(QSize(1280, 800).boundedTo(QGuiApplication::primaryScreen()->availableSize()));
-  screen.show();
+  using namespace laparoscope_servo::screen;
+  auto screen = std::make_unique<ScreenWidget>();
+  const QSize room = QGuiApplication::primaryScreen()->availableSize();
+  const QSize least = screen->minimumSizeHint();
+  const bool fits = least.width() <= room.width() && least.height() <= room.height();
+  std::unique_ptr<QWidget> window;
+  if (fits) {
+    window = std::move(screen);
+  } else {
+    window = std::make_unique<SmallWindow>(screen.release());
+  }
+  window->setWindowTitle("Laparoscope");
+  window->resize(QSize(1280, 800).boundedTo(room));
+  window->show();
   return SturdyApplication::exec();
 }

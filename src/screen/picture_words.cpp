@@ -1,11 +1,20 @@
 #include "screen/picture_words.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 namespace laparoscope_servo::screen {
 
 namespace {
+
+constexpr double kPatience = 2.5;  // periods of a recording: one picture may be late, or repeat
+
+// s, above which a picture is not live.
+double oldestOf(const PlaybackFacts& playback) {
+  const bool slow = playback.connected && std::isfinite(playback.period);
+  return slow ? std::max(kOldest, kPatience * playback.period) : kOldest;
+}
 
 std::string seconds(double value) {
   char text[32];
@@ -15,16 +24,18 @@ std::string seconds(double value) {
 
 }  // namespace
 
-PictureWords pictureWords(const Picture& picture, double now, const std::string& playback) {
+PictureWords pictureWords(const Picture& picture, double now, const PlaybackFacts& playback) {
   if (picture.image.isNull() || picture.arrived_at < 0.0)
     return {false, "NO PICTURE", "The tracker has sent none yet."};
-  if (playback == "ENDED") return {false, "ENDED", "This is its last picture. \"Again\" plays it once more."};
+  const std::string state = playback.connected ? playback.state : "";
+  if (state == "ENDED") return {false, "ENDED", "This is its last picture. \"Again\" plays it once more."};
   // The player is paused on purpose, which the bar below shows.
-  if (playback == "HOLDING" || playback == "PAUSED") return {true, "", ""};
+  if (state == "HOLDING" || state == "PAUSED") return {true, "", ""};
   const double age = now - picture.arrived_at + std::max(0.0, picture.age_at_arrival);
-  if (!(age <= kOldest)) return {false, "NOT LIVE", "This picture is " + seconds(age) + " old."};
+  const double oldest = oldestOf(playback);
+  if (!(age <= oldest)) return {false, "NOT LIVE", "This picture is " + seconds(age) + " old."};
   const double still = picture.arrived_at - picture.changed_at;
-  if (!(still <= kOldest)) return {false, "STANDS STILL", "The same picture comes again for " + seconds(still) + "."};
+  if (!(still <= oldest)) return {false, "STANDS STILL", "The same picture comes again for " + seconds(still) + "."};
   return {true, "", ""};
 }
 

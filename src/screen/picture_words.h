@@ -15,7 +15,7 @@ struct PictureWords {
   std::string detail;  // below them
 };
 
-// `playback`: state of the player of a recording; empty: there is none.
-PictureWords pictureWords(const Picture& picture, double now, const std::string& playback = "");
+// `playback`: a recording that plays slowly has older pictures that are live.
+PictureWords pictureWords(const Picture& picture, double now, const PlaybackFacts& playback = {});
 
 }  // namespace laparoscope_servo::screen

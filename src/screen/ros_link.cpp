@@ -1,8 +1,10 @@
 #include "screen/ros_link.h"
 
+#include <diagnostic_msgs/DiagnosticArray.h>
 #include <laparoscope_servo/ControlPlayback.h>
 #include <laparoscope_servo/PlaybackState.h>
 #include <laparoscope_servo/ScopeVelocity.h>
+#include <laparoscope_servo/SelectFeatures.h>
 #include <laparoscope_servo/SelectTask.h>
 #include <ros/init.h>
 #include <ros/master.h>
@@ -18,6 +20,8 @@
 
 #include "ros/common/clocks.h"
 #include "screen/listen.h"
+#include "screen/recorder_status.h"
+#include "screen/task_words.h"
 
 namespace laparoscope_servo::screen {
 
@@ -139,9 +143,17 @@ std::unique_ptr<RosLink::Connection> RosLink::connect() {
       facts.playback.state = message.state;
       facts.playback.position = message.position;
       facts.playback.duration = message.duration;
+      facts.playback.period = message.period;
     });
     news_();
   });
+  made->diagnostics = listen<diagnostic_msgs::DiagnosticArray>(
+      node, "/diagnostics", 50, [this, space = node.getNamespace()](const diagnostic_msgs::DiagnosticArray& message) {
+        std::optional<RecorderFacts> recorder = recorderIn(message, space);
+        if (!recorder) return;
+        recorder->heard_at = steadyNow();
+        keeper_.change([&](Facts& facts) { facts.recorder = *recorder; });
+      });
   made->features =
       std::make_unique<FeatureLink>(node, [this](const std::string& tracker, const TrackedFeatures& message) {
         if (keeper_.take(tracker, message, steadyNow())) news_();
@@ -256,7 +268,14 @@ void RosLink::selectTask(const std::string& task) {
   SelectTask request;
   request.request.task = task;
   const std::string name = resolved("controller/select_task");
-  if (!name.empty()) calls_.call(name, "Task", request);
+  if (!name.empty()) calls_.call(name, "Task " + nameOfTask(task), request);
+}
+
+void RosLink::keepView() {
+  SelectFeatures request;
+  request.request.selection = "[{id: view, motion: []}]";
+  const std::string name = resolved("motion/select_features");
+  if (!name.empty()) calls_.call(name, "Keep this view", request);
 }
 
 void RosLink::controlPlayback(const std::string& command, double position) {

@@ -55,6 +55,8 @@ class RosLink {
   void clearRegion() { trigger("tracker/reset", "Clear region"); }
   void engage(bool on);
   void selectTask(const std::string& task);
+  // Makes the present view the one that the task STABILISE keeps.
+  void keepView();
 
   HeldControl& deadMan() { return dead_man_; }
   HeldControl& slider() { return slider_; }
@@ -72,7 +74,7 @@ class RosLink {
     std::unique_ptr<FeatureLink> features;
     ros::Publisher robot_stop, controller_stop;
     ros::Subscriber preview, homography, recorded, areas, tracker_state, controller_state, command, operating_state,
-        playback;
+        playback, diagnostics;
     ros::Subscriber features_preview;
     std::string features_shown;  // the tracker of features whose picture is shown; empty: the region tracker's is
     bool limits_wanted = true;

@@ -6,6 +6,7 @@
 #include <QApplication>
 #include <QGridLayout>
 #include <QKeyEvent>
+#include <QLabel>
 #include <QVBoxLayout>
 
 #include "ros/common/clocks.h"
@@ -20,7 +21,8 @@ namespace {
 constexpr int kBeat = 50;            // ms
 constexpr double kMinuteBeat = 0.5;  // s between two updates of the last minute
 constexpr int kColumnWidth = 410;    // px
-constexpr int kAnswerHeight = 40;    // px
+constexpr int kLeastAnswer = 42;     // px, three lines of the smallest font, on a display of 768 px
+constexpr int kMostAnswer = 54;      // px, three lines of the largest font
 
 const char* const kStyle = R"(
   laparoscope_servo--screen--ScreenWidget { background: #10131a; }
@@ -29,6 +31,7 @@ const char* const kStyle = R"(
   QPushButton:hover { background: #414a58; }
   QPushButton:pressed { background: #5b6678; }
   QPushButton[active="true"] { background: #1f5a36; border: 2px solid #2eb85c; }
+  QPushButton[task="true"] { font-size: 13px; padding: 2px; }
   QPushButton#stop { background: #c01818; color: white; border: 3px solid white; font-size: 40px; }
   QPushButton#stop:hover { background: #d02020; }
   QPushButton#stop:pressed { background: #ff3030; }
@@ -93,13 +96,14 @@ ScreenWidget::ScreenWidget(QWidget* parent, const std::string& space) : QWidget(
   layout->setContentsMargins(6, 6, 6, 6);
   layout->setSpacing(6);
   layout->addWidget(image_, 0, 0);
+  layout->addWidget(recording_ = new RecordingBar(this), 1, 0);
   playback_ = new PlaybackBar(
       [this](const std::string& command, double position) { link_->controlPlayback(command, position); }, this);
-  layout->addWidget(playback_, 1, 0);
+  layout->addWidget(playback_, 2, 0);
   layout->addWidget(new ActionBar(
                         *link_, [this] { stop(); }, this),
-                    2, 0);
-  layout->addWidget(makeColumn(space), 0, 1, 3, 1);
+                    3, 0);
+  layout->addWidget(makeColumn(space), 0, 1, 4, 1);
   layout->setColumnStretch(0, 1);
   layout->setRowStretch(0, 1);
   qApp->installEventFilter(this);
@@ -149,13 +153,7 @@ QWidget* ScreenWidget::makeColumn(const std::string& space) {
   layout->addWidget(dead_man_ = new DeadManButton(
                         link_->deadMan(), [this] { link_->said(); }, column));
   layout->addWidget(makeTabs(), 1);
-  answer_ = new QLabel(column);
-  answer_->setObjectName("answer");
-  answer_->setTextFormat(Qt::PlainText);
-  answer_->setWordWrap(true);
-  answer_->setAlignment(Qt::AlignLeft | Qt::AlignTop);
-  answer_->setFixedHeight(kAnswerHeight);
-  layout->addWidget(answer_);
+  layout->addWidget(answer_ = new FittedLabel("answer", kLeastAnswer, kMostAnswer, column));
   return column;
 }
 
@@ -187,8 +185,9 @@ void ScreenWidget::refresh() {
   controller_->show(controllerBand(facts, now));
   robot_->show(robotBand(facts, now));
   dead_man_->setWanted(facts.dead_man_wanted);
+  recording_->show(recordingText(facts.recorder, now));
   playback_->show(facts.playback);
-  drive_->show(facts);
+  drive_->show(facts, now);
   views_->show(facts);
   features_->show(facts, now);
   parameters_->show(facts);
@@ -203,11 +202,7 @@ void ScreenWidget::showMinute(const Facts& facts, double now) {
 }
 
 void ScreenWidget::showAnswer(const Answer& answer) {
-  if (answer.what.empty()) return;
-  const QString words = wordsOf(answer);
-  if (words == answer_->text()) return;
-  answer_->setText(words);
-  answer_->setToolTip(words.toHtmlEscaped());
+  if (!answer.what.empty()) answer_->say(wordsOf(answer));
 }
 
 void ScreenWidget::beat() {

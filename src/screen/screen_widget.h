@@ -4,7 +4,6 @@
 // focus is within its program.
 #pragma once
 
-#include <QLabel>
 #include <QTabWidget>
 #include <QTimer>
 #include <QWidget>
@@ -13,10 +12,12 @@
 #include "screen/dead_man_button.h"
 #include "screen/drive_panel.h"
 #include "screen/features/features_panel.h"
+#include "screen/fitted_label.h"
 #include "screen/image_view.h"
 #include "screen/minute_panel.h"
 #include "screen/parameter_panel.h"
 #include "screen/playback_bar.h"
+#include "screen/recording_bar.h"
 #include "screen/ros_link.h"
 #include "screen/state_band.h"
 #include "screen/views_panel.h"
@@ -31,11 +32,12 @@ class ScreenWidget : public QWidget {
   ~ScreenWidget() override;
 
   bool eventFilter(QObject* object, QEvent* event) override;
+  // What the button STOP does.
+  void stop();
 
  private:
   void refresh();
   void beat();
-  void stop();
   // Ends what is held.
   void letGo();
   bool hasFocusWithin() const;
@@ -49,11 +51,12 @@ class ScreenWidget : public QWidget {
 
   std::unique_ptr<RosLink> link_;
   ImageView* image_;
+  RecordingBar* recording_;
   PlaybackBar* playback_;
   StateBand* tracker_;
   StateBand* controller_;
   StateBand* robot_;
-  QLabel* answer_;
+  FittedLabel* answer_;
   ViewsPanel* views_;
   FeaturesPanel* features_;
   MinutePanel* minute_;

@@ -2,6 +2,7 @@
 
 #include <QPainter>
 
+#include "screen/fitted_text.h"
 #include "screen/level_symbol.h"
 
 namespace laparoscope_servo::screen {
@@ -13,8 +14,9 @@ constexpr double kSymbol = 13.0;  // px, radius
 constexpr int kWordSize = 56;     // px, size of the font; its capitals are 41 px high
 constexpr int kWordTop = 14;      // px, from the top of the band to the word's line
 constexpr int kWordHeight = 56;
-constexpr int kTextSize = 13;  // px of the font
-constexpr int kLine = 16;      // px
+constexpr int kTextSize = 13;      // px of the font
+constexpr int kSmallestText = 10;  // px of the font, of a text that is too long otherwise
+constexpr int kLine = 16;          // px
 
 const QColor kBackground(0x16, 0x1a, 0x20);
 const QColor kText(0xff, 0xff, 0xff);
@@ -32,9 +34,7 @@ QSize StateBand::sizeHint() const {
 }
 
 void StateBand::show(const BandText& text) {
-  const bool same = text.word == text_.word && text.sentence == text_.sentence && text.cure == text_.cure &&
-                    text.detail == text_.detail && text.level == text_.level;
-  if (same) return;
+  if (text == text_) return;
   text_ = text;
   // Escaped, since a node's text may look like markup.
   setToolTip(QString::fromStdString(text.detail).toHtmlEscaped());
@@ -58,7 +58,12 @@ void StateBand::paintEvent(QPaintEvent*) {
   font.setBold(true);
   painter.setFont(font);
   painter.setPen(kQuiet);
-  painter.drawText(QRect(left, 2, width, 15), Qt::AlignLeft | Qt::AlignVCenter, title_.toUpper());
+  const QRect head(left, 2, width, 15);
+  painter.drawText(head, Qt::AlignLeft | Qt::AlignVCenter, title_.toUpper());
+  if (!text_.note.empty()) {
+    painter.setPen(kText);
+    painter.drawText(head, Qt::AlignRight | Qt::AlignVCenter, QString::fromStdString(text_.note));
+  }
 
   font.setPixelSize(kWordSize);
   const QString word = QString::fromStdString(text_.word);
@@ -74,16 +79,10 @@ void StateBand::paintEvent(QPaintEvent*) {
   const int top = kWordTop + kWordHeight + 2;
   const int half = 2 * kLine;
   font.setBold(true);
-  painter.setFont(font);
-  painter.setClipRect(QRect(left, top, width, half));
-  painter.drawText(QRect(left, top, width, half), Qt::AlignLeft | Qt::AlignTop | Qt::TextWordWrap,
-                   QString::fromStdString(text_.sentence));
+  drawFitted(painter, QRectF(left, top, width, half), QString::fromStdString(text_.sentence), font, kSmallestText);
   font.setBold(false);
-  painter.setFont(font);
   painter.setPen(kQuiet);
-  painter.setClipRect(QRect(left, top + half, width, half));
-  painter.drawText(QRect(left, top + half, width, half), Qt::AlignLeft | Qt::AlignTop | Qt::TextWordWrap,
-                   QString::fromStdString(text_.cure));
+  drawFitted(painter, QRectF(left, top + half, width, half), QString::fromStdString(text_.cure), font, kSmallestText);
 }
 
 }  // namespace laparoscope_servo::screen

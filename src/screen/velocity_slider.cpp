@@ -7,7 +7,8 @@ namespace laparoscope_servo::screen {
 
 namespace {
 
-constexpr int kNameWidth = 84;  // px
+constexpr int kNameWidth = 84;    // px
+constexpr int kLeastHeight = 24;  // px, on a display of 768 px
 
 }  // namespace
 
@@ -16,8 +17,9 @@ VelocitySlider::VelocitySlider(const QString& name, const QString& less, const Q
                                QWidget* parent)
     : HoldArea(control, changed, parent), name_(name), less_(less), more_(more), share_changed_(share_changed) {
   setObjectName(name);
-  setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
-  setMinimumHeight(34);
+  setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Preferred);
+  setMinimumHeight(kLeastHeight);
+  setMaximumHeight(sizeHint().height());
 }
 
 void VelocitySlider::setLimit(const QString& limit) {

@@ -102,6 +102,7 @@ void ViewsPanel::fill() {
   if (views_ == nullptr) return;
   for (const StoredView& view : *views_) {
     auto* item = new QListWidgetItem(QIcon(pictureOf(view)), QString::fromStdString(view.name), list_);
+    item->setToolTip(item->text().toHtmlEscaped());  // a long name is cut off below its picture
     if (item->text() == chosen) list_->setCurrentItem(item);
   }
 }
@@ -111,6 +112,7 @@ void ViewsPanel::choose() {
   recall_button_->setEnabled(item != nullptr);
   if (item == nullptr || views_ == nullptr) return;
   name_->setText(item->text());
+  name_->setCursorPosition(0);  // otherwise the end of a long name is shown
   const auto view = std::find_if(views_->begin(), views_->end(), [&](const StoredView& candidate) {
     return candidate.name == item->text().toStdString();
   });

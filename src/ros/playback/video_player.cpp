@@ -142,6 +142,7 @@ void VideoPlayer::tellState() {
   state.state = control_.stateName();
   state.position = position_;
   state.duration = source_->rate() > 0.0 ? static_cast<double>(source_->size()) / source_->rate() : 0.0;
+  state.period = source_->rate() > 0.0 ? 1.0 / (source_->rate() * config_.speed) : 0.0;
   state.images = static_cast<std::uint32_t>(published_);
   const auto now = Clock::now();
   if (state.state == told_.state && now - told_at_ < kStatePeriod) return;

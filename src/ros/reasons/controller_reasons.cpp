@@ -83,7 +83,7 @@ const std::vector<ReasonRow>& controllerReasons() {
        "tasks.md#stabilise"},
       {{"no image was selected whose view is to be kept: "},
        "No image was selected whose view is to be kept.",
-       "Select it: select_features of the node motion.",
+       "Press \"Keep this view\" (page Drive), or call select_features of the node motion.",
        "tasks.md#stabilise"},
       {{"where the view is, is not known well enough: "},
        "The motion of the view is too uncertain to be followed.",

@@ -26,8 +26,11 @@ std::optional<TrackerState> TrackerStateReport::processed(double now, const Proc
   const TrackerState before = message_;
   last_image_ = now;
   refusal_.clear();
+  // The tracker says for one image why the region is gone; that is the reason until another one is selected.
+  const bool idle = result.state == tracking::State::kIdle;
+  const bool stays_idle = idle && tracker_state_ == tracking::stateName(result.state);
   tracker_state_ = tracking::stateName(result.state);
-  tracker_reason_ = result.reason;
+  if (!stays_idle) tracker_reason_ = result.reason;
   message_.header = processed.header;
   message_.state = tracker_state_;
   message_.reason = tracker_reason_;
@@ -37,7 +40,7 @@ std::optional<TrackerState> TrackerStateReport::processed(double now, const Proc
   message_.view = processed.recall == "none" ? "" : processed.recall;
   message_.reference_stamp = ros::Time();
   message_.region.fill(0.0);
-  if (result.state != tracking::State::kIdle) {
+  if (!idle) {
     message_.reference_stamp = processed.reference_stamp;
     const geometry::Quadrilateral corners = result.roi.corners();
     for (int k = 0; k < 4; ++k) {
@@ -60,8 +63,10 @@ std::optional<TrackerState> TrackerStateReport::tick(double now) {
   const bool changed = message_.state != TrackerState::NO_IMAGE;
   if (changed) message_.since = message_.header.stamp;
   message_.state = TrackerState::NO_IMAGE;
-  if (!refusal_.empty()) {
+  if (!refusal_.empty() && now - refused_at_ <= kSilence) {
     message_.reason = "image refused: " + refusal_;
+  } else if (!refusal_.empty()) {
+    message_.reason = "no image for more than 1 s; before: images that were refused";
   } else if (never) {
     message_.reason = "no image has come yet";
   } else {

@@ -17,7 +17,7 @@ class TrackerStateReport {
  public:
   std::optional<TrackerState> processed(double now, const Processed& processed);
   // Call if an image could not be used. A single one among others has no effect.
-  void refused(const std::string& error) { refusal_ = error; }
+  void refused(double now, const std::string& error) { refusal_ = error, refused_at_ = now; }
   // Call several times a second, also without images.
   std::optional<TrackerState> tick(double now);
 
@@ -28,6 +28,7 @@ class TrackerStateReport {
   std::string tracker_state_;  // state at the newest image, also while none comes
   std::string tracker_reason_;
   std::string refusal_;  // why the newest image was refused; empty: it was used
+  double refused_at_ = -1.0;
   double started_ = -1.0;
   double last_image_ = -1.0;
   double said_at_ = -1.0;

@@ -3,15 +3,17 @@
 #include <QPainter>
 #include <QScrollArea>
 
+#include "screen/fitted_text.h"
 #include "screen/level_symbol.h"
 
 namespace laparoscope_servo::screen {
 
 namespace {
 
-constexpr int kHeight = 74;  // px of a line
-constexpr int kStripe = 26;  // px, with the symbol
-constexpr int kRow = 17;     // px
+constexpr int kHeight = 74;    // px of a line
+constexpr int kStripe = 26;    // px, with the symbol
+constexpr int kRow = 17;       // px
+constexpr int kSmallest = 10;  // px of the font, of a text that is too long otherwise
 
 const QColor kQuiet(0xb4, 0xbc, 0xc8);
 
@@ -22,9 +24,7 @@ FeatureLine::FeatureLine(QWidget* parent) : QWidget(parent) {
 }
 
 void FeatureLine::show(const QString& name, const BandText& text) {
-  const bool same = name == name_ && text.word == text_.word && text.sentence == text_.sentence &&
-                    text.cure == text_.cure && text.detail == text_.detail && text.level == text_.level;
-  if (!same) {
+  if (name != name_ || !(text == text_)) {
     name_ = name;
     text_ = text;
     setObjectName("features_" + name);
@@ -56,8 +56,7 @@ void FeatureLine::paintEvent(QPaintEvent*) {
   painter.drawText(QRect(left, 2 + kRow, width, kRow), Qt::AlignLeft | Qt::AlignVCenter,
                    QFontMetrics(font).elidedText(why, Qt::ElideRight, width));
   painter.setPen(kQuiet);
-  painter.drawText(QRect(left, 2 + 2 * kRow, width, 2 * kRow), Qt::AlignLeft | Qt::AlignTop | Qt::TextWordWrap,
-                   QString::fromStdString(text_.cure));
+  drawFitted(painter, QRectF(left, 2 + 2 * kRow, width, 2 * kRow), QString::fromStdString(text_.cure), font, kSmallest);
 }
 
 FeaturesPanel::FeaturesPanel(const std::function<void(bool)>& draw, QWidget* parent) : QWidget(parent) {

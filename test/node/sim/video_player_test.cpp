@@ -222,6 +222,7 @@ TEST_F(VideoPlayer, InLockstepImagesWithoutStampsWaitForTheirResultsToo) {
 
 TEST_F(VideoPlayer, HoldsItsFirstImageUntilARegionIsSelectedAndGoesOnAsItIsTold) {
   parameters_["fps"] = 50.0;
+  parameters_["speed"] = 0.5;
   parameters_["hold"] = true;
   parameters_["stay"] = true;
   parameters_["wait_for_screen"] = true;
@@ -246,6 +247,7 @@ TEST_F(VideoPlayer, HoldsItsFirstImageUntilARegionIsSelectedAndGoesOnAsItIsTold)
   ASSERT_TRUE(spinUntil([&] { return state() == PlaybackState::ENDED; }));
   EXPECT_EQ(number(), kImages - 1);
   EXPECT_NEAR(states.all.back()->duration, kImages / 50.0, 1e-9);
+  EXPECT_NEAR(states.all.back()->period, 0.04, 1e-9) << "in real time";
 
   const auto control = [&](const std::string& command, double position = 0.0) {
     ControlPlayback call;

@@ -9,7 +9,9 @@
 #include <laparoscope_servo/ListViews.h>
 #include <laparoscope_servo/OperatingState.h>
 #include <laparoscope_servo/ScopeVelocity.h>
+#include <laparoscope_servo/SelectFeatures.h>
 #include <laparoscope_servo/SelectRoi.h>
+#include <laparoscope_servo/SelectTask.h>
 #include <laparoscope_servo/StoredView.h>
 #include <laparoscope_servo/TrackerState.h>
 #include <ros/ros.h>
@@ -59,6 +61,9 @@ class FakeNodes {
   std::vector<sensor_msgs::RegionOfInterest> frozenRegions() const { return get(frozen_regions_); }
   std::vector<std::string> stored() const { return get(stored_); }
   std::vector<std::string> recalled() const { return get(recalled_); }
+  std::vector<std::string> tasks() const { return get(tasks_); }
+  std::vector<std::string> keptViews() const { return get(kept_views_); }
+  void refuseTasks(bool refuses) { refuses_tasks_ = refuses; }
   std::vector<bool> deadMan() const { return get(dead_man_words_); }
   std::vector<ScopeVelocity> manual() const { return get(manual_commands_); }
   void forget() {
@@ -67,6 +72,8 @@ class FakeNodes {
     frozen_regions_.clear();
     stored_.clear();
     recalled_.clear();
+    tasks_.clear();
+    kept_views_.clear();
     checks = 0;
     dead_man_words_.clear();
     manual_commands_.clear();
@@ -146,9 +153,9 @@ class FakeNodes {
   TrackerState tracker_;
   ControllerState controller_;
   OperatingState robot_;
-  std::atomic<bool> changed_{true}, camera_runs_{true}, enable_hangs_{false}, ends_{false};
+  std::atomic<bool> changed_{true}, camera_runs_{true}, enable_hangs_{false}, refuses_tasks_{false}, ends_{false};
   std::vector<sensor_msgs::RegionOfInterest> regions_, frozen_regions_;
-  std::vector<std::string> stored_, recalled_;
+  std::vector<std::string> stored_, recalled_, tasks_, kept_views_;
   std::vector<bool> dead_man_words_;
   std::vector<ScopeVelocity> manual_commands_;
 
@@ -174,6 +181,23 @@ class FakeNodes {
   ros::ServiceServer engage_ = node_.advertiseService<std_srvs::SetBool::Request, std_srvs::SetBool::Response>(
       "controller/engage", [this](std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response) {
         if (request.data == 0) ++disengages;
+        response.success = 1;
+        return true;
+      });
+  ros::ServiceServer select_task_ = node_.advertiseService<SelectTask::Request, SelectTask::Response>(
+      "controller/select_task", [this](SelectTask::Request& request, SelectTask::Response& response) {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        tasks_.push_back(request.task);
+        response.success = static_cast<std::uint8_t>(!refuses_tasks_);
+        if (refuses_tasks_) response.message = "no task '" + request.task + "' here";
+        if (!refuses_tasks_) controller_.task = request.task;
+        changed_ = true;
+        return true;
+      });
+  ros::ServiceServer keep_view_ = node_.advertiseService<SelectFeatures::Request, SelectFeatures::Response>(
+      "motion/select_features", [this](SelectFeatures::Request& request, SelectFeatures::Response& response) {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        kept_views_.push_back(request.selection);
         response.success = 1;
         return true;
       });

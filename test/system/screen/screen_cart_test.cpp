@@ -48,6 +48,25 @@ TEST_F(ScreenCart, SelectsEnablesEngagesAndStops) {
   EXPECT_TRUE(waitFor([&] { return zeros >= 5; }));
 }
 
+// Nothing tells the motion of the view here: the task can be selected, but not engaged, and the screen says why.
+TEST_F(ScreenCart, ATaskWhoseInputIsMissingIsNotEngagedAndSaysWhy) {
+  show({1280, 800});
+  ASSERT_TRUE(waitFor([this] { return word("Robot") == "DISABLED" && word("Controller") == "IDLE"; }, 90.0));
+  click("hold_view");
+  ASSERT_TRUE(waitFor([this] { return find<screen::StateBand>("Controller").text().note == "Task: Hold view"; }));
+  click("enable");
+  ASSERT_TRUE(waitFor([this] { return word("Robot") == "ENABLED"; })) << word("Robot");
+  click("engage");
+  const auto answer = [this] { return find<QLabel>("answer").text(); };
+  EXPECT_TRUE(waitFor([&] {
+    return answer().startsWith("Engage: REFUSED.") && answer().contains("no motion of the view was received");
+  })) << answer().toStdString();
+  click("stop");
+  EXPECT_TRUE(waitFor([this] { return word("Robot") == "DISABLED"; }));
+  click("hold_region");
+  EXPECT_TRUE(waitFor([this] { return find<screen::StateBand>("Controller").text().note == "Task: Hold region"; }));
+}
+
 }  // namespace
 }  // namespace laparoscope_servo
 

@@ -1,9 +1,13 @@
 // The screen's window, with real events of an X server, against nodes that say what the test wants.
+#include <diagnostic_msgs/DiagnosticArray.h>
+
 #include <QMenu>
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "system/aesop/child_process.h"
+#include "system/screen/display_text.h"
 #include "system/screen/fake_nodes.h"
 #include "system/screen/screen_fixture.h"
 
@@ -75,6 +79,7 @@ TEST_F(ScreenWindow, ARegionIsDrawnWithinOnePixelOfTheScreenAtAnySize) {
   const QRect wanted(310, 170, 403, 287);
   for (const QSize& size : {QSize(1280, 800), QSize(1024, 768), QSize(1500, 760)}) {
     show(size);
+    EXPECT_EQ(screen_->size(), size) << "nothing of it needs more room";
     ASSERT_TRUE(waitFor([&] { return screen_->size() == size && isColoured(); }));
     nodes_.forget();
     hands(moveTo(onDisplay(kOriginal, {100, 100})) + "click 1 click --repeat 2 1");
@@ -204,6 +209,62 @@ TEST_F(ScreenWindow, AViewIsStoredAndRecalledByItsPicture) {
   click("recall_view");
   EXPECT_TRUE(waitFor([this] { return nodes_.recalled() == std::vector<std::string>{"gallbladder"}; }));
   find<QTabWidget>("tabs").setCurrentIndex(0);
+}
+
+TEST_F(ScreenWindow, ATaskIsExplainedBeforeItIsSelected) {
+  auto& promise = find<QLabel>("promise");
+  const auto task = [this] { return find<screen::StateBand>("Controller").text().note; };
+  ASSERT_TRUE(waitFor([&] { return task() == "Task: Hold region"; })) << task();
+  ASSERT_TRUE(promise.text().startsWith("Once engaged, the scope brings the region back"))
+      << promise.text().toStdString();
+  hands(moveTo(centreOf(find<QPushButton>("centre_tip"))));
+  EXPECT_TRUE(waitFor([&] { return promise.text().startsWith("Once engaged, the scope turns to a tip"); }))
+      << promise.text().toStdString();
+  EXPECT_TRUE(nodes_.tasks().empty()) << "pointing at it selects nothing";
+  click("centre_tip");
+  EXPECT_TRUE(waitFor([&] { return task() == "Task: Centre tip"; })) << task();
+  EXPECT_EQ(nodes_.tasks(), std::vector<std::string>{"CENTRE_TIP"});
+
+  nodes_.change([](TrackerState&, ControllerState& controller, OperatingState&) { controller.engaged = 1; });
+  hands(moveTo(centreOf(find<QPushButton>("hold_region"))));
+  EXPECT_TRUE(waitFor([&] { return promise.text().startsWith("At once, if pressed, the scope brings"); }))
+      << promise.text().toStdString();
+  nodes_.refuseTasks(true);
+  click("hold_region");
+  const auto answer = [this] { return find<QLabel>("answer").text().toStdString(); };
+  EXPECT_TRUE(waitFor([&] { return answer() == "Task Hold region: REFUSED. no task 'HOLD_VIEW' here"; })) << answer();
+  EXPECT_EQ(task(), "Task: Centre tip") << "the one before goes on";
+  nodes_.refuseTasks(false);
+}
+
+TEST_F(ScreenWindow, TheViewThatIsToBeHeldIsKeptByAButtonOfItsTask) {
+  EXPECT_FALSE(find<QPushButton>("keep_this_view").isVisible());
+  click("hold_view");
+  ASSERT_TRUE(waitFor([this] { return find<QPushButton>("keep_this_view").isVisible(); }));
+  click("keep_this_view");
+  EXPECT_TRUE(waitFor([this] { return nodes_.keptViews() == std::vector<std::string>{"[{id: view, motion: []}]"}; }));
+  EXPECT_EQ(nodes_.tasks(), std::vector<std::string>{"STABILISE"});
+}
+
+TEST_F(ScreenWindow, ADiskThatIsFullWhileACaseIsRecordedIsSeen) {
+  auto& recording = find<screen::RecordingBar>("recording");
+  EXPECT_FALSE(recording.isVisible()) << "there is no recorder";
+  ros::NodeHandle node;
+  ros::Publisher publisher = node.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 10);
+  diagnostic_msgs::DiagnosticArray message;
+  message.status.resize(1);
+  message.status[0].name = "recorder: recording";
+  const auto says = [&](int level, const std::string& text, const std::string& word) {
+    message.status[0].level = static_cast<std::int8_t>(level);
+    message.status[0].message = text;
+    return waitFor([&] {
+      publisher.publish(message);
+      return recording.isVisible() && recording.text().word == word;
+    });
+  };
+  EXPECT_TRUE(says(diagnostic_msgs::DiagnosticStatus::OK, "recording", "RECORDING"));
+  EXPECT_TRUE(says(diagnostic_msgs::DiagnosticStatus::ERROR, "nothing is recorded: 3 MB are free", "NOT RECORDING"));
+  EXPECT_EQ(recording.text().sentence, "nothing is recorded: 3 MB are free");
 }
 
 TEST_F(ScreenWindow, ACameraThatDiesIsSeen) {
@@ -338,6 +399,24 @@ TEST(ScreenProgram, ShowsItsWindowWithoutAMasterAndEnds) {
   hands("key Escape");
   program.kill(SIGINT);
   EXPECT_EQ(program.exitStatus(30.0), 0);
+}
+
+// A display of 1024x768 at a scale of 200 %: half of the screen is out of sight, but not STOP.
+TEST(ScreenProgram, OnASmallDisplayStopStaysInSight) {
+  const std::string before = std::getenv("DISPLAY");
+  {
+    const test_support::VirtualDisplay display("1024x768");
+    test_support::FakeNodes nodes;
+    test::ChildProcess program("/usr/bin/env", {"QT_SCALE_FACTOR=2", LAPAROSCOPE_SCREEN});
+    const std::string text = test_support::readUntil({"STOP"});
+    EXPECT_EQ(test_support::notRead(text, {"STOP"}), "") << text;
+    EXPECT_TRUE(waitFor([&] { return nodes.connected(); }));
+    hands("mousemove 500 730 mousedown 1 mouseup 1");  // near the lower edge
+    EXPECT_TRUE(waitFor([&] { return nodes.robot_stops >= 1 && nodes.controller_stops >= 1; }));
+    program.kill(SIGINT);
+    EXPECT_EQ(program.exitStatus(30.0), 0);
+  }
+  ::setenv("DISPLAY", before.c_str(), 1);
 }
 
 }  // namespace

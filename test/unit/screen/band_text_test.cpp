@@ -4,6 +4,7 @@
 #include <laparoscope_servo/TrackedFeatures.h>
 
 #include <memory>
+#include <set>
 
 namespace laparoscope_servo::screen {
 namespace {
@@ -27,6 +28,7 @@ TEST(BandText, AllIsWell) {
   Facts all = facts();
   all.result = Result();
   all.result->visible_fraction = 0.874;
+  all.result->calibrated = true;
   EXPECT_EQ(trackerBand(all, kNow).word, "TRACKING");
   EXPECT_EQ(trackerBand(all, kNow).level, Level::kGood);
   EXPECT_EQ(trackerBand(all, kNow).sentence, "The region is followed. 87 % of it is visible.");
@@ -36,10 +38,20 @@ TEST(BandText, AllIsWell) {
   EXPECT_EQ(robotBand(all, kNow).level, Level::kGood);
 }
 
+TEST(BandText, ACameraWithoutACalibrationIsSaidWhereAControllerNeedsOne) {
+  Facts all = facts();
+  all.result = Result();
+  EXPECT_EQ(trackerBand(all, kNow).word, "TRACKING");
+  EXPECT_EQ(trackerBand(all, kNow).cure, "Without the camera's calibration the controller cannot use it.");
+  all.controller.connected = false;
+  EXPECT_EQ(trackerBand(all, kNow).cure, "") << "a recording is tracked without one";
+}
+
 TEST(BandText, AReplayTellsHowFarItIsFromWhatWasRecorded) {
   Facts all = facts();
   all.result = Result();
   all.result->state = 1;  // TRACKING
+  all.result->calibrated = true;
   all.recorded = all.result;
   EXPECT_EQ(trackerBand(all, kNow).cure, "Recorded: 0.00 px away.");
   all.recorded->corners[5] = 1.25;
@@ -149,12 +161,43 @@ TEST(BandText, ARecordingThatStandsIsNoCameraThatFails) {
   EXPECT_EQ(trackerBand(all, kNow).word, "NO IMAGE");
   EXPECT_EQ(trackerBand(all, kNow).sentence, "The camera has stopped sending.");
   EXPECT_EQ(featureBand(all, edges, kNow).word, "SILENT");
+  all.playback.period = 2.0;
+  EXPECT_EQ(trackerBand(all, kNow).sentence, "The recording plays slowly: one picture in 2 s.");
+  EXPECT_EQ(trackerBand(all, kNow).level, Level::kResting);
   all.playback.state = "ENDED";
   all.tracker.reason = "image refused: the image is truncated: it has 7 bytes";
   EXPECT_EQ(trackerBand(all, kNow).word, "NO IMAGE") << "what is wrong with its pictures is not hidden";
   all.playback.connected = false;
   all.tracker.reason = "no image for more than 1 s; before: TRACKING";
   EXPECT_EQ(trackerBand(all, kNow).level, Level::kBad) << "the player is gone";
+}
+
+TEST(BandText, TheControllersTaskIsSaidInEachOfItsStates) {
+  Facts all = facts();
+  const std::pair<const char*, const char*> tasks[] = {{"HOLD_VIEW", "The scope follows the region."},
+                                                       {"MANUAL", "The scope is driven by hand."},
+                                                       {"STABILISE", "The scope holds the whole view."},
+                                                       {"CENTRE_TIP", "The scope keeps the tip near the middle."},
+                                                       {"JUGGLE", "The scope does its task."}};
+  std::set<std::string> notes;
+  for (const auto& [task, sentence] : tasks) {
+    all.controller.task = task;
+    all.controller.state = "SERVO";
+    EXPECT_EQ(controllerBand(all, kNow).sentence, sentence);
+    const std::string note = controllerBand(all, kNow).note;
+    EXPECT_EQ(note.find("Task: "), 0u) << note;
+    notes.insert(note);
+    for (const char* state : {"IDLE", "ARMED", "HOLD", "LOST", "FAULT"}) {
+      all.controller.state = state;
+      EXPECT_EQ(controllerBand(all, kNow).note, note) << state;
+    }
+  }
+  EXPECT_EQ(notes.size(), 5u) << "each has a name of its own";
+  EXPECT_EQ(notes.count("Task: JUGGLE"), 1u) << "one that the screen does not know is named as the controller names it";
+  EXPECT_EQ(controllerBand(all, kNow + 10.0).note, "") << "a silent controller has no task";
+  EXPECT_TRUE(controllerSpeaks(all, kNow));
+  EXPECT_FALSE(controllerSpeaks(all, kNow + 10.0));
+  EXPECT_EQ(trackerBand(all, kNow).note, "");
 }
 
 TEST(BandText, ACautionIsSaidWhileItMoves) {

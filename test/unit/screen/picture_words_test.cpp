@@ -50,17 +50,37 @@ TEST(PictureWords, AClockThatIsNoneMakesNothingLive) {
   EXPECT_FALSE(pictureWords(picture(100.0, 100.0), std::numeric_limits<double>::quiet_NaN()).live);
 }
 
+PlaybackFacts recording(const std::string& state, double period = 0.04) {
+  PlaybackFacts playback;
+  playback.connected = true;
+  playback.state = state;
+  playback.period = period;
+  return playback;
+}
+
 TEST(PictureWords, ARecordingSaysThatItHasEnded) {
-  Picture picture;
-  picture.image = QImage(4, 4, QImage::Format_RGB32);
-  picture.arrived_at = picture.changed_at = 10.0;
-  EXPECT_EQ(pictureWords(picture, 10.0, "ENDED").words, "ENDED");
-  EXPECT_NE(pictureWords(picture, 10.0, "ENDED").detail.find("\"Again\""), std::string::npos) << "and what to press";
-  EXPECT_FALSE(pictureWords(picture, 10.0, "ENDED").live);
-  EXPECT_TRUE(pictureWords(picture, 99.0, "PAUSED").live) << "it stands because somebody wants it to";
-  EXPECT_TRUE(pictureWords(picture, 99.0, "HOLDING").live);
-  EXPECT_EQ(pictureWords(picture, 99.0, "PLAYING").words, "NOT LIVE");
-  EXPECT_FALSE(pictureWords(Picture(), 99.0, "PAUSED").live);
+  const Picture last = picture(10.0, 10.0);
+  EXPECT_EQ(pictureWords(last, 10.0, recording("ENDED")).words, "ENDED");
+  EXPECT_NE(pictureWords(last, 10.0, recording("ENDED")).detail.find("\"Again\""), std::string::npos)
+      << "and what to press";
+  EXPECT_FALSE(pictureWords(last, 10.0, recording("ENDED")).live);
+  EXPECT_TRUE(pictureWords(last, 99.0, recording("PAUSED")).live) << "it stands because somebody wants it to";
+  EXPECT_TRUE(pictureWords(last, 99.0, recording("HOLDING")).live);
+  EXPECT_EQ(pictureWords(last, 99.0, recording("PLAYING")).words, "NOT LIVE");
+  EXPECT_FALSE(pictureWords(Picture(), 99.0, recording("PAUSED")).live);
+}
+
+TEST(PictureWords, ARecordingThatPlaysSlowlyIsLive) {
+  const Picture last = picture(10.0, 10.0);
+  EXPECT_TRUE(pictureWords(last, 10.4, recording("PLAYING", 0.2)).live) << "a fifth of 25 Hz";
+  EXPECT_EQ(pictureWords(last, 10.6, recording("PLAYING", 0.2)).words, "NOT LIVE");
+  EXPECT_TRUE(pictureWords(picture(10.4, 10.0), 10.4, recording("PLAYING", 0.2)).live) << "a picture comes twice";
+  EXPECT_FALSE(pictureWords(last, 10.3, recording("PLAYING", 0.01)).live) << "a fast one is live no shorter, no longer";
+  EXPECT_TRUE(pictureWords(last, 10.2, recording("PLAYING", 0.01)).live);
+  EXPECT_FALSE(pictureWords(last, 10.3, recording("PLAYING", std::numeric_limits<double>::infinity())).live);
+  PlaybackFacts gone = recording("PLAYING", 0.2);
+  gone.connected = false;
+  EXPECT_FALSE(pictureWords(last, 10.4, gone).live) << "a camera's pictures may not be that old";
 }
 
 }  // namespace

@@ -72,6 +72,8 @@ TEST_F(ViewsPanelTest, ANameIsNoMarkupAndAPictureMayBeMissing) {
   find<QListWidget>("views")->setCurrentRow(0);
   EXPECT_EQ(find<QLabel>("way")->textFormat(), Qt::PlainText);
   EXPECT_EQ(find<QListWidget>("views")->item(0)->text().toStdString(), odd.name);
+  EXPECT_TRUE(find<QListWidget>("views")->item(0)->toolTip().startsWith("&lt;b&gt;bold")) << "all of it, no markup";
+  EXPECT_EQ(find<QLineEdit>("view_name")->cursorPosition(), 0) << "its beginning is shown";
   panel_.resize(400, 300);
   QImage image(panel_.size(), QImage::Format_RGB32);
   panel_.render(&image);

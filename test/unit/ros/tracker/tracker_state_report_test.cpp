@@ -102,14 +102,40 @@ TEST(TrackerStateReport, SaysWhatIsWrongWithImagesThatCannotBeUsed) {
   const auto none = report.tick(1.2);
   ASSERT_TRUE(none);
   EXPECT_EQ(none->reason, "no image has come yet");
-  report.refused("image has encoding 'bayer_rggb8'");
+  report.refused(1.5, "image has encoding 'bayer_rggb8'");
   const auto refused = report.tick(1.6);
   ASSERT_TRUE(refused);
   EXPECT_EQ(refused->state, TrackerState::NO_IMAGE);
   EXPECT_EQ(refused->reason, "image refused: image has encoding 'bayer_rggb8'");
   report.processed(2.0, image(100.0, tracking::State::kTracking));
-  report.refused("image has encoding 'bayer_rggb8'");
+  report.refused(2.1, "image has encoding 'bayer_rggb8'");
   EXPECT_FALSE(report.tick(2.2)) << "one among others changes nothing";
+}
+
+TEST(TrackerStateReport, WhatIsWrongWithImagesDoesNotOutliveThem) {
+  TrackerStateReport report;
+  report.tick(0.0);
+  report.refused(1.5, "image has encoding 'bayer_rggb8'");
+  ASSERT_EQ(report.tick(1.6)->reason, "image refused: image has encoding 'bayer_rggb8'");
+  const auto silent = report.tick(2.7);
+  ASSERT_TRUE(silent);
+  EXPECT_EQ(silent->reason, "no image for more than 1 s; before: images that were refused");
+}
+
+// The tracker says it for one image only.
+TEST(TrackerStateReport, WhyTheRegionIsGoneStaysUntilAnotherOneIsSelected) {
+  TrackerStateReport report;
+  const auto reason = [&](double now, tracking::State state, const std::string& why) {
+    const auto message = report.processed(now, image(100.0 + now, state, why));
+    return message ? message->reason : "";
+  };
+  reason(0.0, tracking::State::kTracking, "");
+  const std::string gone = "image size changed from 640 x 480 to 320 x 240 px: select the ROI again";
+  EXPECT_EQ(reason(1.0, tracking::State::kIdle, gone), gone);
+  EXPECT_EQ(reason(2.5, tracking::State::kIdle, "no region of interest selected"), gone);
+  EXPECT_EQ(report.tick(4.0)->reason, "no image for more than 1 s; before: IDLE: " + gone);
+  EXPECT_EQ(reason(5.0, tracking::State::kTracking, ""), "");
+  EXPECT_EQ(reason(6.0, tracking::State::kIdle, "no region of interest selected"), "no region of interest selected");
 }
 
 }  // namespace
