@@ -17,6 +17,7 @@
 #include "tracking/roi_check.h"
 #include "tracking/search/region_search.h"
 #include "tracking/selection/proposal.h"
+#include "tracking/selection/selection_mask.h"
 
 namespace laparoscope_servo::tracking {
 
@@ -114,11 +115,10 @@ double RegionTracker::Implementation::check(const cv::Mat& image, const geometry
                                             RegionAligner& aligner, const cv::Mat& mask) const {
   checkImage(image);
   image::checkMask(mask, image);
-  image::FieldMask field;
-  field.look(image);
   const geometry::Rectangle roi = checkedRoi(image, wanted, config_.min_roi_side, lens_.get());
-  checkWithinField(roi, field, lens_.get());
-  aligner.setMask(field.joined(mask));
+  const SelectionMask selectable(image, mask);
+  selectable.check(roi, lens_.get());
+  aligner.setMask(selectable.mask());
   aligner.setReference(image, roi);
   return checkedCornerError(aligner, config_.min_texture);
 }
@@ -133,12 +133,11 @@ std::optional<geometry::Rectangle> RegionTracker::Implementation::propose(const 
   least.width = std::max<double>(wanted.width, config_.min_roi_side);
   least.height = std::max<double>(wanted.height, config_.min_roi_side);
   RegionAligner aligner(config_, lens_);
-  image::FieldMask field;
-  field.look(image);
-  aligner.setMask(field.joined(cv::Mat()));
-  return proposeRegion(image, least, lens_.get(), [&](const geometry::Rectangle& roi) {
+  const SelectionMask selectable(image, cv::Mat());
+  aligner.setMask(selectable.mask());
+  return proposeRegion(image, selectable.mask(), least, lens_.get(), [&](const geometry::Rectangle& roi) {
     try {
-      checkWithinField(roi, field, lens_.get());
+      selectable.check(roi, lens_.get());
       aligner.setReference(image, checkedRoi(image, roi, config_.min_roi_side, lens_.get()));
       return aligner.referenceTexture().corner_error <= kClearly * config_.min_texture;
     } catch (const std::invalid_argument&) {

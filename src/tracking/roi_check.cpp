@@ -5,12 +5,14 @@
 #include <stdexcept>
 
 #include "laparoscope_servo/image/image_type.h"
+#include "laparoscope_servo/tracking/external_masks.h"
 
 namespace laparoscope_servo::tracking {
 
 namespace {
 
-constexpr double kMostBeyond = 0.5;  // share of a ROI that may lie beyond the endoscope's field of view
+constexpr double kMostBeyond = 0.5;        // share of a ROI that may lie beyond the endoscope's field of view
+constexpr double kMostOnInstrument = 0.5;  // the same, that an instrument covers
 
 // Every pixel of the border, through the lens: what is one to one takes the inside of the border to the inside. False
 // for NaN.
@@ -72,6 +74,19 @@ void checkWithinField(const geometry::Rectangle& roi, const image::FieldMask& fi
   message.precision(2);
   message << text(roi) << " lies beyond the picture's border, where it is black, by " << 100.0 * beyond
           << " %, expected at most " << 100.0 * kMostBeyond << " %";
+  throw std::invalid_argument(message.str());
+}
+
+void checkClearOfInstruments(const geometry::Rectangle& roi, const cv::Mat& instruments, const image::Lens* lens) {
+  geometry::Quadrilateral corners = roi.corners();
+  for (Eigen::Vector2d& corner : corners) {
+    if (lens != nullptr) corner = lens->toRaw(corner).value_or(corner);
+  }
+  const double share = coveredShare(instruments, corners);
+  if (share <= kMostOnInstrument) return;
+  std::ostringstream message;
+  message << text(roi) << " lies on an instrument by " << std::lround(100.0 * share) << " %, expected at most "
+          << 100.0 * kMostOnInstrument << " %";
   throw std::invalid_argument(message.str());
 }
 

@@ -21,6 +21,10 @@ geometry::Rectangle checkedRoi(const cv::Mat& image, const geometry::Rectangle& 
 // Throws std::invalid_argument when most of the ROI shows nothing, since it lies beyond the endoscope's field of view.
 void checkWithinField(const geometry::Rectangle& roi, const image::FieldMask& field, const image::Lens* lens);
 
+// Throws std::invalid_argument when most of the ROI is not 0 in `instruments`, which is of the image's size, or empty:
+// the ROI would follow an instrument.
+void checkClearOfInstruments(const geometry::Rectangle& roi, const cv::Mat& instruments, const image::Lens* lens);
+
 // px, the corner error that noise causes in the aligner's reference, see ReferenceTexture. Throws std::invalid_argument
 // when it is more than `max_error`: the ROI has too little texture.
 double checkedCornerError(RegionAligner& aligner, double max_error);

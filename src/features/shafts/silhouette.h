@@ -6,11 +6,11 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "features/shafts/grey_map.h"
+#include "features/shafts/shaft_finder.h"
 #include "laparoscope_servo/image/field_of_view.h"
-#include "model/instrument/grey_map.h"
-#include "model/instrument/shaft_finder.h"
 
-namespace laparoscope_servo::model {
+namespace laparoscope_servo::features {
 
 class Silhouette {
  public:
@@ -41,4 +41,4 @@ class Silhouette {
   cv::Mat1b near_, part_, large_, drawn_;
 };
 
-}  // namespace laparoscope_servo::model
+}  // namespace laparoscope_servo::features

@@ -1,9 +1,9 @@
-#include "model/instrument/shaft_finder.h"
+#include "features/shafts/shaft_finder.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace laparoscope_servo::model {
+namespace laparoscope_servo::features {
 
 namespace {
 
@@ -210,4 +210,4 @@ const std::vector<Shaft>& ShaftFinder::find(const GreyMap& map, const image::Fie
   return shafts_;
 }
 
-}  // namespace laparoscope_servo::model
+}  // namespace laparoscope_servo::features

@@ -1,10 +1,10 @@
-#include "model/instrument/silhouette.h"
+#include "features/shafts/silhouette.h"
 
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-namespace laparoscope_servo::model {
+namespace laparoscope_servo::features {
 
 namespace {
 
@@ -180,4 +180,4 @@ void Silhouette::draw(const GreyMap& map, double threshold, const Shaft& shaft, 
   cv::bitwise_or(mask, drawn_, mask);
 }
 
-}  // namespace laparoscope_servo::model
+}  // namespace laparoscope_servo::features
