@@ -30,6 +30,9 @@ constexpr double kMostMissing = 0.5;  // share of the blocks that are found, fro
 constexpr double kBlockVisible = 0.8;  // share of a visible block's pixels that have weight
 constexpr double kGateShift =
     2.0;  // lengthUnit()s of the image: masks drawn further from the estimate than this are drawn again
+// px of the image per px of the level on which blocks are searched, in regions of more than 320 px: a block spans 96
+// px.
+constexpr double kCoarse = 4.0;
 constexpr double kBorder = 4.0;  // px of the coarsest level, of what smoothing takes in from beyond the ROI
 
 // The channel that is tracked first, before any smoothing. `image`: CV_8UC1 or CV_8UC3.
@@ -60,7 +63,8 @@ RegionAligner::RegionAligner(const TrackerConfig& config, std::shared_ptr<const 
       esm_(config.esm, lens),
       gates_(config.occlusion, config.esm.saturation),
       blocks_(lens),
-      far_blocks_(lens) {}
+      far_blocks_(lens),
+      fine_blocks_(lens) {}
 
 void RegionAligner::setReference(const cv::Mat& image, const geometry::Rectangle& roi) {
   const cv::Rect box = image::seenBox(lens_.get(), roi.corners(), 0.0) & cv::Rect(cv::Point(0, 0), image.size());
@@ -72,13 +76,14 @@ void RegionAligner::setReference(const cv::Mat& image, const geometry::Rectangle
   esm_.setReference(pyramid_, roi);
   blocks_.setReference(pyramid_, roi);
   far_blocks_.setReference(pyramid_, roi, blocks_.level() + 1);
+  fine_blocks_.setReference(pyramid_, roi, std::max(blocks_.level() - 1, 0));
   sample(image, Eigen::Matrix3d::Identity());
   gates_.setReference(patch_, patchSize(), coloursIn(channels_));
   const bool hidden = !mask_.empty() && cv::countNonZero(covered_.blue) > 0;
   if (hidden) gates_.hideInReference(covered_.blue);
   esm_.setWeights(weights());
   if (!hidden) return;
-  for (BlockMatching* blocks : {&blocks_, &far_blocks_})
+  for (BlockMatching* blocks : {&blocks_, &far_blocks_, &fine_blocks_})
     blocks->keep([&](const Eigen::Vector2d& centre) { return isVisible(centre, blocks->side()); });
 }
 
@@ -175,6 +180,7 @@ Alignment RegionAligner::align(const cv::Mat& image, const EsmState& start, cons
     surprise_ = geometry::cornerDistance(start.g, result.esm.state.g, roi());
     correct(result.esm, result.blocks);
     lookFurther(result.esm, result.blocks);
+    correctFinely(result.esm, result.blocks);
   }
   const Matrix8d covariance = result.esm.covariance + result.blocks.deformation;
   result.corner_error = std::isfinite(result.esm.corner_error) ? cornerError(result.esm.state.g, roi(), covariance)
@@ -249,6 +255,22 @@ void RegionAligner::lookFurther(EsmResult& estimate, BlockEvidence& evidence) {
   } else if (further.off > kMostOff * lengthUnit(roi())) {
     evidence = further;  // neither estimate is supported by its blocks
   }
+}
+
+// A block of a large region holds pieces that move differently, where tissue is curved or deforms or mirrors the light,
+// and its place is that of the piece with most contrast. Blocks of half the side, which are searched half as far, are
+// believed where enough of them are found.
+void RegionAligner::correctFinely(EsmResult& estimate, BlockEvidence& evidence) {
+  if (!(blocks_.scale() >= kCoarse) || !(evidence.confident > kMostMissing * evidence.seen)) return;
+  const std::vector<BlockShift>& shifts = fine_blocks_.measure(pyramid_, estimate.state.g);
+  if (!(confidentShifts(shifts) > kMostMissing * fine_blocks_.blocks())) return;
+  const std::optional<ShiftFit> fit = fitShifts(shifts, roi(), fine_blocks_.side());
+  const double off = medianShift(shifts, estimate.state.g);
+  if (!fit || !(off > kNearOff * fine_blocks_.scale() && fit->significance > kSignificant)) return;
+  follow(*fit, estimate);
+  const std::vector<BlockShift>& left = fine_blocks_.measure(pyramid_, estimate.state.g);
+  evidence.off = medianShift(left, estimate.state.g);
+  evidence.deformation = deformationCovariance(left, evidence.off, roi());
 }
 
 void RegionAligner::startAfresh() {
