@@ -28,11 +28,9 @@ constexpr double kNearOff = 0.3;
 constexpr double kFarOff = 1.5;  // lengthUnit()s of the image, the blocks' median: ESM is off, however they scatter
 constexpr double kMostMissing = 0.5;  // share of the blocks that are found, from which on they are not searched further
 constexpr double kBlockVisible = 0.8;  // share of a visible block's pixels that have weight
-constexpr double kGateShift =
-    2.0;  // lengthUnit()s of the image: masks drawn further from the estimate than this are drawn again
-// px of the image per px of the level on which blocks are searched, in regions of more than 320 px: a block spans 96
-// px.
-constexpr double kCoarse = 4.0;
+constexpr double kGateShift = 2.0;  // lengthUnit()s of the image: masks drawn this far from the estimate are outdated
+constexpr double kCoarse =
+    4.0;  // px of the image per px of the blocks' level: in a ROI of over 320 px, one spans 96 px
 constexpr double kBorder = 4.0;  // px of the coarsest level, of what smoothing takes in from beyond the ROI
 
 // The channel that is tracked first, before any smoothing. `image`: CV_8UC1 or CV_8UC3.
@@ -63,8 +61,7 @@ RegionAligner::RegionAligner(const TrackerConfig& config, std::shared_ptr<const 
       esm_(config.esm, lens),
       gates_(config.occlusion, config.esm.saturation),
       blocks_(lens),
-      far_blocks_(lens),
-      fine_blocks_(lens) {}
+      far_blocks_(lens) {}
 
 void RegionAligner::setReference(const cv::Mat& image, const geometry::Rectangle& roi) {
   const cv::Rect box = image::seenBox(lens_.get(), roi.corners(), 0.0) & cv::Rect(cv::Point(0, 0), image.size());
@@ -103,8 +100,7 @@ cv::Size RegionAligner::patchSize() const {
   return {esm_.level(0).width, esm_.level(0).height};
 }
 
-// Samples the image for the gates where `g` puts the ROI.
-// What the mask covers is not valid, as if it lay outside of the image.
+// Samples the image for the gates where `g` puts the ROI. What the mask covers is not valid, as outside of the image.
 void RegionAligner::sample(const cv::Mat& image, const Eigen::Matrix3d& g) {
   sample(image, g, patch_);
   if (mask_.empty()) return;
@@ -257,20 +253,18 @@ void RegionAligner::lookFurther(EsmResult& estimate, BlockEvidence& evidence) {
   }
 }
 
-// A block of a large region holds pieces that move differently, where tissue is curved or deforms or mirrors the light,
-// and its place is that of the piece with most contrast. Blocks of half the side, which are searched half as far, are
-// believed where enough of them are found.
+// A block of a large region holds pieces that move differently, where tissue is curved or mirrors the light, and its
+// place is that of the piece with most contrast. Blocks of half the side are believed where enough of them are found.
 void RegionAligner::correctFinely(EsmResult& estimate, BlockEvidence& evidence) {
-  if (!(blocks_.scale() >= kCoarse) || !(evidence.confident > kMostMissing * evidence.seen)) return;
-  const std::vector<BlockShift>& shifts = fine_blocks_.measure(pyramid_, estimate.state.g);
+  if (!(blocks_.scale() >= kCoarse && evidence.confident > kMostMissing * evidence.seen)) return;
+  const auto& shifts = fine_blocks_.measure(pyramid_, estimate.state.g);  // after the next call what that has measured
   if (!(confidentShifts(shifts) > kMostMissing * fine_blocks_.blocks())) return;
+  if (!(medianShift(shifts, estimate.state.g) > kNearOff * fine_blocks_.scale())) return;
   const std::optional<ShiftFit> fit = fitShifts(shifts, roi(), fine_blocks_.side());
-  const double off = medianShift(shifts, estimate.state.g);
-  if (!fit || !(off > kNearOff * fine_blocks_.scale() && fit->significance > kSignificant)) return;
+  if (!fit || !(fit->significance > kSignificant)) return;
   follow(*fit, estimate);
-  const std::vector<BlockShift>& left = fine_blocks_.measure(pyramid_, estimate.state.g);
-  evidence.off = medianShift(left, estimate.state.g);
-  evidence.deformation = deformationCovariance(left, evidence.off, roi());
+  evidence.off = medianShift(fine_blocks_.measure(pyramid_, estimate.state.g), estimate.state.g);
+  evidence.deformation = deformationCovariance(shifts, evidence.off, roi());
 }
 
 void RegionAligner::startAfresh() {

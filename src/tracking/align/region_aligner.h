@@ -110,8 +110,8 @@ class RegionAligner {
   OcclusionGates gates_;
   BlockMatching blocks_;
   BlockMatching far_blocks_;
-  BlockMatching fine_blocks_;  // of the next finer level, where there is one
-  int finest_ = 1;             // scale of the finest level
+  BlockMatching fine_blocks_{lens_};  // of the next finer level, where there is one
+  int finest_ = 1;                    // scale of the finest level
   image::RegionPyramid pyramid_;
   image::Channels channels_ = image::kLuma;
   image::ColourPatch patch_;
