@@ -5,12 +5,14 @@
 #include <stdexcept>
 
 #include "laparoscope_servo/image/image_type.h"
+#include "laparoscope_servo/tracking/external_masks.h"
 
 namespace laparoscope_servo::tracking {
 
 namespace {
 
-constexpr double kMostBeyond = 0.5;  // share of a ROI that may lie beyond the endoscope's field of view
+constexpr double kMostBeyond = 0.5;        // share of a ROI that may lie beyond the endoscope's field of view
+constexpr double kMostOnInstrument = 0.5;  // the same, that an instrument covers
 
 // Every pixel of the border, through the lens: what is one to one takes the inside of the border to the inside. False
 // for NaN.
@@ -75,6 +77,19 @@ void checkWithinField(const geometry::Rectangle& roi, const image::FieldMask& fi
   throw std::invalid_argument(message.str());
 }
 
+void checkClearOfInstruments(const geometry::Rectangle& roi, const cv::Mat& instruments, const image::Lens* lens) {
+  geometry::Quadrilateral corners = roi.corners();
+  for (Eigen::Vector2d& corner : corners) {
+    if (lens != nullptr) corner = lens->toRaw(corner).value_or(corner);
+  }
+  const double share = coveredShare(instruments, corners);
+  if (share <= kMostOnInstrument) return;
+  std::ostringstream message;
+  message << text(roi) << " lies on an instrument by " << std::lround(100.0 * share) << " %, expected at most "
+          << 100.0 * kMostOnInstrument << " %";
+  throw std::invalid_argument(message.str());
+}
+
 double checkedCornerError(RegionAligner& aligner, double max_error) {
   const ReferenceTexture texture = aligner.referenceTexture();
   if (texture.corner_error <= max_error) return texture.corner_error;
@@ -86,17 +101,20 @@ double checkedCornerError(RegionAligner& aligner, double max_error) {
   throw std::invalid_argument(message.str());
 }
 
+double takeReference(const cv::Mat& image, const geometry::Rectangle& wanted, const SelectionMask& selectable,
+                     const TrackerConfig& config, const image::Lens* lens, RegionAligner& aligner) {
+  const geometry::Rectangle roi = checkedRoi(image, wanted, config.min_roi_side, lens);
+  selectable.check(roi, lens);
+  aligner.setMask(selectable.mask());
+  aligner.setReference(image, roi);
+  return checkedCornerError(aligner, config.min_texture);
+}
+
 double takeReference(const cv::Mat& image, const geometry::Rectangle& wanted, const cv::Mat& mask,
                      const TrackerConfig& config, const image::Lens* lens, RegionAligner& aligner) {
   checkImage(image);
   image::checkMask(mask, image);
-  image::FieldMask field;
-  field.look(image);
-  const geometry::Rectangle roi = checkedRoi(image, wanted, config.min_roi_side, lens);
-  checkWithinField(roi, field, lens);
-  aligner.setMask(field.joined(mask));
-  aligner.setReference(image, roi);
-  return checkedCornerError(aligner, config.min_texture);
+  return takeReference(image, wanted, SelectionMask(image, mask), config, lens, aligner);
 }
 
 }  // namespace laparoscope_servo::tracking

@@ -4,17 +4,18 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "features/shafts/bright_edges.h"
 #include "laparoscope_servo/geometry/homography.h"
 
 namespace laparoscope_servo::model {
 
 namespace {
 
-constexpr int kReturns = 2;      // images in a row that show an instrument again
-constexpr double kCoarse = 0.4;  // cells, standard deviation of an outline of what is grey
-constexpr double kApart = 2.0;   // cells by which both stages may differ
-constexpr int kStray = 5;        // images in a row in which they may differ by more
-constexpr int kRetry = 4;        // images between two attempts at the fine stage
+constexpr int kReturns = 2;                        // images in a row that show an instrument again
+constexpr double kCoarse = 0.4;                    // cells, standard deviation of an outline of what is grey
+constexpr double kApart = features::kStagesApart;  // cells by which both stages may differ
+constexpr int kStray = 5;                          // images in a row in which they may differ by more
+constexpr int kRetry = 4;                          // images between two attempts at the fine stage
 // How far an instrument moves from one image to the next: entry, in widths of the shaft, more for each image in which
 // it was missed, up to a limit; axis, as the cosine of the angle; width, as the ratio of the smaller to the larger one.
 constexpr double kMoves = 1.0, kMovesMore = 0.25, kMovesMost = 3.0;
@@ -41,19 +42,6 @@ GreyLine fromEnds(const Eigen::Vector2d& begin, const Eigen::Vector2d& end, cons
 }
 
 }  // namespace
-
-int brightEdges(const InstrumentConfig& config, const InstrumentScene& scene, const Shaft& shaft) {
-  int count = 0;
-  for (std::size_t k = 0; k < 2; ++k) {
-    const GreyLine& edge = shaft.edges[k];
-    const Eigen::Vector2d begin = toPixel(scene.map, edge.at(edge.begin)), end = toPixel(scene.map, edge.at(edge.end));
-    if (!shaft.seen[k] || !((end - begin).norm() > features::Line::kMinLength)) continue;
-    features::Line line(begin, end);
-    features::EdgeFit fit(config.edges);
-    count += fit.learn(scene.image, line, kApart * scene.map.step() + 2.0).reason == features::Reason::kNone ? 1 : 0;
-  }
-  return count;
-}
 
 InstrumentTrack::InstrumentTrack(const InstrumentConfig& config, int id, const InstrumentScene& scene,
                                  const Shaft& found)

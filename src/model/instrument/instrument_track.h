@@ -5,14 +5,20 @@
 #include <opencv2/core.hpp>
 #include <optional>
 
+#include "features/shafts/grey_levels.h"
+#include "features/shafts/silhouette.h"
 #include "laparoscope_servo/features/curve_tracker.h"
 #include "laparoscope_servo/features/line.h"
 #include "laparoscope_servo/model/instruments.h"
 #include "model/instrument/axis_meeting.h"
-#include "model/instrument/grey_levels.h"
-#include "model/instrument/silhouette.h"
 
 namespace laparoscope_servo::model {
+
+using features::GreyLevels;
+using features::GreyLine;
+using features::GreyMap;
+using features::Shaft;
+using features::Silhouette;
 
 // The image that is processed, and what its colours say.
 struct InstrumentScene {
@@ -24,9 +30,6 @@ struct InstrumentScene {
   const image::FieldOfView& view;
   const GreyLevels& levels;
 };
-
-// How many of a shaft's edges the image's brightness shows, too. Allocates.
-int brightEdges(const InstrumentConfig& config, const InstrumentScene& scene, const Shaft& shaft);
 
 class InstrumentTrack {
  public:

@@ -5,11 +5,12 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "features/shafts/bright_edges.h"
+#include "features/shafts/shaft_finder.h"
 #include "laparoscope_servo/parameters/table.h"
 #include "laparoscope_servo/validation/error_report.h"
 #include "model/instrument/grey_plane.h"
 #include "model/instrument/instrument_track.h"
-#include "model/instrument/shaft_finder.h"
 
 namespace laparoscope_servo::model {
 
@@ -65,7 +66,7 @@ class InstrumentTracker::Implementation {
     stamp_ = stamp;
     map_.compute(image);
     view_.compute(map_.level());
-    const GreyLevels levels = greyLevels(map_, view_);
+    const GreyLevels levels = features::greyLevels(map_, view_);
     const std::vector<Shaft>& found = finder_.find(map_, view_, levels);
     const std::optional<Eigen::Matrix3d> usable = motion && motion->allFinite() ? motion : std::nullopt;
     plane_.compute(image, cv::Rect(cv::Point(0, 0), image.size()));
@@ -139,7 +140,7 @@ class InstrumentTracker::Implementation {
       if (!confirmed && !(contrasts && shaft.seen[0] && shaft.seen[1])) continue;
       // Light has to agree with colour: the border between pale tissue and red tissue is no step of brightness. A clear
       // one that has lasted needs no step, which a dark shaft on dark tissue does not have.
-      const int bright = contrasts && confirmed ? 0 : brightEdges(config_, scene, shaft);
+      const int bright = contrasts && confirmed ? 0 : features::brightEdges(config_.edges, scene.image, map_, shaft);
       if (!contrasts && bright < 2) continue;
       if (contrasts && !confirmed && bright < 1) continue;
       if (static_cast<int>(tracks_.size()) >= config_.most && !makeRoom()) continue;
@@ -176,7 +177,7 @@ class InstrumentTracker::Implementation {
   InstrumentConfig config_;
   GreyMap map_;
   image::FieldOfView view_;
-  ShaftFinder finder_;
+  features::ShaftFinder finder_;
   std::vector<InstrumentTrack> tracks_;
   std::vector<Pending> pending_;
   std::vector<char> taken_;

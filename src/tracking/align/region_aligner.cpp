@@ -28,8 +28,9 @@ constexpr double kNearOff = 0.3;
 constexpr double kFarOff = 1.5;  // lengthUnit()s of the image, the blocks' median: ESM is off, however they scatter
 constexpr double kMostMissing = 0.5;  // share of the blocks that are found, from which on they are not searched further
 constexpr double kBlockVisible = 0.8;  // share of a visible block's pixels that have weight
-constexpr double kGateShift =
-    2.0;  // lengthUnit()s of the image: masks drawn further from the estimate than this are drawn again
+constexpr double kGateShift = 2.0;  // lengthUnit()s of the image: masks drawn this far from the estimate are outdated
+constexpr double kCoarse =
+    4.0;  // px of the image per px of the blocks' level: in a ROI of over 320 px, one spans 96 px
 constexpr double kBorder = 4.0;  // px of the coarsest level, of what smoothing takes in from beyond the ROI
 
 // The channel that is tracked first, before any smoothing. `image`: CV_8UC1 or CV_8UC3.
@@ -72,13 +73,14 @@ void RegionAligner::setReference(const cv::Mat& image, const geometry::Rectangle
   esm_.setReference(pyramid_, roi);
   blocks_.setReference(pyramid_, roi);
   far_blocks_.setReference(pyramid_, roi, blocks_.level() + 1);
+  fine_blocks_.setReference(pyramid_, roi, std::max(blocks_.level() - 1, 0));
   sample(image, Eigen::Matrix3d::Identity());
   gates_.setReference(patch_, patchSize(), coloursIn(channels_));
   const bool hidden = !mask_.empty() && cv::countNonZero(covered_.blue) > 0;
   if (hidden) gates_.hideInReference(covered_.blue);
   esm_.setWeights(weights());
   if (!hidden) return;
-  for (BlockMatching* blocks : {&blocks_, &far_blocks_})
+  for (BlockMatching* blocks : {&blocks_, &far_blocks_, &fine_blocks_})
     blocks->keep([&](const Eigen::Vector2d& centre) { return isVisible(centre, blocks->side()); });
 }
 
@@ -98,8 +100,7 @@ cv::Size RegionAligner::patchSize() const {
   return {esm_.level(0).width, esm_.level(0).height};
 }
 
-// Samples the image for the gates where `g` puts the ROI.
-// What the mask covers is not valid, as if it lay outside of the image.
+// Samples the image for the gates where `g` puts the ROI. What the mask covers is not valid, as outside of the image.
 void RegionAligner::sample(const cv::Mat& image, const Eigen::Matrix3d& g) {
   sample(image, g, patch_);
   if (mask_.empty()) return;
@@ -175,6 +176,7 @@ Alignment RegionAligner::align(const cv::Mat& image, const EsmState& start, cons
     surprise_ = geometry::cornerDistance(start.g, result.esm.state.g, roi());
     correct(result.esm, result.blocks);
     lookFurther(result.esm, result.blocks);
+    correctFinely(result.esm, result.blocks);
   }
   const Matrix8d covariance = result.esm.covariance + result.blocks.deformation;
   result.corner_error = std::isfinite(result.esm.corner_error) ? cornerError(result.esm.state.g, roi(), covariance)
@@ -249,6 +251,20 @@ void RegionAligner::lookFurther(EsmResult& estimate, BlockEvidence& evidence) {
   } else if (further.off > kMostOff * lengthUnit(roi())) {
     evidence = further;  // neither estimate is supported by its blocks
   }
+}
+
+// A block of a large region holds pieces that move differently, where tissue is curved or mirrors the light, and its
+// place is that of the piece with most contrast. Blocks of half the side are believed where enough of them are found.
+void RegionAligner::correctFinely(EsmResult& estimate, BlockEvidence& evidence) {
+  if (!(blocks_.scale() >= kCoarse && evidence.confident > kMostMissing * evidence.seen)) return;
+  const auto& shifts = fine_blocks_.measure(pyramid_, estimate.state.g);  // after the next call what that has measured
+  if (!(confidentShifts(shifts) > kMostMissing * fine_blocks_.blocks())) return;
+  if (!(medianShift(shifts, estimate.state.g) > kNearOff * fine_blocks_.scale())) return;
+  const std::optional<ShiftFit> fit = fitShifts(shifts, roi(), fine_blocks_.side());
+  if (!fit || !(fit->significance > kSignificant)) return;
+  follow(*fit, estimate);
+  evidence.off = medianShift(fine_blocks_.measure(pyramid_, estimate.state.g), estimate.state.g);
+  evidence.deformation = deformationCovariance(shifts, evidence.off, roi());
 }
 
 void RegionAligner::startAfresh() {

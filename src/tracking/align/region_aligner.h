@@ -99,6 +99,7 @@ class RegionAligner {
   // The pixels of a block, with its centre and side in px of the reference, have weight.
   bool isVisible(const Eigen::Vector2d& centre, double side) const;
   void correct(EsmResult& estimate, BlockEvidence& evidence);
+  void correctFinely(EsmResult& estimate, BlockEvidence& evidence);
   void lookFurther(EsmResult& estimate, BlockEvidence& evidence);
   int observeStructure(const EsmResult& estimate);
 
@@ -109,7 +110,8 @@ class RegionAligner {
   OcclusionGates gates_;
   BlockMatching blocks_;
   BlockMatching far_blocks_;
-  int finest_ = 1;  // scale of the finest level
+  BlockMatching fine_blocks_{lens_};  // of the next finer level, where there is one
+  int finest_ = 1;                    // scale of the finest level
   image::RegionPyramid pyramid_;
   image::Channels channels_ = image::kLuma;
   image::ColourPatch patch_;

@@ -25,6 +25,7 @@ constexpr double kMoreTexture = 2.0;  // of what was not enough, is looked for n
 // Of min_texture, what noise may do in a region that is proposed. Of 92 regions on eight films the 60 in which it did
 // less than this were held for a second in 42 cases, the others in 15 of 32.
 constexpr double kClearly = 0.3;
+constexpr double kMostCovered = 0.05;  // share of a region
 
 struct Candidate {
   geometry::Rectangle roi;
@@ -32,10 +33,10 @@ struct Candidate {
   double texture;
 };
 
-// Sums of products of the gradient over any box.
+// Sums of products of the gradient over any box, and of what is covered.
 class Texture {
  public:
-  Texture(const cv::Mat& image, const image::Lens* lens) : lens_(lens) {
+  Texture(const cv::Mat& image, const cv::Mat& covered, const image::Lens* lens) : lens_(lens) {
     const CoarseImage coarse = coarseImage(image, coarseScale(image.size(), kMostPixels), image::kLuma, kSaturated);
     scale_ = coarse.scale;
     cv::Mat1f dx, dy;
@@ -43,6 +44,14 @@ class Texture {
     cv::Sobel(coarse.grey, dy, CV_32F, 0, 1, 1, 0.5);
     dx.setTo(0.0f, coarse.usable == 0);
     dy.setTo(0.0f, coarse.usable == 0);
+    if (!covered.empty()) {
+      cv::Mat1b hidden;
+      cv::resize(covered != 0, hidden, coarse.grey.size(), 0, 0, cv::INTER_NEAREST);
+      cv::integral(hidden, hidden_, CV_64F);
+      cv::dilate(hidden, hidden, cv::Mat());  // its border is no texture of the tissue
+      dx.setTo(0.0f, hidden);
+      dy.setTo(0.0f, hidden);
+    }
     cv::integral(dx.mul(dx), xx_, CV_64F);
     cv::integral(dx.mul(dy), xy_, CV_64F);
     cv::integral(dy.mul(dy), yy_, CV_64F);
@@ -50,15 +59,23 @@ class Texture {
 
   // In the direction in which there is least; 0 outside the image.
   double in(const geometry::Rectangle& roi) const {
-    const cv::Rect seen = image::seenBox(lens_, roi.corners(), 0.0);
-    const cv::Rect coarse(cv::Point(seen.x / scale_, seen.y / scale_),
-                          cv::Point((seen.x + seen.width) / scale_, (seen.y + seen.height) / scale_));
-    const cv::Rect box = coarse & cv::Rect(0, 0, xx_.cols - 1, xx_.rows - 1);
+    const cv::Rect box = coarseBox(roi);
     const double xx = sum(xx_, box), xy = sum(xy_, box), yy = sum(yy_, box);
     return 0.5 * (xx + yy - std::hypot(xx - yy, 2.0 * xy));
   }
+  // Share of it.
+  double coveredIn(const geometry::Rectangle& roi) const {
+    const cv::Rect box = coarseBox(roi);
+    return hidden_.empty() || box.empty() ? 0.0 : sum(hidden_, box) / (255.0 * box.area());
+  }
 
  private:
+  cv::Rect coarseBox(const geometry::Rectangle& roi) const {
+    const cv::Rect seen = image::seenBox(lens_, roi.corners(), 0.0);
+    const cv::Rect coarse(cv::Point(seen.x / scale_, seen.y / scale_),
+                          cv::Point((seen.x + seen.width) / scale_, (seen.y + seen.height) / scale_));
+    return coarse & cv::Rect(0, 0, xx_.cols - 1, xx_.rows - 1);
+  }
   static double sum(const cv::Mat1d& integral, const cv::Rect& box) {
     return integral(box.br()) - integral(box.y, box.x + box.width) - integral(box.y + box.height, box.x) +
            integral(box.tl());
@@ -67,6 +84,7 @@ class Texture {
   const image::Lens* lens_;
   int scale_ = 1;
   cv::Mat1d xx_, xy_, yy_;
+  cv::Mat1d hidden_;  // empty: nothing is covered
 };
 
 std::vector<Candidate> candidates(const geometry::Rectangle& wanted, const cv::Rect& whole, const Texture& texture) {
@@ -83,6 +101,7 @@ std::vector<Candidate> candidates(const geometry::Rectangle& wanted, const cv::R
         if (!(roi.x >= whole.x && roi.y >= whole.y && roi.x + roi.width <= whole.br().x &&
               roi.y + roi.height <= whole.br().y))
           continue;
+        if (texture.coveredIn(roi) > kMostCovered) continue;
         found.push_back({roi, std::hypot(right, down) + std::log2(scale), texture.in(roi)});
       }
     }
@@ -94,12 +113,12 @@ std::vector<Candidate> candidates(const geometry::Rectangle& wanted, const cv::R
 
 }  // namespace
 
-std::optional<geometry::Rectangle> proposeRegion(const cv::Mat& image, const geometry::Rectangle& wanted,
-                                                 const image::Lens* lens,
+std::optional<geometry::Rectangle> proposeRegion(const cv::Mat& image, const cv::Mat& covered,
+                                                 const geometry::Rectangle& wanted, const image::Lens* lens,
                                                  const std::function<bool(const geometry::Rectangle&)>& would_do) {
   const cv::Rect whole =
       lens != nullptr ? image::rectifiedBox(*lens, image.size()) : cv::Rect(cv::Point(0, 0), image.size());
-  const Texture texture(image, lens);
+  const Texture texture(image, covered, lens);
   double too_little = texture.in(wanted);
   int asked = 0;
   for (const Candidate& candidate : candidates(wanted, whole, texture)) {
@@ -124,9 +143,10 @@ std::optional<geometry::Rectangle> proposeRegion(const cv::Mat& image, const geo
   TrackerConfig clearly = config;
   clearly.min_texture *= kClearly;
   RegionAligner aligner(clearly, lens);
-  return proposeRegion(image, least, lens.get(), [&](const geometry::Rectangle& roi) {
+  const SelectionMask selectable(image, cv::Mat());
+  return proposeRegion(image, selectable.mask(), least, lens.get(), [&](const geometry::Rectangle& roi) {
     try {
-      takeReference(image, roi, cv::Mat(), clearly, lens.get(), aligner);
+      takeReference(image, roi, selectable, clearly, lens.get(), aligner);
       return true;
     } catch (const std::invalid_argument&) {
       return false;

@@ -10,7 +10,8 @@
 namespace laparoscope_servo::tracking {
 namespace {
 
-const geometry::Rectangle kRoi = {270, 190, 100, 100};
+const geometry::Rectangle kRoi = {290, 190, 100, 100};
+const geometry::Rectangle kBeside = {220, 200, 100, 100};
 constexpr double kPeriod = 0.04;  // s
 
 class RegionTrackerMask : public ::testing::Test {
@@ -61,6 +62,50 @@ TEST_F(RegionTrackerMask, SelectedUnderAShaftTheRegionIsTrackedWhenItLeaves) {
   }
 }
 
+// What the image of the selection itself shows of an instrument is left out without a mask, too.
+TEST_F(RegionTrackerMask, OfARegionPartlyUnderAShaftOnlyTheTissueIsUsed) {
+  const sim::RenderedImage first = render(0);
+  const cv::Rect box(static_cast<int>(kBeside.x), static_cast<int>(kBeside.y), static_cast<int>(kBeside.width),
+                     static_cast<int>(kBeside.height));
+  const double covered = cv::countNonZero(first.instrument_mask(box)) / (kBeside.width * kBeside.height);
+  ASSERT_GT(covered, 0.2);
+  ASSERT_LT(covered, 0.45);
+  EXPECT_NEAR(tracker_.select(first.image, 0.0, kBeside).visible_fraction, 1.0 - covered, 0.07);
+  for (int k = 1; k < 70; ++k) {
+    const TrackResult& result = tracker_.track(render(k).image, k * kPeriod);
+    ASSERT_EQ(result.state, State::kTracking) << k << ' ' << result.reason;
+    EXPECT_LT(geometry::cornerDistance(result.g, truth(k), kBeside), k < 40 ? 8.0 : 2.0) << k;
+  }
+}
+
+TEST_F(RegionTrackerMask, ARegionOnAShaftIsRefusedAndOneBesideItIsProposed) {
+  const sim::RenderedImage first = render(0);
+  const cv::Rect shaft = cv::boundingRect(first.instrument_mask);
+  // About the middle of what is seen of it.
+  const cv::Moments moments = cv::moments(first.instrument_mask, true);
+  const geometry::Rectangle roi = {std::floor(moments.m10 / moments.m00) - 20,
+                                   std::floor(moments.m01 / moments.m00) - 20, 40, 40};
+  ASSERT_GT(shaft.area(), 0);
+  const auto refusal = [&](const geometry::Rectangle& r) {
+    try {
+      tracker_.check(first.image, r);
+    } catch (const std::invalid_argument& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_NE(refusal(roi).find(" lies on an instrument by "), std::string::npos) << refusal(roi);
+  EXPECT_THROW(tracker_.select(first.image, 0.0, roi), std::invalid_argument);
+  EXPECT_THROW(tracker_.recall(first.image, 0.0, roi, 1.0), std::invalid_argument);
+  EXPECT_FALSE(tracker_.hasRoi());
+  const auto proposal = tracker_.propose(first.image, roi);
+  ASSERT_TRUE(proposal);
+  EXPECT_EQ(refusal(*proposal), "");
+  const cv::Rect box(static_cast<int>(proposal->x), static_cast<int>(proposal->y), static_cast<int>(proposal->width),
+                     static_cast<int>(proposal->height));
+  EXPECT_LT(cv::countNonZero(first.instrument_mask(box)), 0.1 * box.area());
+}
+
 TEST_F(RegionTrackerMask, AMaskOfNothingChangesNothing) {
   RegionTracker without{TrackerConfig()};
   const cv::Mat nothing = cv::Mat::zeros(480, 640, CV_8UC1);
@@ -81,7 +126,7 @@ TEST_F(RegionTrackerMask, WhatItCoversDoesNotDriveTheEstimate) {
   const cv::Mat image = camera_.render(pose(0), 0.0).image;
   tracker_.select(image, 0.0, kRoi);
   cv::Mat mask = cv::Mat::zeros(image.size(), CV_8UC1);
-  mask(cv::Rect(270, 190, 50, 100)).setTo(255);
+  mask(cv::Rect(290, 190, 50, 100)).setTo(255);
   const TrackResult& result = tracker_.track(image, kPeriod, std::nullopt, mask);
   EXPECT_EQ(result.state, State::kTracking);
   EXPECT_NEAR(result.visible_fraction, 0.5, 0.05);

@@ -87,6 +87,31 @@ TEST(CheckedRoi, WithALensIsInsideWhatTheLensShows) {
   EXPECT_NE(refusal({0, 0, 1e9, 1e9}, &lens), "");
 }
 
+TEST(CheckClearOfInstruments, RefusesWhatIsMostlyCoveredAndSaysByHowMuch) {
+  cv::Mat instruments = cv::Mat::zeros(kImage.size(), CV_8UC1);
+  instruments(cv::Rect(0, 0, 80, 120)).setTo(255);
+  EXPECT_NO_THROW(checkClearOfInstruments({70, 20, 40, 40}, instruments, nullptr));
+  EXPECT_NO_THROW(checkClearOfInstruments({100, 20, 40, 40}, instruments, nullptr));
+  EXPECT_NO_THROW(checkClearOfInstruments({10, 20, 40, 40}, cv::Mat(), nullptr));
+  try {
+    checkClearOfInstruments({50, 20, 40, 40}, instruments, nullptr);
+    FAIL() << "a region on an instrument was accepted";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_EQ(std::string(error.what()),
+              "ROI x=50 y=20 width=40 height=40 lies on an instrument by 75 %, expected at most 50 %");
+  }
+}
+
+// A barrel shows what lies at the border of the rectified image further inside: there the instrument has to be.
+TEST(CheckClearOfInstruments, WithALensTheRegionIsWhereItIsSeen) {
+  const image::Lens lens = barrel();
+  const geometry::Rectangle roi = {0, 40, 16, 40};
+  cv::Mat instruments = cv::Mat::zeros(kImage.size(), CV_8UC1);
+  instruments(image::seenBox(&lens, roi.corners(), 0.0)).setTo(255);
+  EXPECT_NO_THROW(checkClearOfInstruments(roi, instruments, nullptr));
+  EXPECT_THROW(checkClearOfInstruments(roi, instruments, &lens), std::invalid_argument);
+}
+
 TEST(CheckedCornerError, IsLargerTheLessTextureThereIs) {
   const geometry::Rectangle roi = {40, 30, 80, 80};
   const cv::Mat scene = test::tissue(cv::Size(160, 140), 5);

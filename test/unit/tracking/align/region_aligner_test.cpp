@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <opencv2/imgproc.hpp>
 
 #include "support/synthetic_tissue.h"
 
@@ -120,6 +121,33 @@ TEST_F(RegionAlignerTest, WhatStandsStillDoesNotHoldTheRestThatHasMovedFar) {
     const double u = geometry::apply(found.esm.state.g, Eigen::Vector2d(135.0, 135.0)).x();  // on the tissue
     EXPECT_NEAR(u, 135.0 + shift, 2.0);
     EXPECT_LT(found.blocks.off, 2.5);
+  }
+}
+
+// Reflections on wet tissue, of which each block of a large region holds one, move otherwise than the tissue does.
+// Smaller blocks tell, most of which hold none.
+TEST_F(RegionAlignerTest, OnALargeRegionReflectionsDoNotTakeTheBlocksWithThem) {
+  const cv::Size size(640, 600);
+  const geometry::Rectangle roi = {130, 110, 380, 360};
+  const cv::Mat tissue = cv::min(0.5 * test::tissue(size, 31) + cv::Scalar(40, 40, 60), 200);
+  const auto wet = [&](const cv::Point& by) {
+    cv::RNG places(5);
+    cv::Mat image = tissue.clone();
+    for (int y = 40; y < size.height; y += 88) {
+      for (int x = 40; x < size.width; x += 88) {
+        const cv::Point at(x + places.uniform(-16, 17), y + places.uniform(-16, 17));
+        cv::ellipse(image, at + by, {places.uniform(8, 14), places.uniform(6, 10)}, places.uniform(0, 180), 0, 360,
+                    cv::Scalar(225, 230, 240), cv::FILLED, cv::LINE_AA);
+      }
+    }
+    return image;
+  };
+  for (const cv::Point& by : {cv::Point(10, 6), cv::Point(-8, 10), cv::Point(14, -4)}) {
+    RegionAligner aligner(config_);
+    aligner.setReference(wet({0, 0}), roi);
+    const Alignment found = aligner.align(wet(by), EsmState(), nullptr, 32.0);
+    EXPECT_LT(geometry::cornerDistance(found.esm.state.g, Eigen::Matrix3d::Identity(), roi), 2.0) << by;
+    EXPECT_LT(found.blocks.off, 1.0) << by;
   }
 }
 

@@ -1,9 +1,9 @@
-#include "model/instrument/grey_map.h"
+#include "features/shafts/grey_map.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace laparoscope_servo::model {
+namespace laparoscope_servo::features {
 
 namespace {
 
@@ -57,4 +57,4 @@ void GreyMap::compute(const cv::Mat& image) {
   }
 }
 
-}  // namespace laparoscope_servo::model
+}  // namespace laparoscope_servo::features

@@ -1,9 +1,9 @@
-#include "model/instrument/shaft.h"
+#include "features/shafts/shaft.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace laparoscope_servo::model {
+namespace laparoscope_servo::features {
 
 namespace {
 
@@ -65,4 +65,4 @@ bool overlaps(const Shaft& a, const Shaft& b) {
   return std::max(inside(a, b), inside(b, a)) >= kSamples / 2;
 }
 
-}  // namespace laparoscope_servo::model
+}  // namespace laparoscope_servo::features

@@ -5,7 +5,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-namespace laparoscope_servo::model {
+namespace laparoscope_servo::features {
 
 class GreyMap {
  public:
@@ -38,4 +38,4 @@ class GreyMap {
   std::vector<float> blue_, green_, red_;  // means of a row of cells
 };
 
-}  // namespace laparoscope_servo::model
+}  // namespace laparoscope_servo::features

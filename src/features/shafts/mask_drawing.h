@@ -8,7 +8,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-namespace laparoscope_servo::model {
+namespace laparoscope_servo::features {
 
 // Sets the pixels of a convex quadrangle to 255; corners in order, px, may lie anywhere. Returns what encloses them in
 // the mask.
@@ -24,4 +24,4 @@ class MaskGrowth {
   std::vector<std::uint8_t> distances_;  // of each pixel from the nearest one of its row that is set
 };
 
-}  // namespace laparoscope_servo::model
+}  // namespace laparoscope_servo::features

@@ -5,13 +5,13 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "features/shafts/grey_levels.h"
+#include "features/shafts/grey_lines.h"
+#include "features/shafts/grey_map.h"
+#include "features/shafts/shaft.h"
 #include "laparoscope_servo/image/field_of_view.h"
-#include "model/instrument/grey_levels.h"
-#include "model/instrument/grey_lines.h"
-#include "model/instrument/grey_map.h"
-#include "model/instrument/shaft.h"
 
-namespace laparoscope_servo::model {
+namespace laparoscope_servo::features {
 
 class ShaftFinder {
  public:
@@ -40,4 +40,4 @@ class ShaftFinder {
   std::vector<std::size_t> order_;  // of the candidates, best first
 };
 
-}  // namespace laparoscope_servo::model
+}  // namespace laparoscope_servo::features

@@ -1,9 +1,9 @@
-#include "model/instrument/grey_levels.h"
+#include "features/shafts/grey_levels.h"
 
 #include <algorithm>
 #include <array>
 
-namespace laparoscope_servo::model {
+namespace laparoscope_servo::features {
 
 namespace {
 
@@ -57,4 +57,4 @@ GreyLevels greyLevels(const GreyMap& map, const image::FieldOfView& view) {
   return levels;
 }
 
-}  // namespace laparoscope_servo::model
+}  // namespace laparoscope_servo::features

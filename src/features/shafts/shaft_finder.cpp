@@ -1,10 +1,10 @@
-#include "model/instrument/shaft_finder.h"
+#include "features/shafts/shaft_finder.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-namespace laparoscope_servo::model {
+namespace laparoscope_servo::features {
 
 namespace {
 
@@ -215,4 +215,4 @@ const std::vector<Shaft>& ShaftFinder::find(const GreyMap& map, const image::Fie
   return shafts_;
 }
 
-}  // namespace laparoscope_servo::model
+}  // namespace laparoscope_servo::features

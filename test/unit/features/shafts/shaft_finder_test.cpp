@@ -1,14 +1,14 @@
-#include "model/instrument/shaft_finder.h"
+#include "features/shafts/shaft_finder.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "model/instrument/silhouette.h"
+#include "features/shafts/silhouette.h"
 #include "support/synthetic_instrument.h"
 
-namespace laparoscope_servo::model {
+namespace laparoscope_servo::features {
 namespace {
 
 using test_support::drawShaft;
@@ -157,4 +157,4 @@ TEST(Silhouette, CoversTheShaftAndFindsItsTip) {
 }
 
 }  // namespace
-}  // namespace laparoscope_servo::model
+}  // namespace laparoscope_servo::features

@@ -1,10 +1,10 @@
-#include "model/instrument/grey_lines.h"
+#include "features/shafts/grey_lines.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
-namespace laparoscope_servo::model {
+namespace laparoscope_servo::features {
 
 namespace {
 
@@ -171,4 +171,4 @@ const std::vector<GreyLine>& GreyLines::find(const GreyMap& map, const image::Fi
   return lines_;
 }
 
-}  // namespace laparoscope_servo::model
+}  // namespace laparoscope_servo::features

@@ -6,12 +6,12 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "features/shafts/grey_map.h"
+#include "features/shafts/mask_drawing.h"
+#include "features/shafts/shaft_finder.h"
 #include "laparoscope_servo/image/field_of_view.h"
-#include "model/instrument/grey_map.h"
-#include "model/instrument/mask_drawing.h"
-#include "model/instrument/shaft_finder.h"
 
-namespace laparoscope_servo::model {
+namespace laparoscope_servo::features {
 
 class Silhouette {
  public:
@@ -47,4 +47,4 @@ class Silhouette {
   MaskGrowth growth_;
 };
 
-}  // namespace laparoscope_servo::model
+}  // namespace laparoscope_servo::features

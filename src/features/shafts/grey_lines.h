@@ -7,10 +7,10 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "features/shafts/grey_map.h"
 #include "laparoscope_servo/image/field_of_view.h"
-#include "model/instrument/grey_map.h"
 
-namespace laparoscope_servo::model {
+namespace laparoscope_servo::features {
 
 // Cells. The normal points from what is grey to what is not; the direction is the normal turned by 90 degrees:
 // (-normal.y, normal.x).
@@ -61,4 +61,4 @@ class GreyLines {
   std::vector<GreyLine> lines_;
 };
 
-}  // namespace laparoscope_servo::model
+}  // namespace laparoscope_servo::features

@@ -4,10 +4,10 @@
 #include <Eigen/Core>
 #include <array>
 
+#include "features/shafts/grey_lines.h"
 #include "laparoscope_servo/image/field_of_view.h"
-#include "model/instrument/grey_lines.h"
 
-namespace laparoscope_servo::model {
+namespace laparoscope_servo::features {
 
 // Cells. Edge 0 is on the right of who looks from the entry to the tip, y being downwards: its normal, which points
 // away from the shaft, is nearly the axis (x, y) turned to (-y, x). Edge 1 is on the left; its direction is nearly the
@@ -37,4 +37,4 @@ bool isSame(const Shaft& a, const Shaft& b);
 // Whether much of the shorter one's axis lies in the other one.
 bool overlaps(const Shaft& a, const Shaft& b);
 
-}  // namespace laparoscope_servo::model
+}  // namespace laparoscope_servo::features

@@ -1,10 +1,10 @@
 // What counts as grey in a picture: lamp, white balance and tissue differ, so each picture tells.
 #pragma once
 
+#include "features/shafts/grey_map.h"
 #include "laparoscope_servo/image/field_of_view.h"
-#include "model/instrument/grey_map.h"
 
-namespace laparoscope_servo::model {
+namespace laparoscope_servo::features {
 
 struct GreyLevels {
   double threshold = 0.0;  // as GreyMap::colour: below it is grey
@@ -13,4 +13,4 @@ struct GreyLevels {
 
 GreyLevels greyLevels(const GreyMap& map, const image::FieldOfView& view);
 
-}  // namespace laparoscope_servo::model
+}  // namespace laparoscope_servo::features

@@ -1,11 +1,11 @@
-#include "model/instrument/mask_drawing.h"
+#include "features/shafts/mask_drawing.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
-namespace laparoscope_servo::model {
+namespace laparoscope_servo::features {
 namespace {
 
 using Corners = std::array<Eigen::Vector2d, 4>;
@@ -90,4 +90,4 @@ TEST(MaskGrowth, OfAnEmptyBoxIsNothing) {
 }
 
 }  // namespace
-}  // namespace laparoscope_servo::model
+}  // namespace laparoscope_servo::features

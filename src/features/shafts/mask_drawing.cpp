@@ -1,4 +1,4 @@
-#include "model/instrument/mask_drawing.h"
+#include "features/shafts/mask_drawing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include "laparoscope_servo/image/multiversion.h"
 
-namespace laparoscope_servo::model {
+namespace laparoscope_servo::features {
 
 namespace {
 
@@ -93,4 +93,4 @@ void MaskGrowth::add(const cv::Mat1b& source, const cv::Rect& box, int radius, c
   }
 }
 
-}  // namespace laparoscope_servo::model
+}  // namespace laparoscope_servo::features

@@ -1,10 +1,10 @@
-#include "model/instrument/silhouette.h"
+#include "features/shafts/silhouette.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-namespace laparoscope_servo::model {
+namespace laparoscope_servo::features {
 
 namespace {
 
@@ -208,4 +208,4 @@ bool Silhouette::isNear(const cv::Point& cell, const cv::Rect& box) const {
   return false;
 }
 
-}  // namespace laparoscope_servo::model
+}  // namespace laparoscope_servo::features
