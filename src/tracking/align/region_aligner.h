@@ -12,6 +12,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <memory>
 #include <opencv2/core.hpp>
 
@@ -39,6 +40,7 @@ struct Alignment {
   // followed it.
   double corner_error = 0.0;
   double centre_error = 0.0;
+  double work = 0.0;  // what it took, in iterations on the finest level: see EsmResult::work
 };
 
 struct ReferenceTexture {
@@ -58,8 +60,9 @@ class RegionAligner {
   void setReference(const cv::Mat& image, const geometry::Rectangle& roi);
 
   // Aligns from `start`. `reach` [px]: how far a corner may be from there without leaving the crop of the image that is
-  // used.
-  Alignment align(const cv::Mat& image, const EsmState& start, const MotionPrior* prior, double reach);
+  // used. Rounds that only refine the estimate, in steps 3 and 4, are left out once `most_work` was done.
+  Alignment align(const cv::Mat& image, const EsmState& start, const MotionPrior* prior, double reach,
+                  double most_work = std::numeric_limits<double>::infinity());
 
   // See RegionTracker::retune.
   void retune(const TrackerConfig& config) { gates_.setThreshold(config.occlusion.threshold); }
@@ -117,6 +120,7 @@ class RegionAligner {
   image::ColourPatch covered_;                           // the mask, as the patch is sampled
   Eigen::Matrix3d shown_ = Eigen::Matrix3d::Identity();  // the homography at which the colour gate was last evaluated
   double noise_ = 0.0;                                   // grey levels, noise of the reference image
+  double tracked_noise_ = 0.0;                           // MotionPrior::noise of the last alignment that had a prior
   double surprise_ = 0.0;  // px, distance of the worst corner from the prediction in the last image
 };
 
