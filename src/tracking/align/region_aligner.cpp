@@ -30,7 +30,7 @@ constexpr double kMostMissing = 0.5;  // share of the blocks that are found, fro
 constexpr double kBlockVisible = 0.8;  // share of a visible block's pixels that have weight
 constexpr double kGateShift =
     2.0;  // lengthUnit()s of the image: masks drawn further from the estimate than this are drawn again
-// What takes as long as so many iterations on the finest level. Measured on regions of 75,000 and 170,000 px.
+// What takes as long as so many iterations on the finest level. From a profile of a region of 75,000 px.
 constexpr double kWorkOfLook = 1.5;        // the colour gate
 constexpr double kWorkOfStructure = 0.25;  // the structure gate
 constexpr double kWorkBeside = 3.0;        // pyramid and block matching
@@ -139,9 +139,7 @@ int RegionAligner::observeStructure(const EsmResult& estimate) {
   return gates_.observeStructure(pairs.data(), count, level.valid, estimate.state.gain, estimate.sigma);
 }
 
-// A search knows nothing of the motion, but what residuals of this tissue are worth: what they do not determine is not
-// iterated on there either.
-Alignment RegionAligner::align(const cv::Mat& image, const EsmState& start, const MotionPrior* known, double reach,
+Alignment RegionAligner::align(const cv::Mat& image, const EsmState& start, const MotionPrior* prior, double reach,
                                double most_work) {
   Alignment result;
   result.esm.state = start;
@@ -151,13 +149,8 @@ Alignment RegionAligner::align(const cv::Mat& image, const EsmState& start, cons
   result.in_image = !(box & cv::Rect(cv::Point(0, 0), image.size())).empty();
   if (!result.in_image) return result;
   pyramid_.build(image, box, config_.levels, channels_, finest_);
-  MotionPrior nothing;
-  nothing.predicted = start.g;
-  nothing.noise = tracked_noise_;
-  const MotionPrior* const prior = known != nullptr ? known : &nothing;
-  tracked_noise_ = prior->noise;
   // Where the prediction was off, so are masks that are drawn there; those of the image before move with the region.
-  bool looked = known == nullptr || surprise_ <= kGateShift * lengthUnit(roi());
+  bool looked = prior == nullptr || surprise_ <= kGateShift * lengthUnit(roi());
   if (looked) look(image, start.g);
   result.esm = esm_.align(pyramid_, start, prior, esm_.levels() - 1, 1);
   int iterations = result.esm.iterations;

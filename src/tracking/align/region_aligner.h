@@ -120,7 +120,6 @@ class RegionAligner {
   image::ColourPatch covered_;                           // the mask, as the patch is sampled
   Eigen::Matrix3d shown_ = Eigen::Matrix3d::Identity();  // the homography at which the colour gate was last evaluated
   double noise_ = 0.0;                                   // grey levels, noise of the reference image
-  double tracked_noise_ = 0.0;                           // MotionPrior::noise of the last alignment that had a prior
   double surprise_ = 0.0;  // px, distance of the worst corner from the prediction in the last image
 };
 

@@ -13,7 +13,7 @@ namespace laparoscope_servo::tracking {
 
 namespace {
 
-constexpr double kUsualWork = 40.0;     // that suffices for nine of ten successful alignments
+constexpr double kUsualWork = 40.0;     // see Alignment::work; that suffices for most alignments that succeed
 constexpr std::size_t kCandidates = 2;  // places that are tried from each stage of the search
 constexpr double kSlidingScale = 4.0;   // px of the image per px of the coarse image of the template search, about
 // Least correlation of a start that is worth an alignment. Of 4,800 alignments on eight films, one in 3,200 of those

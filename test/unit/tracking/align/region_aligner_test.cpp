@@ -123,29 +123,6 @@ TEST_F(RegionAlignerTest, WhatStandsStillDoesNotHoldTheRestThatHasMovedFar) {
   }
 }
 
-// The noise that a prior tells of is that of the tissue, in a search, too.
-TEST_F(RegionAlignerTest, ASearchDoesNotIterateOnWhatErrorsInCommonDoNotDetermine) {
-  cv::Mat1f u(kSize), v(kSize);
-  for (int j = 0; j < kSize.height; ++j) {
-    for (int i = 0; i < kSize.width; ++i) {
-      u(j, i) = static_cast<float>(i + 1.0 + 2.0 * std::sin(j / 14.0));
-      v(j, i) = static_cast<float>(j - 0.5 + 2.0 * std::sin(i / 17.0));
-    }
-  }
-  cv::Mat bent;
-  cv::remap(scene_, bent, u, v, cv::INTER_CUBIC, cv::BORDER_REFLECT);
-  RegionAligner aligner = alignerOn(scene_);
-  const Alignment all = aligner.align(bent, EsmState(), nullptr, 32.0);
-  MotionPrior prior;
-  prior.noise = 1e4;
-  aligner.align(scene_, EsmState(), &prior, 12.0);
-  aligner.startAfresh();
-  const Alignment few = aligner.align(bent, EsmState(), nullptr, 32.0);
-  EXPECT_LT(few.esm.iterations, all.esm.iterations);
-  EXPECT_EQ(few.esm.status, EsmStatus::kConverged);
-  EXPECT_LT(geometry::cornerDistance(few.esm.state.g, all.esm.state.g, kRoi), 1.0);
-}
-
 TEST_F(RegionAlignerTest, LeavesOutRoundsThatOnlyRefineOnceTheWorkIsDone) {
   cv::Mat image = scene_.clone();
   scene_(cv::Rect(10, 10, 60, 110)).copyTo(image(cv::Rect(100, 80, 60, 110)));  // tissue from elsewhere
