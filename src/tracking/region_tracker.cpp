@@ -263,7 +263,7 @@ Attempt RegionTracker::Implementation::attempt(const cv::Mat& image, double stam
   const geometry::Rectangle& roi = aligner_.roi();
   const double reach = prior != nullptr ? std::max(kLeastReach * lengthUnit(roi), kReach * record_.innovation())
                                         : std::max(32.0, kSearchReach * std::max(roi.width, roi.height));
-  const Alignment found = aligner_.align(image, start, prior, reach, search_.workOfAnImage());
+  const Alignment found = aligner_.align(image, start, prior, reach);
   Attempt result;
   Evidence& e = result.evidence;
   e.roi = roi;
@@ -282,7 +282,6 @@ Attempt RegionTracker::Implementation::attempt(const cv::Mat& image, double stam
   e.corner_error = found.corner_error;
   e.centre_error = found.centre_error;
   e.unproven = stamp - proven_stamp_;
-  result.work = found.work;
   result.doubt = found.in_image ? doubt(e, config_.quality) : "the ROI is outside the image";
   return result;
 }

@@ -30,11 +30,7 @@ constexpr double kMostMissing = 0.5;  // share of the blocks that are found, fro
 constexpr double kBlockVisible = 0.8;  // share of a visible block's pixels that have weight
 constexpr double kGateShift =
     2.0;  // lengthUnit()s of the image: masks drawn further from the estimate than this are drawn again
-// What takes as long as so many iterations on the finest level. From a profile of a region of 75,000 px.
-constexpr double kWorkOfLook = 1.5;        // the colour gate
-constexpr double kWorkOfStructure = 0.25;  // the structure gate
-constexpr double kWorkBeside = 3.0;        // pyramid and block matching
-constexpr double kBorder = 4.0;            // px of the coarsest level, of what smoothing takes in from beyond the ROI
+constexpr double kBorder = 4.0;  // px of the coarsest level, of what smoothing takes in from beyond the ROI
 
 // The channel that is tracked first, before any smoothing. `image`: CV_8UC1 or CV_8UC3.
 cv::Mat1f mixed(const cv::Mat& image, const image::ChannelWeights& weights) {
@@ -139,8 +135,7 @@ int RegionAligner::observeStructure(const EsmResult& estimate) {
   return gates_.observeStructure(pairs.data(), count, level.valid, estimate.state.gain, estimate.sigma);
 }
 
-Alignment RegionAligner::align(const cv::Mat& image, const EsmState& start, const MotionPrior* prior, double reach,
-                               double most_work) {
+Alignment RegionAligner::align(const cv::Mat& image, const EsmState& start, const MotionPrior* prior, double reach) {
   Alignment result;
   result.esm.state = start;
   result.esm.status = EsmStatus::kOutOfView;
@@ -154,24 +149,20 @@ Alignment RegionAligner::align(const cv::Mat& image, const EsmState& start, cons
   if (looked) look(image, start.g);
   result.esm = esm_.align(pyramid_, start, prior, esm_.levels() - 1, 1);
   int iterations = result.esm.iterations;
-  result.work = kWorkBeside + kWorkOfLook + result.esm.work;
   const auto refine = [&] {
     result.esm = esm_.align(pyramid_, result.esm.state, prior, 0);
     iterations += result.esm.iterations;
-    result.work += result.esm.work;
   };
   for (int k = 0; k < 2 && usable(result.esm); ++k) {
     const bool outdated =
         !looked || geometry::cornerDistance(shown_, result.esm.state.g, roi()) > kGateShift * lengthUnit(roi());
-    if (k > 0 && (!outdated || result.work >= most_work)) break;
+    if (k > 0 && !outdated) break;
     if (outdated) look(image, result.esm.state.g);
-    if (outdated) result.work += kWorkOfLook;
     looked = true;
     refine();
   }
   for (int round = 0; round < kMaxStructureRounds && usable(result.esm); ++round) {
-    result.work += kWorkOfStructure;
-    if (observeStructure(result.esm) == 0 || result.work >= most_work) break;
+    if (observeStructure(result.esm) == 0) break;
     esm_.setWeights(weights());
     refine();
   }

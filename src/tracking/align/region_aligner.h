@@ -12,7 +12,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <limits>
 #include <memory>
 #include <opencv2/core.hpp>
 
@@ -40,7 +39,6 @@ struct Alignment {
   // followed it.
   double corner_error = 0.0;
   double centre_error = 0.0;
-  double work = 0.0;  // what it took, in iterations on the finest level: see EsmResult::work
 };
 
 struct ReferenceTexture {
@@ -60,9 +58,8 @@ class RegionAligner {
   void setReference(const cv::Mat& image, const geometry::Rectangle& roi);
 
   // Aligns from `start`. `reach` [px]: how far a corner may be from there without leaving the crop of the image that is
-  // used. Rounds that only refine the estimate, in steps 3 and 4, are left out once `most_work` was done.
-  Alignment align(const cv::Mat& image, const EsmState& start, const MotionPrior* prior, double reach,
-                  double most_work = std::numeric_limits<double>::infinity());
+  // used.
+  Alignment align(const cv::Mat& image, const EsmState& start, const MotionPrior* prior, double reach);
 
   // See RegionTracker::retune.
   void retune(const TrackerConfig& config) { gates_.setThreshold(config.occlusion.threshold); }

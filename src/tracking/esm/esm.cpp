@@ -225,7 +225,6 @@ EsmStatus Esm::iterate(const image::RegionPyramid& current, int l, const MotionP
   result.sigma = residual_scale_.of(level, result.state.gain);
   equations_.sum(level, roi_, light_, result.state.gain, rejection(result.sigma));
   ++result.iterations;
-  result.work += std::pow(0.25, l);
   if (!solve(level, prior, how.shift_only, result)) return EsmStatus::kIllConditioned;
   return EsmStatus::kMaxIterations;
 }

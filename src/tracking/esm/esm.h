@@ -55,8 +55,7 @@ struct EsmResult {
   EsmState state;
   EsmStatus status = EsmStatus::kMaxIterations;
   int iterations = 0;
-  double work = 0.0;       // iterations, one on level l as 1 / 4^l of one: they take time as they have pixels
-  double last_step = 0.0;  // px, how far a corner moved in the last iteration
+  double last_step = 0.0;             // px, how far a corner moved in the last iteration
   double last_step_deviations = 0.0;  // last_step in standard deviations of the estimate, root mean square
   double sigma = 0.0;                 // grey levels, robust standard deviation of the residual at the finest level used
   // Covariance of the estimate's error x (see MotionPrior), from residuals and prior. Undefined if corner_error is

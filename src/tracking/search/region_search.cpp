@@ -13,7 +13,7 @@ namespace laparoscope_servo::tracking {
 
 namespace {
 
-constexpr double kUsualWork = 40.0;     // see Alignment::work; that suffices for most alignments that succeed
+constexpr int kUsualIterations = 40;    // iterations that suffice for nine of ten successful alignments
 constexpr std::size_t kCandidates = 2;  // places that are tried from each stage of the search
 constexpr double kSlidingScale = 4.0;   // px of the image per px of the coarse image of the template search, about
 // Least correlation of a start that is worth an alignment. Of 4,800 alignments on eight films, one in 3,200 of those
@@ -132,7 +132,7 @@ std::optional<SearchPlace> RegionSearch::nextSuggested(const cv::Mat& image) {
       }
       place.start.g = checked.g;
     }
-    if (!budget_.pay(alignmentCost(kUsualWork))) return std::nullopt;
+    if (!budget_.pay(alignmentCost(kUsualIterations))) return std::nullopt;
     suggested_.pop_front();
     tried_ = place.by;
     return place;
@@ -140,15 +140,16 @@ std::optional<SearchPlace> RegionSearch::nextSuggested(const cv::Mat& image) {
   return std::nullopt;
 }
 
-double RegionSearch::alignmentCost(double work) const {
+double RegionSearch::alignmentCost(int iterations) const {
   const geometry::Rectangle& roi = keyframes_.roi();
   const double scale = finestScale(roi);
-  return roi.width * roi.height / (scale * scale) * work * nominal_cost::kPixelIterated;
+  return roi.width * roi.height / (scale * scale) *
+         (nominal_cost::kPixelLookedAt + iterations * nominal_cost::kPixelIterated);
 }
 
 bool RegionSearch::judge(const Attempt& attempt, const RegionAligner& aligner) {
-  // The actual work is known now.
-  budget_.charge(alignmentCost(attempt.work - kUsualWork));
+  // The actual number of iterations is known now.
+  budget_.charge(alignmentCost(attempt.evidence.esm.iterations) - alignmentCost(kUsualIterations));
   Attempt tried = attempt;
   if (tried.doubt.empty()) tried.doubt = doubtOf(tried, aligner);
   const bool found = tried.doubt.empty();

@@ -26,7 +26,6 @@ namespace laparoscope_servo::tracking {
 struct Attempt {
   Evidence evidence;
   std::string doubt;
-  double work = 0.0;  // see Alignment
 };
 
 // The source of a suggested place.
@@ -58,9 +57,6 @@ class RegionSearch {
   // See RegionTracker::retune.
   void retune(const TrackerConfig& config);
 
-  // What the budget of an image allows an alignment, as Alignment::work.
-  double workOfAnImage() const { return config_.search.budget / alignmentCost(1.0); }
-
   // Starts the search, when the ROI has been lost.
   void restart();
 
@@ -87,7 +83,7 @@ class RegionSearch {
   std::optional<SearchPlace> nextSuggested(const cv::Mat& image);
   bool work(const cv::Mat& image, const RegionAligner& aligner);
   void suggest(const Eigen::Matrix3d& g, Suggestion by);
-  double alignmentCost(double work) const;
+  double alignmentCost(int iterations) const;
   double slideCost() const;
   void slide(const RegionAligner& aligner);
 

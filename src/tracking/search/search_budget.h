@@ -17,7 +17,8 @@ constexpr double kPairCompared = 25e-9;    // a point of the image with one of a
 constexpr double kMotionFitted = 1e-3;     // RANSAC, for one view
 constexpr double kPixelSlidOver = 60e-9;   // of the coarse image of the template search
 constexpr double kStartChecked = 0.6e-3;   // see StartCheck
-constexpr double kPixelIterated = 5e-9;    // of the finest level, for an iteration there: see Alignment::work
+constexpr double kPixelLookedAt = 60e-9;   // of the finest level, by an alignment before its first iteration
+constexpr double kPixelIterated = 5e-9;    // of the finest level, for an iteration, with the coarse levels
 
 }  // namespace nominal_cost
 

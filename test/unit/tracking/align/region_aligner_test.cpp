@@ -123,20 +123,6 @@ TEST_F(RegionAlignerTest, WhatStandsStillDoesNotHoldTheRestThatHasMovedFar) {
   }
 }
 
-TEST_F(RegionAlignerTest, LeavesOutRoundsThatOnlyRefineOnceTheWorkIsDone) {
-  cv::Mat image = scene_.clone();
-  scene_(cv::Rect(10, 10, 60, 110)).copyTo(image(cv::Rect(100, 80, 60, 110)));  // tissue from elsewhere
-  EsmState start;
-  start.g.topRightCorner<2, 1>() << 6.0, -4.0;
-  RegionAligner all = alignerOn(scene_), some = alignerOn(scene_);
-  const Alignment whole = all.align(image, start, nullptr, 32.0);
-  const Alignment part = some.align(image, start, nullptr, 32.0, 0.0);
-  EXPECT_LT(part.work, whole.work - 1.0);
-  EXPECT_GT(part.work, 3.0);
-  EXPECT_GT(part.zncc, 0.5);
-  EXPECT_LT(geometry::cornerDistance(part.esm.state.g, Eigen::Matrix3d::Identity(), kRoi), 3.0);
-}
-
 TEST(FinestScale, IsTheLeastThatLeavesFewEnoughPixels) {
   EXPECT_EQ(finestScale({0, 0, 220, 340}), 1);
   EXPECT_EQ(finestScale({0, 0, 400, 500}), 1);

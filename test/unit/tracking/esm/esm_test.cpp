@@ -209,19 +209,6 @@ TEST_F(EsmTest, PredictsItsOwnError) {
   EXPECT_TRUE(std::isfinite(esm.referenceCornerError(2.0)));
 }
 
-TEST_F(EsmTest, CountsIterationsByTheirPixels) {
-  Eigen::Matrix3d shift = Eigen::Matrix3d::Identity();
-  shift(0, 2) = 5.0;
-  const image::RegionPyramid pyramid = pyramidOf(test::view(scene_, shift));
-  Esm esm = esmFor(EsmConfig());
-  const EsmResult coarse = esm.align(pyramid, EsmState(), nullptr, 2, 1);
-  EXPECT_GT(coarse.work, coarse.iterations / 16.0);
-  EXPECT_LT(coarse.work, coarse.iterations / 4.0);
-  const EsmResult fine = esm.align(pyramid, coarse.state, nullptr, 0);
-  EXPECT_GT(fine.iterations, 0);
-  EXPECT_EQ(fine.work, fine.iterations);
-}
-
 TEST_F(EsmTest, LevelsThatWouldBeTooSmallAreLeftOut) {
   EsmConfig config;
   config.levels = 6;

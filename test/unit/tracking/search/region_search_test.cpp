@@ -46,9 +46,7 @@ class RegionSearchTest : public ::testing::Test {
     while (const auto place = s.search.next(image, s.aligner)) {
       tried_.push_back(*place);
       Attempt attempt;
-      const Alignment found = s.aligner.align(image, place->start, nullptr, 32.0, s.search.workOfAnImage());
-      attempt.evidence.esm = found.esm;
-      attempt.work = found.work;
+      attempt.evidence.esm = s.aligner.align(image, place->start, nullptr, 32.0).esm;
       attempt.evidence.zncc = 0.1 * static_cast<double>(tried_.size() % 3);  // the second is the best
       if (!(geometry::cornerDistance(attempt.evidence.esm.state.g, truth_, kRoi) < 1.0)) attempt.doubt = "elsewhere";
       if (s.search.judge(attempt, s.aligner)) break;
