@@ -15,8 +15,8 @@ constexpr int kSets = 8;  // sets of channels, as bits: blue 1, green 2, red 4
 // px, side of the square around a clipped pixel that smoothing and differentiation spoil
 constexpr int kSpoiled = 5;
 constexpr double kBrighter = 1.5;  // factor of brightness of a lamp that comes nearer
-// Share of the largest energy that a set may fall to in the present light; an estimate's error goes with its root.
-constexpr double kLeastShare = 0.75;
+// share of the largest energy that counts as nearly as strong; the error of an estimate goes with its root
+constexpr double kNearly = 0.95;
 
 // For each set of channels: the energy, sum grad_c grad_d, of the pixels where exactly these channels clip.
 using Energies = std::array<Eigen::Matrix3d, kSets>;
@@ -90,9 +90,8 @@ Principal principalOf(const Eigen::Matrix3d& energy, int set) {
   return principal;
 }
 
-// Takes the set whose mixture has the largest product of its energies in the present light and in brighter light, so
-// that a share that is given up now is a larger share then. The weights are scaled so that their magnitudes sum to one,
-// which keeps the range of grey levels.
+// Among the sets whose mixture has nearly the most energy in the present light, takes the one with the most energy in
+// brighter light. The weights are scaled so that their magnitudes sum to one, which keeps the range of grey levels.
 image::Channels strongestMixture(const cv::Mat& patch, int saturation) {
   const Gradients gradients = gradientsOf(patch);
   const Energies as_it_is = energiesOf(gradients, clippedSets(patch, saturation));
@@ -106,12 +105,12 @@ image::Channels strongestMixture(const cv::Mat& patch, int saturation) {
     most = std::max(most, now[set].energy);
   }
   int best = 0;
-  double most_of_both = -1.0;
+  double most_then = -1.0;
   for (int set = 1; set < kSets; ++set) {
-    const double both = now[set].energy * principalOf(energyOf(brighter, set), set).energy;
-    if (now[set].energy < kLeastShare * most || both < most_of_both) continue;
+    const double then = principalOf(energyOf(brighter, set), set).energy;
+    if (now[set].energy < kNearly * most || then < most_then) continue;
     best = set;
-    most_of_both = both;
+    most_then = then;
   }
   const double magnitude = now[best].axis.cwiseAbs().sum();
   if (!(magnitude > 0.0)) return image::kLuma;

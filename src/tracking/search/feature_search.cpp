@@ -32,6 +32,25 @@ void append(const features::DescribedPoints& more, const Keep& keep, features::D
   }
 }
 
+// The k-th of `strips` upright strips of an image.
+cv::Rect strip(const cv::Size& size, int k, int strips) {
+  const int first = size.width * k / strips;
+  return {first, 0, size.width * (k + 1) / strips - first, size.height};
+}
+
+// Appends the points of a part of the image where `usable` is not 0, see append(); `keep` gets points of the image.
+template <typename Keep>
+void drawPointsOf(const cv::Mat1b& image, const cv::Mat1b& usable, const cv::Rect& own, int count, const Keep& keep,
+                  features::DescribedPoints& all) {
+  const cv::Rect seen =
+      cv::Rect(own.x - kOverlap, own.y, own.width + 2 * kOverlap, own.height) & cv::Rect(cv::Point(0, 0), image.size());
+  cv::Mat1b wanted = cv::Mat1b::zeros(seen.size());
+  usable(own).copyTo(wanted(own - seen.tl()));
+  append(
+      features::drawPoints(image(seen), wanted, count),
+      [&](const cv::Point2f& p) { return keep(p + cv::Point2f(seen.tl())); }, all);
+}
+
 // Takes a raw point to a rectified one; empty if the lens cannot show such a point.
 std::optional<cv::Point2f> rectified(const image::Lens* lens, const cv::Point2f& point) {
   if (lens == nullptr) return point;
@@ -68,29 +87,32 @@ void FeatureSearch::begin(const CoarseImage& image, const image::ChannelWeights&
   coarse_ = image;
   if (keyframes.count() == 0 || coarse_.grey.empty()) return;
   const double cost = costOfPoints(static_cast<double>(coarse_.grey.total()), config_.max_features);
-  const int most = std::max(1, coarse_.grey.cols / (4 * kOverlap));
-  strips_ = std::clamp(static_cast<int>(std::ceil(cost / (kStripShare * config_.budget))), 1, most);
+  strips_ = stripsOf(coarse_.grey.size(), cost, kStripShare * config_.budget);
   const int others = keyframes.count() - 1 - (keyframes.hasRecent() ? 1 : 0);
   if (others > 0) asked_.push_back(1 + turn_++ % others);
   if (keyframes.hasRecent()) asked_.push_back(keyframes.count() - 1);
   asked_.push_back(0);
 }
 
-cv::Rect FeatureSearch::strip(int k) const {
-  const int first = coarse_.grey.cols * k / strips_;
-  const int end = coarse_.grey.cols * (k + 1) / strips_;
-  return {first, 0, end - first, coarse_.grey.rows};
+// How many strips make each cost `most_cost` at most, as far as they are clearly wider than their overlap.
+int FeatureSearch::stripsOf(const cv::Size& size, double cost, double most_cost) const {
+  return std::clamp(static_cast<int>(std::ceil(cost / most_cost)), 1, std::max(1, size.width / (4 * kOverlap)));
+}
+
+int FeatureSearch::stripsOf(const Keyframe& keyframe) const {
+  const cv::Size size = coarseSize(keyframe);
+  return stripsOf(size, costOfPoints(size.area(), config_.max_features / 2), config_.budget);
 }
 
 double FeatureSearch::nextCost(const Keyframes& keyframes) const {
   if (strip_ < strips_) {
-    const cv::Rect part = strip(strip_);
+    const cv::Rect part = strip(coarse_.grey.size(), strip_, strips_);
     return costOfPoints((part.width + 2.0 * kOverlap) * part.height, config_.max_features / strips_);
   }
   const Keyframe& keyframe = keyframes.at(asked_.back());
   if (!keyframe.described) {
-    return costOfPoints(static_cast<double>(keyframe.crop.total()) / coarse_.scale / coarse_.scale,
-                        config_.max_features / 2);
+    const int strips = stripsOf(keyframe);
+    return costOfPoints(coarseSize(keyframe).area(), config_.max_features / 2) / strips;
   }
   const double pairs = static_cast<double>(keyframe.features.points.size()) * static_cast<double>(seen_.points.size());
   return pairs * nominal_cost::kPairCompared + nominal_cost::kMotionFitted;
@@ -106,17 +128,11 @@ void FeatureSearch::work(Keyframes& keyframes) {
 
 // Each strip gets its share of the points, so that an instrument does not take all of them.
 void FeatureSearch::drawStrip() {
-  const cv::Rect own = strip(strip_++);
+  const cv::Rect own = strip(coarse_.grey.size(), strip_++, strips_);
   if (own.empty()) return;
-  const cv::Rect seen = cv::Rect(own.x - kOverlap, own.y, own.width + 2 * kOverlap, own.height) &
-                        cv::Rect(cv::Point(0, 0), coarse_.grey.size());
-  cv::Mat1b wanted = cv::Mat1b::zeros(seen.size());
-  coarse_.usable(own).copyTo(wanted(own - seen.tl()));
-  const features::DescribedPoints drawn =
-      features::drawPoints(coarse_.grey(seen), wanted, config_.max_features / strips_);
-  append(
-      drawn, [&](const cv::Point2f& p) { return rectified(lens_.get(), coarse_.inImage(p + cv::Point2f(seen.tl()))); },
-      seen_);
+  drawPointsOf(
+      coarse_.grey, coarse_.usable, own, config_.max_features / strips_,
+      [&](const cv::Point2f& p) { return rectified(lens_.get(), coarse_.inImage(p)); }, seen_);
   if (strip_ == strips_ && static_cast<int>(seen_.points.size()) < config_.min_inliers) asked_.clear();
 }
 
@@ -130,14 +146,18 @@ void FeatureSearch::describe(Keyframe& keyframe, const geometry::Rectangle& roi)
   image::drawMask(keyframe.trusted == 0, keyframe.g * from_mask, lens_.get(),
                   cv::Rect(keyframe.first, keyframe.crop.size()), covered);
   const CoarseImage small = coarseImage(keyframe.crop, coarse_.scale, weights_, saturation_);
-  keyframe.described = true;
-  if (small.grey.empty()) return;
+  const int strips = stripsOf(keyframe);
+  // Fewer strips than before when the budget was raised in between: nothing is left then.
+  const cv::Rect own =
+      strip(small.grey.size(), keyframe.strips_described++, strips) & cv::Rect(cv::Point(0, 0), small.grey.size());
+  keyframe.described = keyframe.strips_described >= strips;
+  if (own.empty()) return;
   cv::Mat1b mask;
   cv::resize(covered, mask, small.grey.size(), 0.0, 0.0, cv::INTER_NEAREST);
   mask = (mask == 0) & small.usable;
   const cv::Point2f first(keyframe.first);
-  append(
-      features::drawPoints(small.grey, mask, config_.max_features / 2),
+  drawPointsOf(
+      small.grey, mask, own, config_.max_features / 2 / strips,
       [&](const cv::Point2f& p) { return rectified(lens_.get(), small.inImage(p) + first); }, keyframe.features);
 }
 

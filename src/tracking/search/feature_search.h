@@ -34,8 +34,8 @@ class FeatureSearch {
   bool busy() const { return strip_ < strips_ || !asked_.empty(); }
   // Cost of the next piece [s], see nominal_cost.
   double nextCost(const Keyframes& keyframes) const;
-  // Does the next piece: detects the points of a strip of the image or, at its first use, of a keyframe; or matches
-  // both.
+  // Does the next piece: detects the points of a strip of the image or, at its first use, of a keyframe, in strips if
+  // it would cost more than the budget of an image; or matches both.
   void work(Keyframes& keyframes);
   // Places of the ROI by the keyframes matched in this pass, best first; empty if no matches agreed.
   std::vector<FeatureCandidate> found() const;
@@ -50,7 +50,9 @@ class FeatureSearch {
   void restart();
 
  private:
-  cv::Rect strip(int k) const;
+  int stripsOf(const cv::Size& size, double cost, double most_cost) const;
+  int stripsOf(const Keyframe& keyframe) const;
+  cv::Size coarseSize(const Keyframe& keyframe) const { return keyframe.crop.size() / coarse_.scale; }
   void drawStrip();
   void describe(Keyframe& keyframe, const geometry::Rectangle& roi);
   void match(const Keyframe& keyframe, const geometry::Rectangle& roi);

@@ -84,6 +84,7 @@ void Keyframes::addRecent(const cv::Mat& image, const Eigen::Matrix3d& g, const 
   recent_.g = g;
   cv::compare(weights, 0.0, recent_.trusted, cv::CMP_GT);
   recent_.described = false;
+  recent_.strips_described = 0;
   recent_.features.points.clear();
   recent_.features.descriptors.release();
 }

@@ -25,6 +25,7 @@ struct Keyframe {
   // true: the features are computed. A search computes them when it first needs them, so that tracking only pays for
   // the copy
   bool described = false;
+  int strips_described = 0;  // of a crop whose features are computed strip by strip
   features::DescribedPoints features;
 };
 

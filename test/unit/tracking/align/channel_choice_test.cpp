@@ -55,8 +55,6 @@ TEST(ChosenChannels, WhatClipsHasNoPartInIt) {
 // A brighter lamp would take red to its limit, and all that is tracked with it. That is not worth what red has to say.
 TEST(ChosenChannels, WhatIsAboutToClipHasNoneEither) {
   EXPECT_EQ(strongest(textured({60, 70, 210}, {8, 8, 1}))[2], 0.0f);
-  EXPECT_EQ(strongest(textured({60, 70, 210}, {8, 8, 6}))[2], 0.0f);
-  EXPECT_GT(strongest(textured({60, 70, 110}, {8, 8, 6}))[2], 0.2f);
   EXPECT_GT(strongest(textured({60, 70, 210}, {8, 8, 8}))[2], 0.3f);
   EXPECT_GT(strongest(textured({60, 70, 80}, {8, 8, 1}))[2], 0.03f);
 }

@@ -134,6 +134,22 @@ TEST_F(FeatureSearchTest, WithoutAReferenceThereIsNoCandidate) {
   EXPECT_TRUE(search_.find(scene_, image::kLuma, none).empty());
 }
 
+TEST_F(FeatureSearchTest, AViewThatCostsMoreThanTheBudgetIsDescribedStripByStrip) {
+  const Eigen::Matrix3d g = motion(1.1, 0.4, 0.0, {250.0, 170.0});
+  for (const double budget : {1.0, 0.005}) {
+    TrackerConfig config;
+    config.search.budget = budget;
+    FeatureSearch search(config);
+    views_.setReference(scene_, kRoi, weights_);
+    const std::vector<FeatureCandidate> found = search.find(seen(g), image::kLuma, views_);
+    ASSERT_TRUE(views_.at(0).described);
+    EXPECT_EQ(views_.at(0).strips_described > 1, budget < 0.1);
+    EXPECT_GT(views_.at(0).features.points.size(), 100u);
+    ASSERT_FALSE(found.empty()) << budget;
+    EXPECT_LT(geometry::cornerDistance(found[0].g, g, kRoi), 15.0) << budget;
+  }
+}
+
 // What lies around the ROI moves with it; what covers it does not.
 TEST_F(FeatureSearchTest, AViewGivesFeaturesAroundTheRegionButNoneWhereItWasOccluded) {
   weights_.setTo(0.0f);
