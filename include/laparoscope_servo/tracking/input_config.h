@@ -14,7 +14,7 @@ struct InputConfig {
   // Pictures that repeat. The thresholds between a frozen and a compressed feed were measured, see doc/pictures.md.
   int max_repeats = 1;  // pictures in a row that may repeat in whole, or in a region that moves
   // max_repeats to 1000, in the region alone, while neither images nor robot show that it moves
-  int max_still_repeats = 15;
+  int max_still_repeats = 50;
   double moving = 0.5;  // px per image: a region that moved faster counts as moving
   // px: after a larger displacement a repeat is a frozen feed; of the region by the robot, of a part by robot or
   // tracker
