@@ -4,15 +4,15 @@
 #include <Eigen/Core>
 #include <string>
 
+#include "laparoscope_servo/features/feature_state.h"
 #include "laparoscope_servo/geometry/homography.h"
 #include "laparoscope_servo/tracking/area_report.h"
 
 namespace laparoscope_servo::tracking {
 
 // The values are those of Homography.msg and of the offline tool's table.
-enum class State { kIdle = 0, kTracking = 1, kSearching = 2, kLost = 3 };
-
-const char* stateName(State state);
+using features::State;
+using features::stateName;
 
 struct TrackResult {
   State state = State::kIdle;

@@ -1,5 +1,5 @@
-// What is drawn into a mask: a quadrangle, and what lies near to what is drawn. Allocates nothing once its buffers have
-// the image's size, other than OpenCV's fillConvexPoly and dilate.
+// What is drawn into a mask: a quadrangle, and what lies near to what is drawn. Unlike OpenCV's fillConvexPoly and
+// dilate, it does not allocate once its buffers have the image's size.
 #pragma once
 
 #include <Eigen/Core>

@@ -103,16 +103,14 @@ void BlockMatching::setReference(const image::RegionPyramid& reference, const ge
   shifts_.reserve(blocks_.size());
 }
 
-void BlockMatching::look(const image::RegionPyramid& current, const Eigen::Matrix3d& g) {
+bool BlockMatching::look(const image::RegionPyramid& current, const Eigen::Matrix3d& g) {
   const int l = std::min(level_, current.levels() - 1);
-  if (lens_) {
-    all_valid_ = image::warpBilinear(current.level(l), g * reference_T_crop_, *lens_,
-                                     {current.origin(), static_cast<double>(current.scale(l))}, warped_, valid_);
-  } else {
-    all_valid_ =
-        image::warpBilinear(current.level(l), current.levelFromImage(l) * g * reference_T_crop_, warped_, valid_);
-  }
+  const bool all =
+      lens_ ? image::warpBilinear(current.level(l), g * reference_T_crop_, *lens_,
+                                  {current.origin(), static_cast<double>(current.scale(l))}, warped_, valid_)
+            : image::warpBilinear(current.level(l), current.levelFromImage(l) * g * reference_T_crop_, warped_, valid_);
   contrast();
+  return all;
 }
 
 // Local contrast: deviation from the local mean over the local standard deviation; 0 where the image is not valid.
@@ -203,9 +201,9 @@ Eigen::Vector2d BlockMatching::centreOf(const cv::Point& block) const {
 const std::vector<BlockShift>& BlockMatching::measure(const image::RegionPyramid& current, const Eigen::Matrix3d& g) {
   shifts_.clear();
   if (blocks_.empty()) return shifts_;
-  look(current, g);
+  const bool all_valid = look(current, g);
   for (const cv::Point& block : blocks_) {
-    if (!all_valid_ && cv::mean(valid_(cv::Rect(block.x, block.y, kSide, kSide)))[0] < kLeastValid) continue;
+    if (!all_valid && cv::mean(valid_(cv::Rect(block.x, block.y, kSide, kSide)))[0] < kLeastValid) continue;
     const Peak peak = find(block);
     BlockShift found;
     found.centre = centreOf(block);

@@ -66,7 +66,8 @@ class BlockMatching {
     double x, y, top, second;
   };
 
-  void look(const image::RegionPyramid& current, const Eigen::Matrix3d& g);
+  // Returns whether all of it lies in the image.
+  bool look(const image::RegionPyramid& current, const Eigen::Matrix3d& g);
   void contrast();
   Peak find(const cv::Point& block);
   Eigen::Vector2d centreOf(const cv::Point& block) const;
@@ -76,7 +77,6 @@ class BlockMatching {
   double scale_ = 1.0;  // px of the reference per px of the level
   Eigen::Matrix3d reference_T_crop_ = Eigen::Matrix3d::Identity();
   cv::Mat1f warped_, valid_, detail_, reference_;
-  bool all_valid_ = false;
   std::vector<float> column_sums_;
   std::vector<cv::Point> blocks_;  // first pixel of each block in the crop
   std::vector<BlockShift> shifts_;

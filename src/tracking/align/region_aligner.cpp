@@ -73,7 +73,7 @@ void RegionAligner::setReference(const cv::Mat& image, const geometry::Rectangle
   esm_.setReference(pyramid_, roi);
   blocks_.setReference(pyramid_, roi);
   far_blocks_.setReference(pyramid_, roi, blocks_.level() + 1);
-  fine_blocks_.setReference(pyramid_, roi, std::max(blocks_.level() - 1, 0));
+  if (blocks_.scale() >= kCoarse) fine_blocks_.setReference(pyramid_, roi, std::max(blocks_.level() - 1, 0));
   sample(image, Eigen::Matrix3d::Identity());
   gates_.setReference(patch_, patchSize(), coloursIn(channels_));
   const bool hidden = !mask_.empty() && cv::countNonZero(covered_.blue) > 0;
