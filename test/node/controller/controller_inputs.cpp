@@ -3,6 +3,7 @@
 #include <geometry_msgs/TwistStamped.h>
 #include <laparoscope_servo/SelectTask.h>
 
+#include <limits>
 #include <memory>
 
 #include "controller_fixture.h"
@@ -91,16 +92,15 @@ class ControllerInputs : public ControllerFixture {
     }
     return "";
   }
+  // s; not a number as long as the controller has not said it.
+  double manualAge() {
+    const std::string age = said("age of the manual command [s]");
+    return age.empty() ? std::numeric_limits<double>::quiet_NaN() : std::strtod(age.c_str(), nullptr);
+  }
   // Somebody's manual commands come.
-  bool speaks() {
-    const std::string age = said("age of the manual command [s]");
-    return !age.empty() && std::strtod(age.c_str(), nullptr) < 0.2;
-  }
+  bool speaks() { return manualAge() < 0.2; }
   // Nobody is bound any more, also no process that has ended and whose last messages were still waiting.
-  bool isSilent() {
-    const std::string age = said("age of the manual command [s]");
-    return !age.empty() && std::strtod(age.c_str(), nullptr) > 1.0;
-  }
+  bool isSilent() { return manualAge() > 1.0; }
   // And they count.
   bool isDriven() { return speaks() && cart_.state().caution.empty(); }
   bool waitForRefusals(const std::string& what) {
@@ -171,7 +171,7 @@ TEST_F(ControllerInputs, AStrangerDoesNotDrive) {
   cart_.set([](Feed& feed) { feed.task_error = false; });
   select("MANUAL");
   ASSERT_TRUE(waitFor([] { return manual().getNumSubscribers() > 0; }));
-  ASSERT_TRUE(waitFor([this] { return isSilent(); })) << said("age of the manual command [s]");
+  ASSERT_TRUE(waitFor([this] { return isSilent(); })) << manualAge();
   ASSERT_TRUE(cart_.engageWhenReady()) << cart_.answer();
   ASSERT_TRUE(cart_.waitForState(ControllerState::SERVO)) << cart_.state().reason;
   ScopeVelocity right;

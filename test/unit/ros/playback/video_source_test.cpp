@@ -105,12 +105,18 @@ TEST_F(VideoSourceTest, VariableRateIsAsTheContainerSays) {
   }
 }
 
-TEST_F(VideoSourceTest, AnAviMayLeaveOutPicturesAndHoldH264) {
+// `rate`: units of time a second.
+TestVideo mjpegOf(int rate) {
   TestVideo video;
   video.codec = "mjpeg";
   video.pixels = AV_PIX_FMT_YUVJ420P;
-  video.time_base = {1, 20};
-  video.rate = {20, 1};
+  video.time_base = {1, rate};
+  video.rate = {rate, 1};
+  return video;
+}
+
+TEST_F(VideoSourceTest, AnAviMayLeaveOutPicturesAndHoldH264) {
+  TestVideo video = mjpegOf(20);
   for (int k = 0; k < kPictures; ++k) video.times.push_back(k < 10 ? k : k + 7);
   auto images = readAll(write("gap.avi", video, pictures()));
   ASSERT_EQ(images.size(), static_cast<std::size_t>(kPictures));
@@ -135,11 +141,7 @@ TEST_F(VideoSourceTest, AnAviMayLeaveOutPicturesAndHoldH264) {
 
 // As of H.264, whose unit of time is half a picture.
 TEST_F(VideoSourceTest, AnAviWhosePicturesLastLongerThanItsUnitOfTimeIsWholeOrNot) {
-  TestVideo video;
-  video.codec = "mjpeg";
-  video.pixels = AV_PIX_FMT_YUVJ420P;
-  video.time_base = {1, 50};
-  video.rate = {50, 1};
+  TestVideo video = mjpegOf(50);
   for (const int units : {2, 3, 5}) {
     SCOPED_TRACE(units);
     video.times.clear();
