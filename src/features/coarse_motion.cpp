@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "laparoscope_servo/robust/draws.h"
+#include "laparoscope_servo/robust/largest.h"
 
 namespace laparoscope_servo::features {
 
@@ -136,7 +137,7 @@ CoarseResult CoarseMotion::find(const std::vector<Site>& sites, const std::vecto
   result.score = best_score;
   result.share = best_score / most_;
   for (std::size_t i = 0; i < rows_.size(); ++i) {
-    if (!sites[i].probe) result.largest = std::max(result.largest, std::abs(rows_[i].dot(best)));
+    if (!sites[i].probe) result.largest = robust::largest(result.largest, std::abs(rows_[i].dot(best)));
   }
   const double grow = 1.0 + best[2] / radius_, turn = best[3] / radius_;
   result.motion.topLeftCorner<2, 2>() << grow, -turn, turn, grow;

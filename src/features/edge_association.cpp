@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "laparoscope_servo/robust/largest.h"
+
 namespace laparoscope_servo::features {
 
 namespace {
@@ -85,7 +87,7 @@ double EdgeAssociation::settle(const std::vector<Site>& sites, const Eigen::Vect
   double largest = 0.0;
   for (std::size_t i = 0; i < sites.size(); ++i) {
     const double moved = displacement(sites[i], step);
-    if (!sites[i].probe) largest = std::max(largest, std::abs(moved));
+    if (!sites[i].probe) largest = robust::largest(largest, std::abs(moved));
     findings_[i].point += moved * sites[i].normal;
   }
   for (std::size_t r = 0; r < rows_.size(); ++r) {

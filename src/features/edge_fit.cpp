@@ -60,7 +60,7 @@ class EdgeFit::Implementation {
     EdgeReport report = run(image, expected, curve, range);
     if (report.reason != Reason::kNone) return report;
     believe(curve, range, returning ? config_.min_return_share : config_.min_share, report);
-    if (report.reason == Reason::kNone && (returning || jump_ > surprise) && !looksAsItDid(report.used)) {
+    if (report.reason == Reason::kNone && (returning || !(jump_ <= surprise)) && !looksAsItDid(report.used)) {
       report.reason = Reason::kJump;
     }
     return report;

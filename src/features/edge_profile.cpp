@@ -54,8 +54,8 @@ void gather(const unsigned char* data, std::size_t stride, const std::int32_t* o
 
 // The k in [low, high] for which low_end <= start + k slope <= high_end.
 void clip(double start, double slope, double low_end, double high_end, double& low, double& high) {
-  if (std::abs(slope) < 1e-9) {
-    if (start < low_end || start > high_end) high = low - 1.0;
+  if (!std::isfinite(start) || !(std::abs(slope) >= 1e-9)) {
+    if (!(start >= low_end && start <= high_end) || std::isnan(slope)) high = low - 1.0;
     return;
   }
   const double a = (low_end - start) / slope, b = (high_end - start) / slope;
@@ -93,10 +93,10 @@ bool EdgeProfile::read(const cv::Mat& image, const Site& site, const EdgeWindow&
     clip(start.y(), along.y(), 0.0, image.rows - 1.001, low, high);
   }
   // Single precision may put the last sample a little further out.
-  first_ = static_cast<int>(std::ceil(low + 1e-3));
-  const int last = static_cast<int>(std::floor(high - 1e-3));
-  if (!(first_ <= -kMargin && last >= kMargin)) return false;
-  count_ = last - first_ + 1;
+  const double first = std::ceil(low + 1e-3), last = std::floor(high - 1e-3);
+  if (!(first <= -kMargin && last >= kMargin)) return false;  // before the casts: of a site far out they may not fit
+  first_ = static_cast<int>(first);
+  count_ = static_cast<int>(last) - first_ + 1;
   std::fill_n(levels_.begin(), (count_ + kRound - 1) / kRound * kRound, 0.0f);
   const float share = 1.0f / static_cast<float>(2 * kHalfWidth / window.across_stride + 1);
   for (int t = -kHalfWidth; t <= kHalfWidth; t += window.across_stride) {

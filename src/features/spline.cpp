@@ -5,6 +5,7 @@
 
 #include "features/spline_prior.h"
 #include "laparoscope_servo/geometry/homography.h"
+#include "laparoscope_servo/robust/largest.h"
 
 namespace laparoscope_servo::features {
 
@@ -211,7 +212,7 @@ double Spline::change(const Curve& before) const {
   double deviation = 0.0;
   for (int k = 0; k < size_; ++k) {
     const Eigen::Vector2d difference = similarity(there[static_cast<std::size_t>(k)]) - controlPoint(k);
-    deviation = std::max(deviation, std::abs(normal(k).dot(difference)));
+    deviation = robust::largest(deviation, std::abs(normal(k).dot(difference)));
   }
   return std::max({similarity.scale(), 1.0 / similarity.scale(), 1.0 + deviation / extent.radius});
 }

@@ -9,6 +9,7 @@
 
 #include "laparoscope_servo/features/image_sequence.h"
 #include "laparoscope_servo/image/image_type.h"
+#include "laparoscope_servo/robust/largest.h"
 #include "laparoscope_servo/validation/error_report.h"
 #include "model/model_start.h"
 #include "model/outline.h"
@@ -186,7 +187,7 @@ class ModelTracker::Implementation {
       if (!(here.z() > 0.0)) return;
       const Eigen::Matrix<double, 2, 6> l = pointInteraction(camera_, here);
       const Eigen::Matrix2d c = l * geometry::Matrix6d(fit_.covariance()) * l.transpose();
-      worst = std::max(worst, 0.5 * c.trace() + std::hypot(0.5 * (c(0, 0) - c(1, 1)), c(0, 1)));
+      worst = robust::largest(worst, 0.5 * c.trace() + std::hypot(0.5 * (c(0, 0) - c(1, 1)), c(0, 1)));
     };
     for (const Edge& edge : model_->edges) {
       add(model_->points[static_cast<std::size_t>(edge.begin)]);

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "laparoscope_servo/robust/largest.h"
 #include "model/strands.h"
 
 namespace laparoscope_servo::model {
@@ -245,7 +246,7 @@ double Outline::apart(const Eigen::Isometry3d& camera_T_object) const {
     point[k / 2] += (k % 2 == 0 ? 1.0 : -1.0) * kTypical * model_->radius;
     const Eigen::Vector3d here = camera_T_object_ * point, there = camera_T_object * point;
     if (!(here.z() > 0.0 && there.z() > 0.0)) return std::numeric_limits<double>::infinity();
-    largest = std::max(largest, (project(camera_, here) - project(camera_, there)).norm());
+    largest = robust::largest(largest, (project(camera_, here) - project(camera_, there)).norm());
   }
   return largest;
 }
@@ -257,7 +258,7 @@ bool Outline::isSound() const {
 double Outline::changeFrom(const Eigen::Isometry3d& camera_T_object) const {
   const double depth = std::abs(std::log(centre().z() / (camera_T_object * model_->centre).z()));
   const double turn = Eigen::AngleAxisd(camera_T_object.linear().transpose() * camera_T_object_.linear()).angle();
-  return 1.0 + std::max(depth, turn);
+  return 1.0 + robust::largest(depth, turn);
 }
 
 }  // namespace laparoscope_servo::model

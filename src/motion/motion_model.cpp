@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "laparoscope_servo/robust/largest.h"
+
 namespace laparoscope_servo::motion {
 
 namespace {
@@ -46,7 +48,7 @@ double errorAtCorners(const geometry::Quadrilateral& corners, const Eigen::Vecto
   double worst = 0.0;
   for (const Eigen::Vector2d& corner : corners) {
     const Eigen::Matrix<double, 2, 8> j = fieldJacobian(corner - centre);
-    worst = std::max(worst, std::sqrt((j * covariance * j.transpose()).trace()));
+    worst = robust::largest(worst, std::sqrt((j * covariance * j.transpose()).trace()));
   }
   return worst;
 }

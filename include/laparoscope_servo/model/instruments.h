@@ -16,6 +16,7 @@
 
 #include "laparoscope_servo/features/edge_config.h"
 #include "laparoscope_servo/features/feature_state.h"
+#include "laparoscope_servo/features/instrument_mask.h"
 #include "laparoscope_servo/features/tracked_feature.h"
 #include "laparoscope_servo/geometry/camera.h"
 #include "laparoscope_servo/model/cylinder_pose.h"
@@ -23,9 +24,10 @@
 namespace laparoscope_servo::model {
 
 struct InstrumentConfig {
-  int most = 3;                  // instruments at a time
-  int confirmations = 5;         // images in a row that show a new one, before it is taken for an instrument
-  double clear_contrast = 0.75;  // of an instrument that is believed at once, relative to the tissue's colour
+  int most = 3;           // instruments at a time
+  int confirmations = 5;  // images in a row that show a new one, before it is taken for an instrument
+  // Of an instrument that is believed at once, relative to the tissue's colour.
+  double clear_contrast = features::kClearContrast;
   double min_fill = 0.6;         // share of what lies between the edges that is grey
   double radius = 0.0;           // m, of the shaft; 0: not known, no pose
   double max_search_time = 2.0;  // s: SEARCHING for longer is LOST

@@ -42,16 +42,18 @@ class Arm {
   Arm(const aesop::Kinematics& kinematics, const ArmConfig& config);
 
   // Speeds of the driven joints, in the order of the arm; they take effect `delay` after `now`, and last until the next
-  // ones.
+  // ones. Throws std::invalid_argument for a speed that is not finite, which would put a joint at its limit at once.
   void command(const std::array<double, aesop::kDrivenJoints>& speed, double now);
   // Stops at once and drops delayed commands: the brakes of a fault.
   void brake();
   // Makes a motor ignore its commands: index 0 to 6; -1 for none.
   void jam(int joint) { jammed_ = joint; }
   // The joints move by this factor of their commands, negative: the other way.
-  void setGain(double gain) { gain_ = gain; }
+  // Throws std::invalid_argument if it is not finite.
+  void setGain(double gain);
   // Commands take effect so much [s] later than by the configuration, never before an earlier one.
-  void setLag(double lag) { lag_ = lag; }
+  // Throws std::invalid_argument if it is not finite.
+  void setLag(double lag);
   // Moves the scope by hand about the trocar, by pan, tilt, spin [rad] and insertion [m], evenly within `seconds`.
   // Returns why not, or an empty text.
   std::string hand(const scope::Velocity& displacement, double seconds, double now);

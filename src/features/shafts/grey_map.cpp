@@ -11,8 +11,14 @@ namespace {
 // is no telling. Such cells are taken for coloured rather than for grey.
 constexpr float kDoubt = 0.5f;
 constexpr float kBlack = 12.0f;
+constexpr double kFar = 1e6;  // cells: points further out are in no map, and may not fit an int
 
 }  // namespace
+
+cv::Point GreyMap::cellOf(const Eigen::Vector2d& p) {
+  if (!(p.array().abs() < kFar).all()) return {-1, -1};  // also NaN
+  return {static_cast<int>(std::lround(p.x())), static_cast<int>(std::lround(p.y()))};
+}
 
 void GreyMap::compute(const cv::Mat& image) {
   step_ = std::max(1, (image.cols + kColumns / 2) / kColumns);

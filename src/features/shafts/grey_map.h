@@ -1,6 +1,7 @@
 // A reduced image: how far each cell is from grey, and how bright it is.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <opencv2/core.hpp>
 #include <vector>
@@ -28,6 +29,9 @@ class GreyMap {
   // px of the image at a place in cells, and back; the centre of the first cell is (0, 0).
   double toPixel(double cell) const { return cell * step_ + 0.5 * (step_ - 1); }
   double toCell(double pixel) const { return (pixel - 0.5 * (step_ - 1)) / step_; }
+
+  // The cell that a point lies in; (-1, -1), which is in no map, for one that is far out or not finite.
+  static cv::Point cellOf(const Eigen::Vector2d& p);
 
  private:
   static constexpr int kColumns = 200;

@@ -10,25 +10,22 @@ namespace laparoscope_servo::features {
 
 namespace {
 
-constexpr int kSmallest = 64;     // px, of an image's sides
 constexpr double kTissue = 0.25;  // units of S0 cos H / mean: a picture that usually has less shows no tissue
-constexpr double kClear = 0.75;   // of the tissue's colour, across both edges
-// Share of the shaft's length that each edge is seen; less will do where the shaft is long and grey throughout.
-constexpr double kSeen = 0.5;
+// Less than kClearCoverage will do where the shaft is grey throughout and long, by the picture's diagonal.
 constexpr double kFilled = 0.9;
-constexpr double kLong = 0.2;  // of the picture's diagonal
+constexpr double kLong = 0.2;
 
 bool isBeyondDoubt(const cv::Mat& image, const GreyMap& map, const Shaft& shaft) {
-  if (!shaft.seen[0] || !shaft.seen[1] || !(shaft.clarity >= kClear)) return false;
+  if (!shaft.seen[0] || !shaft.seen[1] || !(shaft.clarity >= kClearContrast)) return false;
   const double diagonal = std::hypot(map.columns(), map.rows());
-  if (!(shaft.coverage >= kSeen || (shaft.fill >= kFilled && shaft.length >= kLong * diagonal))) return false;
+  if (!(shaft.coverage >= kClearCoverage || (shaft.fill >= kFilled && shaft.length >= kLong * diagonal))) return false;
   return brightEdges(EdgeConfig(), image, map, shaft) > 0;
 }
 
 }  // namespace
 
 cv::Mat instrumentMask(const cv::Mat& image) {
-  if (image.type() != CV_8UC3 || image.cols < kSmallest || image.rows < kSmallest) return {};
+  if (image.type() != CV_8UC3 || image.cols < kLeastInstrumentImage || image.rows < kLeastInstrumentImage) return {};
   GreyMap map;
   map.compute(image);
   image::FieldOfView view;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "features/shafts/grey_map.h"
+
 namespace laparoscope_servo::features {
 
 namespace {
@@ -11,7 +13,8 @@ constexpr double kTurned = 0.94;  // cosine of 20 degrees, between the axes of o
 constexpr int kSamples = 10;      // along a shaft
 
 bool isInside(const image::FieldOfView& view, const Eigen::Vector2d& p) {
-  return view.contains(static_cast<int>(std::lround(p.x())), static_cast<int>(std::lround(p.y())));
+  const cv::Point cell = GreyMap::cellOf(p);
+  return view.contains(cell.x, cell.y);
 }
 
 int inside(const Shaft& a, const Shaft& b) {

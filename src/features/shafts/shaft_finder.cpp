@@ -27,13 +27,13 @@ constexpr double kSingleDepth = 0.35;    // of the picture's rows: how far away 
 }  // namespace
 
 bool ShaftFinder::Scene::isInside(const Eigen::Vector2d& p) const {
-  const int x = static_cast<int>(std::lround(p.x())), y = static_cast<int>(std::lround(p.y()));
-  return map.contains(x, y) && view.contains(x, y);
+  const cv::Point cell = GreyMap::cellOf(p);
+  return map.contains(cell.x, cell.y) && view.contains(cell.x, cell.y);
 }
 
 bool ShaftFinder::Scene::isGrey(const Eigen::Vector2d& p) const {
-  const int x = static_cast<int>(std::lround(p.x())), y = static_cast<int>(std::lround(p.y()));
-  return map.contains(x, y) && map.colour()(y, x) < threshold;
+  const cv::Point cell = GreyMap::cellOf(p);
+  return map.contains(cell.x, cell.y) && map.colour()(cell) < threshold;
 }
 
 // From the axis at `from`, backwards to the border: grey all the way? Then the entry is known.

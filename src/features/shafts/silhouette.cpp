@@ -58,11 +58,11 @@ void Silhouette::grow(const GreyMap& map, const image::FieldOfView& view, double
     const double half = halfWidth(shaft, p);
     for (double across = -half; across <= half; across += 1.0) {
       const Eigen::Vector2d q = p + across * side;
-      const int x = static_cast<int>(std::lround(q.x())), y = static_cast<int>(std::lround(q.y()));
-      if (!map.contains(x, y) || !view.contains(x, y)) continue;
+      const cv::Point cell = GreyMap::cellOf(q);
+      if (!map.contains(cell.x, cell.y) || !view.contains(cell.x, cell.y)) continue;
       ++inside;
-      grey += isGrey(x, y) ? 1 : 0;
-      add(x, y);
+      grey += isGrey(cell.x, cell.y) ? 1 : 0;
+      add(cell.x, cell.y);
     }
   }
   fill_ = inside > 0 ? static_cast<double>(grey) / inside : 0.0;
@@ -97,11 +97,11 @@ void Silhouette::measure(const GreyMap& map, double threshold, const Shaft& shaf
   box_ = cv::Rect(low, high + cv::Point(1, 1));
   // Half a cell of it lies beyond the last centre; where colour crosses the threshold.
   const Eigen::Vector2d next = tip_ + shaft.axis;
-  const int x = static_cast<int>(std::lround(next.x())), y = static_cast<int>(std::lround(next.y()));
+  const cv::Point cell = GreyMap::cellOf(next);
   double share = 0.5;
-  if (map.contains(x, y)) {
+  if (map.contains(cell.x, cell.y)) {
     const double here = map.colour()(static_cast<int>(tip_.y()), static_cast<int>(tip_.x())),
-                 there = map.colour()(y, x);
+                 there = map.colour()(cell);
     if (there > here) share = std::clamp((threshold - here) / (there - here), 0.0, 1.0);
   }
   tip_ += share * shaft.axis;

@@ -6,6 +6,7 @@
 
 #include "features/shafts/bright_edges.h"
 #include "laparoscope_servo/geometry/homography.h"
+#include "laparoscope_servo/robust/largest.h"
 
 namespace laparoscope_servo::model {
 
@@ -22,6 +23,7 @@ constexpr double kMoves = 1.0, kMovesMore = 0.25, kMovesMost = 3.0;
 constexpr double kTurns = 0.9;
 constexpr double kWidens = 0.6;
 constexpr double kNearTrocar = 1.0;  // widths by which the axis of what returns may miss its trocar
+constexpr double kFarthest = 4.0;    // diagonals of the picture: a motion that leads further out is none of a camera
 
 Eigen::Vector2d toPixel(const GreyMap& map, const Eigen::Vector2d& p) {
   return {map.toPixel(p.x()), map.toPixel(p.y())};
@@ -63,11 +65,12 @@ int InstrumentTrack::fineEdges() const {
 void InstrumentTrack::predict(const InstrumentScene& scene) {
   if (!scene.motion) return;
   if (!scene.motion->isIdentity(1e-9)) meeting_.reset();
+  const double farthest = kFarthest * std::hypot(scene.image.cols, scene.image.rows);
   std::array<GreyLine, 2> moved = shaft_.edges;
   for (GreyLine& edge : moved) {
     const Eigen::Vector2d begin = geometry::apply(*scene.motion, toPixel(scene.map, edge.at(edge.begin)));
     const Eigen::Vector2d end = geometry::apply(*scene.motion, toPixel(scene.map, edge.at(edge.end)));
-    if (!begin.allFinite() || !end.allFinite() || !((end - begin).norm() > scene.map.step())) return;
+    if (!(begin.norm() <= farthest && end.norm() <= farthest && (end - begin).norm() > scene.map.step())) return;
     edge = fromEnds(toCell(scene.map, begin), toCell(scene.map, end), edge);
   }
   follow(scene.view, moved, shaft_);
@@ -150,10 +153,11 @@ void InstrumentTrack::update(const InstrumentScene& scene, const Shaft* found) {
     edges[k] = fromEnds(toCell(scene.map, line.begin()), toCell(scene.map, line.end()), edges[k]);
   }
   follow(scene.view, edges, now);
-  silhouette_.grow(scene.map, scene.view, scene.levels.threshold, now);
+  const bool sound = now.length > 0.0 && now.width > 0.0 && std::isfinite(now.length) && std::isfinite(now.width);
+  if (sound) silhouette_.grow(scene.map, scene.view, scene.levels.threshold, now);
   features::Reason reason = features::Reason::kNone;
   if (found == nullptr && !(all_fine && silhouette_.fill() >= config_.min_fill)) reason = features::Reason::kNotSeen;
-  if (!(now.length > 0.0 && now.width > 0.0) || !silhouette_.found()) reason = features::Reason::kOutside;
+  if (!sound || !silhouette_.found()) reason = features::Reason::kOutside;
   keeper_.step(reason, scene.stamp);
   missed_ = reason == features::Reason::kNone ? 0 : missed_ + 1;
   if (reason != features::Reason::kNone) return;
@@ -196,7 +200,7 @@ void InstrumentTrack::tell(const GreyMap& map, const std::optional<geometry::Pin
       const double offset = edge.expected_error * edge.expected_error, angle = 12.0 * offset / (length * length);
       edge.covariance << offset + lever * lever * angle, lever * angle, lever * angle, angle;
     }
-    if (edge.seen) result.expected_error = std::max(result.expected_error, edge.expected_error);
+    if (edge.seen) result.expected_error = robust::largest(result.expected_error, edge.expected_error);
   }
   if (!tracking) result.expected_error = std::numeric_limits<double>::infinity();
   result.entry = toPixel(map, shaft_.entry);
@@ -220,7 +224,7 @@ void InstrumentTrack::draw(const GreyMap& map, double threshold, cv::Mat1b& mask
   if (keeper_.state() == features::State::kLost) return;
   double error = kCoarse * map.step();
   for (std::size_t k = 0; k < 2; ++k) {
-    if (shaft_.seen[k]) error = std::max(error, edgeError(map, k));
+    if (shaft_.seen[k]) error = robust::largest(error, edgeError(map, k));
   }
   if (!std::isfinite(error)) error = kCoarse * map.step();
   kept_.draw(map, threshold, kept_shaft_, 2.0 * error, mask);

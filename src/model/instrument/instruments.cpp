@@ -16,9 +16,7 @@ namespace laparoscope_servo::model {
 
 namespace {
 
-constexpr int kSmallest = 64;  // px, of an image's sides
-// Of a shaft that is believed at once, besides its contrast: share of its length that each edge is seen.
-constexpr double kClearCoverage = 0.5;
+using features::kLeastInstrumentImage;
 
 void check(const cv::Mat& image, double stamp) {
   if (image.type() != CV_8UC3) {
@@ -27,10 +25,10 @@ void check(const cv::Mat& image, double stamp) {
                                     : "image of OpenCV type " + std::to_string(image.type()) +
                                           ", expected 16 (8 bit, blue-green-red): instruments are told by colour");
   }
-  if (image.cols < kSmallest || image.rows < kSmallest) {
+  if (image.cols < kLeastInstrumentImage || image.rows < kLeastInstrumentImage) {
     std::ostringstream text;
-    text << "image of " << image.cols << " x " << image.rows << " px, expected at least " << kSmallest << " x "
-         << kSmallest;
+    text << "image of " << image.cols << " x " << image.rows << " px, expected at least " << kLeastInstrumentImage
+         << " x " << kLeastInstrumentImage;
     throw std::invalid_argument(text.str());
   }
   if (!std::isfinite(stamp)) throw std::invalid_argument("stamp is not finite, expected seconds");
@@ -129,7 +127,7 @@ class InstrumentTracker::Implementation {
         return t.state() == features::State::kTracking && overlaps(t.shaft(), shaft);
       });
       if (covered) continue;
-      const bool contrasts = shaft.clarity >= config_.clear_contrast && shaft.coverage >= kClearCoverage;
+      const bool contrasts = shaft.clarity >= config_.clear_contrast && shaft.coverage >= features::kClearCoverage;
       auto p = std::find_if(pending_.begin(), pending_.end(),
                             [&](const Pending& q) { return !q.seen && isSame(q.shaft, shaft); });
       if (p == pending_.end()) p = pending_.insert(p, Pending());

@@ -7,6 +7,7 @@
 
 #include "laparoscope_servo/parameters/table.h"
 #include "laparoscope_servo/validation/error_report.h"
+#include "laparoscope_servo/validation/range.h"
 
 namespace laparoscope_servo::sim {
 
@@ -21,6 +22,13 @@ constexpr double kAtRest =
     1e-4;  // m/s, rad/s: below this a joint without command counts as at rest, even without friction
 constexpr double kLongest = 60.0;  // s of one hand movement
 constexpr double kEpsilon = 1e-9;  // s
+
+void checkFinite(const char* what, double value) {
+  if (!std::isfinite(value)) {
+    throw std::invalid_argument(std::string("emulated arm: ") + what + " = " + validation::numberText(value) +
+                                ", expected a finite number");
+  }
+}
 
 }  // namespace
 
@@ -50,9 +58,20 @@ Arm::Arm(const aesop::Kinematics& kinematics, const ArmConfig& config) : kinemat
 }
 
 void Arm::command(const std::array<double, kDrivenJoints>& speed, double now) {
+  for (const double v : speed) checkFinite("speed", v);
   step(now);
   const double last = pending_.empty() ? now : pending_.back().at;
   pending_.push_back({std::max(last, now + config_.delay + lag_), speed});
+}
+
+void Arm::setGain(double gain) {
+  checkFinite("gain", gain);
+  gain_ = gain;
+}
+
+void Arm::setLag(double lag) {
+  checkFinite("lag", lag);
+  lag_ = lag;
 }
 
 void Arm::brake() {

@@ -66,5 +66,13 @@ TEST(CoarseMotion, givesTheSameEachTime) {
   EXPECT_EQ(a.find(sites, candidates, 20.0).motion, b.find(sites, candidates, 20.0).motion);
 }
 
+TEST(CoarseMotion, aDisplacementThatIsNotFiniteIsNotTakenForASmallOne) {
+  std::vector<Site> sites = circle(20);
+  const std::vector<WeightedCandidates> candidates(20, candidate(1.0));
+  sites[7].normal.x() = std::nan("");
+  CoarseMotion coarse;
+  EXPECT_FALSE(coarse.find(sites, candidates, 20.0).largest < 1e300);
+}
+
 }  // namespace
 }  // namespace laparoscope_servo::features

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+
 namespace laparoscope_servo::features {
 namespace {
 
@@ -111,6 +114,17 @@ TEST(Displacement, coefficientsGoOnAtTheFirstParameter) {
   Eigen::VectorXd step(5);
   step << 1.0, 2.0, 3.0, 4.0, 5.0;
   EXPECT_EQ(displacement(site, step), 5.0 + 10.0 + 200.0);
+}
+
+// A fit that has come to nothing has not settled.
+TEST(EdgeAssociation, aStepThatIsNotFiniteIsNotTakenForASmallOne) {
+  for (const double wrong : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+    Straight line(10);
+    for (std::size_t i = 0; i < 10; ++i) line.add(i, 1.0f, 1.0f);
+    line.association.choose(line.sites, line.candidates, kRange);
+    EXPECT_FALSE(line.settle(wrong) < 1e300);
+    for (std::size_t i = 0; i < 10; ++i) EXPECT_EQ(line.weight(i), 0.0);
+  }
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <opencv2/imgproc.hpp>
 
 namespace laparoscope_servo::features {
@@ -80,6 +81,21 @@ TEST(EdgeProfile, endsAtTheImagesBorder) {
   const cv::Mat part = ramp(100, 80)(cv::Rect(20, 16, 60, 40));
   ASSERT_TRUE(profile.read(part, siteAt(30.0, 20.0, 0.0), {5.0, 1.0, 1}));
   for (int k = -5; k <= 5; ++k) EXPECT_NEAR(levelAt(profile, k), 10.0 + 50.0 + 36.0 + k, 1e-3);
+}
+
+// A curve that a motion has carried away has sites that fit no int, or are nowhere.
+TEST(EdgeProfile, readsNothingWhereASiteIsFarOutOrNowhere) {
+  const cv::Mat image = ramp(100, 80);
+  const double infinite = std::numeric_limits<double>::infinity();
+  EdgeProfile profile;
+  for (const double wrong : {std::nan(""), infinite, -infinite, 1e9, -1e9, 1e12, 1e200, -1e200}) {
+    for (const double theta : {0.0, 0.7, 0.5 * M_PI}) {
+      EXPECT_FALSE(profile.read(image, siteAt(wrong, 40.0, theta), {12.0, 1.0, 1})) << wrong;
+      EXPECT_FALSE(profile.read(image, siteAt(50.0, wrong, theta), {12.0, 1.0, 1})) << wrong;
+      EXPECT_FALSE(profile.read(image, siteAt(wrong, wrong, theta), {12.0, 1.0, 1})) << wrong;
+    }
+  }
+  EXPECT_FALSE(profile.read(image, siteAt(50.0, 40.0, std::nan("")), {12.0, 1.0, 1}));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <stdexcept>
 
@@ -258,6 +259,36 @@ TEST(FeatureTracker, followsTheMotionThatIsKnown) {
       tracker->select(scene(0.0), 0.0, each.selection, {});
       const State state = tracker->track(scene(kJump), kPeriod, known ? prior : FeaturePrior()).state;
       EXPECT_EQ(state, known ? State::kTracking : State::kSearching) << each.name << known;
+    }
+  }
+}
+
+// A motion that is none is ignored; one that leads out of the image loses the features, without a number that is not
+// finite for a place.
+TEST(FeatureTracker, bearsAnyMotionThatIsTold) {
+  const double infinite = std::numeric_limits<double>::infinity();
+  for (const Case& each : cases()) {
+    for (const double wrong : {std::nan(""), infinite, -infinite, 0.0}) {
+      const auto tracker = each.make();
+      tracker->select(scene(0.0), 0.0, each.selection, {});
+      FeaturePrior prior;
+      prior.motion = Eigen::Matrix3d::Constant(wrong);
+      EXPECT_EQ(tracker->track(scene(0.0), kPeriod, prior).state, State::kTracking) << each.name << ' ' << wrong;
+      (*prior.motion) = Eigen::Matrix3d::Identity();
+      (*prior.motion)(0, 2) = wrong;
+      EXPECT_EQ(tracker->track(scene(0.0), 2.0 * kPeriod, prior).state, State::kTracking) << each.name << ' ' << wrong;
+    }
+    for (const double far : {1e5, 1e9, 1e200}) {
+      const auto tracker = each.make();
+      tracker->select(scene(0.0), 0.0, each.selection, {});
+      FeaturePrior prior;
+      prior.motion = Eigen::Matrix3d::Identity();
+      prior.motion->topLeftCorner<2, 2>() *= far;
+      for (const TrackedFeature& feature : tracker->track(scene(0.0), kPeriod, prior).features) {
+        EXPECT_TRUE(feature.parameters.allFinite()) << each.name << ' ' << far;
+        EXPECT_FALSE(std::isnan(feature.expected_error)) << each.name << ' ' << far;
+        EXPECT_FALSE(feature.covariance.hasNaN()) << each.name << ' ' << far;
+      }
     }
   }
 }

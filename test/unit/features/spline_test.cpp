@@ -257,5 +257,16 @@ TEST(SplinePrior, bendingIsStifferThanTheWhole) {
   EXPECT_NEAR((inverse(open) * open - Spline::Matrix::Identity(12, 12)).norm(), 0.0, 1e-9);
 }
 
+TEST(Spline, aChangeThatIsNotFiniteIsNotTakenForASmallOne) {
+  const Spline before = splineOf(true);
+  for (int k = 0; k < before.parameters(); ++k) {
+    Spline curve = before;
+    Eigen::VectorXd step = Eigen::VectorXd::Zero(curve.parameters());
+    step[k] = std::numeric_limits<double>::quiet_NaN();
+    curve.move(step);
+    EXPECT_FALSE(curve.change(before) < 1e300) << k;
+  }
+}
+
 }  // namespace
 }  // namespace laparoscope_servo::features

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+
 #include "model/strands.h"
 #include "support/synthetic_model.h"
 
@@ -228,6 +231,19 @@ TEST(Outline, isSoundInFrontOfTheCameraOnly) {
   pose.translation().z() = std::nan("");
   outline.setPose(pose);
   EXPECT_FALSE(outline.isSound());
+}
+
+TEST(Outline, aPoseThatIsNotFiniteIsFarFromAnyOther) {
+  const Outline outline = outlineOf(test::kCube);
+  for (int k = 0; k < 12; ++k) {
+    const bool aside = k == 9 || k == 10;  // which is no change of depth or direction
+    for (const double wrong : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+      Eigen::Isometry3d pose = outline.pose();
+      pose.matrix()(k % 3, k / 3) = wrong;
+      EXPECT_TRUE(aside || !(outline.changeFrom(pose) < 1e300)) << k << ' ' << wrong;
+      EXPECT_TRUE(!std::isnan(wrong) || !(outline.apart(pose) < 1e300)) << k;
+    }
+  }
 }
 
 }  // namespace

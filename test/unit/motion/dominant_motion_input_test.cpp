@@ -69,6 +69,16 @@ TEST_F(DominantMotionInput, IgnoresAMotionThatIsNone) {
   EXPECT_EQ(motion_.track(movingTissue(2, field_), 0.08, wrong).state, State::kTracking);
   EXPECT_EQ(motion_.track(movingTissue(3, field_), 0.12, Eigen::Matrix3d(Eigen::Matrix3d::Zero())).state,
             State::kTracking);
+  const double infinite = std::numeric_limits<double>::infinity();
+  int k = 4;
+  for (const double each : {infinite, -infinite, 1e5, 1e200}) {
+    wrong.setIdentity();
+    wrong.topLeftCorner<2, 2>() *= each;
+    const MotionResult& result = motion_.track(movingTissue(k, field_), 0.04 * k, wrong);
+    EXPECT_EQ(result.state, State::kTracking) << each;
+    EXPECT_TRUE(result.g.allFinite() && result.field.a.allFinite() && result.covariance.allFinite()) << each;
+    ++k;
+  }
 }
 
 TEST_F(DominantMotionInput, BeginsAnewWhenTimeJumpsBack) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <random>
 
 namespace laparoscope_servo::motion {
@@ -175,6 +176,19 @@ TEST(MotionModel, TheErrorAtCornersIsThatOfTheWorstOne) {
   const double worst = std::sqrt(*std::max_element(squares.begin(), squares.end()));
   EXPECT_NEAR(errorAtCorners(corners, centre, mixed * mixed.transpose()), worst, 0.03 * worst);
   EXPECT_EQ(errorAtCorners(corners, centre, Eigen::Matrix<double, 8, 8>::Zero()), 0.0);
+}
+
+// The largest of four numbers, one of which is none, is none.
+TEST(MotionModel, anErrorThatIsNotFiniteIsNotTakenForASmallOne) {
+  const geometry::Quadrilateral corners = geometry::Rectangle{10.0, 20.0, 100.0, 80.0}.corners();
+  const Eigen::Vector2d centre = geometry::Rectangle{10.0, 20.0, 100.0, 80.0}.centre();
+  for (const double wrong : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+    for (int k = 0; k < 8; ++k) {
+      Eigen::Matrix<double, 8, 8> covariance = Eigen::Matrix<double, 8, 8>::Identity() * 1e-6;
+      covariance(k, k) = wrong;
+      EXPECT_FALSE(errorAtCorners(corners, centre, covariance) < 1e300) << k;
+    }
+  }
 }
 
 }  // namespace

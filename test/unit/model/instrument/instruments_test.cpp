@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "support/synthetic_instrument.h"
 
@@ -113,8 +114,21 @@ TEST(InstrumentTracker, RefusesWhatItCannotUseAndGoesOn) {
   EXPECT_THROW(tracker.track(image, std::nan("")), std::invalid_argument);
   EXPECT_THROW(tracker.setCamera(geometry::PinholeCamera{}), std::invalid_argument);
   EXPECT_EQ(tracker.track(image, 0.1).instruments[0].id, 1);
-  // A motion that is not finite is none.
-  EXPECT_EQ(tracker.track(image, 0.2, Eigen::Matrix3d(Eigen::Matrix3d::Constant(std::nan("")))).instruments.size(), 1u);
+  // A motion that no camera makes is none.
+  const double infinite = std::numeric_limits<double>::infinity();
+  double stamp = 0.2;
+  for (const double wrong : {std::nan(""), infinite, 0.0, 1e4, 1e9, 1e200, -1e200}) {
+    Eigen::Matrix3d scaled = Eigen::Matrix3d::Identity(), shifted = scaled;
+    scaled.topLeftCorner<2, 2>() *= wrong;
+    shifted(0, 2) = wrong == 0.0 ? 1e6 : wrong;
+    for (const Eigen::Matrix3d& motion : {Eigen::Matrix3d(Eigen::Matrix3d::Constant(wrong)), scaled, shifted}) {
+      const InstrumentsResult& result = tracker.track(image, stamp += 0.04, motion);
+      ASSERT_EQ(result.instruments.size(), 1u) << motion;
+      EXPECT_EQ(result.instruments[0].id, 1) << motion;
+      EXPECT_EQ(result.instruments[0].state, State::kTracking) << motion;
+      EXPECT_TRUE(result.instruments[0].tip.allFinite()) << motion;
+    }
+  }
 }
 
 TEST(InstrumentTracker, AnotherSizeOrTimeThatJumpsBackStartsAnew) {

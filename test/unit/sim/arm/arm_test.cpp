@@ -196,5 +196,22 @@ TEST(Arm, refusesWhatCannotBe) {
   EXPECT_THROW(arm(config), std::invalid_argument);
 }
 
+// As a speed, each would put the joint at its limit within one step.
+TEST(Arm, refusesNumbersThatAreNotFiniteAndStaysWhereItIs) {
+  for (const double wrong : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+    Arm a = arm();
+    const JointVector before = a.position();
+    EXPECT_THROW(a.command({0.0, wrong, 0.0, 0.0}, 0.0), std::invalid_argument);
+    EXPECT_THROW(a.setGain(wrong), std::invalid_argument);
+    EXPECT_THROW(a.setLag(wrong), std::invalid_argument);
+    EXPECT_FALSE(a.isMoving());
+    a.step(1.0);
+    EXPECT_EQ(a.position(), before);
+    a.command({0.01, 0.0, 0.0, 0.0}, 1.0);
+    a.step(2.0);
+    EXPECT_GT(a.position()[0], before[0]);
+  }
+}
+
 }  // namespace
 }  // namespace laparoscope_servo::sim
