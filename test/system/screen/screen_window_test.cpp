@@ -244,7 +244,7 @@ TEST_F(ScreenWindow, ATaskIsExplainedBeforeItIsSelected) {
 
 TEST_F(ScreenWindow, TheViewThatIsToBeHeldIsKeptByAButtonOfItsTask) {
   EXPECT_FALSE(find<QPushButton>("keep_this_view").isVisible());
-  click("hold_view");
+  click("stabilise");
   ASSERT_TRUE(waitFor([this] { return find<QPushButton>("keep_this_view").isVisible(); }));
   click("keep_this_view");
   EXPECT_TRUE(waitFor([this] { return nodes_.keptViews() == std::vector<std::string>{"[{id: view, motion: []}]"}; }));
