@@ -36,6 +36,7 @@ const char* const kStyle = R"(
   QPushButton#stop:hover { background: #d02020; }
   QPushButton#stop:pressed { background: #ff3030; }
   QLabel, QCheckBox { color: white; font-size: 14px; }
+  QLabel#cart { font-size: 18px; font-weight: bold; }
   QScrollArea, QWidget#features { background: #10131a; }
   QTabWidget::pane { border: 1px solid #40464f; }
   QTabBar { font-size: 14px; }
