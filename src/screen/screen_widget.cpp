@@ -32,9 +32,6 @@ const char* const kStyle = R"(
   QPushButton:pressed { background: #5b6678; }
   QPushButton[active="true"] { background: #1f5a36; border: 2px solid #2eb85c; }
   QPushButton[task="true"] { font-size: 13px; padding: 2px; }
-  QPushButton#stop { background: #c01818; color: white; border: 3px solid white; font-size: 40px; }
-  QPushButton#stop:hover { background: #d02020; }
-  QPushButton#stop:pressed { background: #ff3030; }
   QLabel, QCheckBox { color: white; font-size: 14px; }
   QLabel#cart { font-size: 18px; font-weight: bold; }
   QScrollArea, QWidget#features { background: #10131a; }

@@ -302,14 +302,14 @@ TEST_F(ScreenWindow, StopsByItsButtonAndByKeysFromAnyFocus) {
 }
 
 TEST_F(ScreenWindow, StopsWhileAServiceHangs) {
-  nodes_.hangEnable(true);
+  nodes_.close("enable");
   click("enable");
   ASSERT_TRUE(waitFor([this] { return nodes_.enables == 1; }));
   nodes_.change([](TrackerState&, ControllerState&, OperatingState& robot) { robot.state = "PAUSED"; });
   EXPECT_TRUE(waitFor([this] { return word("Robot") == "PAUSED"; })) << "the screen lives";
   click("stop");
   EXPECT_TRUE(isStopped(1));
-  nodes_.hangEnable(false);
+  nodes_.open("enable");
 }
 
 TEST_F(ScreenWindow, TheDeadManEndsWithTheMouseButton) {
