@@ -10,6 +10,7 @@
 #include <QVBoxLayout>
 
 #include "ros/common/clocks.h"
+#include "ros/reasons/reason_table.h"
 #include "screen/action_bar.h"
 #include "screen/band_text.h"
 #include "screen/minute_limits.h"
@@ -45,6 +46,14 @@ const char* const kStyle = R"(
   QListWidget::item:selected, QTableWidget::item:selected { background: #1f5a86; color: white; }
 )";
 
+// What to do about a refusal; with a space in front. Empty if it is not known.
+QString cureOf(const std::string& refusal) {
+  static const std::string kRefused = "not engaged: ";
+  if (refusal.compare(0, kRefused.size(), kRefused) != 0) return {};
+  const ReasonRow* row = explain(Speaker::kController, refusal.substr(kRefused.size()));
+  return row == nullptr ? QString() : " " + QString::fromStdString(row->cure);
+}
+
 QString wordsOf(const Answer& answer) {
   const QString what = QString::fromStdString(answer.what);
   const QString text = QString::fromStdString(answer.text);
@@ -54,7 +63,7 @@ QString wordsOf(const Answer& answer) {
     case Outcome::kDone:
       return what + ": done. " + text;
     case Outcome::kRefused:
-      return what + ": REFUSED. " + text;
+      return what + ": REFUSED. " + text + cureOf(answer.text);
     case Outcome::kUnanswered:
       break;
   }

@@ -59,7 +59,8 @@ TEST_F(ScreenCart, ATaskWhoseInputIsMissingIsNotEngagedAndSaysWhy) {
   click("engage");
   const auto answer = [this] { return find<QLabel>("answer").text(); };
   EXPECT_TRUE(waitFor([&] {
-    return answer().startsWith("Engage: REFUSED.") && answer().contains("no motion of the view was received");
+    return answer().startsWith("Engage: REFUSED.") && answer().contains("no motion of the view was received") &&
+           answer().contains("cart.launch motion:=true");
   })) << answer().toStdString();
   click("stop");
   EXPECT_TRUE(waitFor([this] { return word("Robot") == "DISABLED"; }));

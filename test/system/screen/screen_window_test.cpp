@@ -330,6 +330,23 @@ TEST_F(ScreenWindow, TheDeadManEndsWithTheFocus) {
   hands("mouseup 1");
 }
 
+TEST_F(ScreenWindow, TheDeadManEndsWhenTheWindowIsMinimised) {
+  const test::ChildProcess manager("/usr/bin/env", {"cwm", "-c", "/dev/null"});
+  const std::string window = std::to_string(screen_->winId());
+  ASSERT_TRUE(waitFor([&] {  // it takes the window, and gives it the focus when it is asked to
+    return std::system(("xdotool windowactivate " + window + " 2>/dev/null").c_str()) == 0 && screen_->isActiveWindow();
+  }));
+  holdDeadMan();
+  hands("windowminimize " + window);
+  EXPECT_TRUE(deadManIs(false));
+  EXPECT_TRUE(waitFor([this] { return screen_->isMinimized(); }));
+  hands("windowactivate " + window);
+  EXPECT_TRUE(waitFor([this] { return !screen_->isMinimized() && screen_->isActiveWindow(); }));
+  EXPECT_TRUE(waitFor([this] { return isSilent(); })) << "the button that is still down does not take it again";
+  EXPECT_FALSE(nodes_.deadMan().back());
+  hands("mouseup 1");
+}
+
 TEST_F(ScreenWindow, TheDeadManEndsWithAPopup) {
   holdDeadMan();
   QMenu menu;
