@@ -45,6 +45,14 @@ std::optional<Limits> limitsOf(const ros::NodeHandle& node) {
   return limits;
 }
 
+// What a node said before it ended is not the silence of the one that comes in its place.
+template <class NodeFacts>
+void setConnected(NodeFacts& node, bool connected, double now) {
+  constexpr double kOfTheNewOne = 0.5;  // s: its first message may come before its connection is seen
+  if (connected && !node.connected && now - node.heard_at > kOfTheNewOne) node.heard_at = kNever;
+  node.connected = connected;
+}
+
 }  // namespace
 
 RosLink::RosLink(const std::function<void()>& news, const std::string& space)
@@ -162,10 +170,11 @@ void RosLink::look(Connection& connection) {
   const bool robot = connection.operating_state.getNumPublishers() > 0;
   const bool playback = connection.playback.getNumPublishers() > 0;
   const bool dead_man = connection.sender->isDeadManWanted();
+  const double now = steadyNow();
   keeper_.change([&](Facts& facts) {
-    facts.tracker.connected = tracker;
-    facts.controller.connected = controller;
-    facts.robot.connected = robot;
+    setConnected(facts.tracker, tracker, now);
+    setConnected(facts.controller, controller, now);
+    setConnected(facts.robot, robot, now);
     facts.dead_man_wanted = dead_man;
     facts.playback.connected = playback;
   });

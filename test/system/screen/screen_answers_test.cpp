@@ -136,6 +136,25 @@ TEST_F(ScreenAnswers, WhatIsEnabledAfterDisableIsDisabledOnceMore) {
   EXPECT_TRUE(isAnswered("Disable, since Enable came late"));
 }
 
+// The window says WAITING then, and not that the new one does not speak any more.
+TEST(ScreenLink, ANodeInPlaceOfOneThatHasEndedHasNotSpokenYet) {
+  ros::NodeHandle node;
+  screen::RosLink link([] {}, "again");
+  const auto tracker = [&] { return link.facts().tracker; };
+  {
+    ros::Publisher state = node.advertise<TrackerState>("again/tracker/state", 1, true);
+    state.publish(TrackerState());
+    ASSERT_TRUE(waitFor([&] { return tracker().connected && tracker().heard_at >= 0.0; }));
+  }
+  ASSERT_TRUE(waitFor([&] { return !tracker().connected && steadyNow() - tracker().heard_at > 1.0; }));
+  EXPECT_GE(tracker().heard_at, 0.0) << "it was there";
+  ros::Publisher state = node.advertise<TrackerState>("again/tracker/state", 1, true);
+  ASSERT_TRUE(waitFor([&] { return tracker().connected; }));
+  EXPECT_LT(tracker().heard_at, 0.0);
+  state.publish(TrackerState());
+  EXPECT_TRUE(waitFor([&] { return tracker().heard_at >= 0.0; }));
+}
+
 }  // namespace
 }  // namespace laparoscope_servo
 
