@@ -27,14 +27,12 @@ ActionBar::ActionBar(RosLink& link, const std::function<void()>& stop, QWidget* 
   add(1, 1, "Disengage", "The controller stands", [&link] { link.engage(false); });
   add(0, 2, "Hold", "The arm pauses", [&link] { link.pause(); });
   add(1, 2, "Resume", "A paused arm goes on", [&link] { link.resume(); });
-  add(0, 3, "Clear region", "The tracker forgets its region", [&link] { link.clearRegion(); });
+  add(0, 3, "Clear region", "The tracker forgets its region", [&link] { link.tracker().clearRegion(); });
   add(1, 3, "Clear fault", "After its cause was removed", [&link] { link.clearFault(); });
   add(0, 4, "Freeze", "Keeps this picture, to draw a region in it at leisure; the arm is not held by it",
       [&link] { link.tracker().freeze(); });
   add(1, 4, "Live", "Back from the frozen picture", [&link] { link.tracker().thaw(); });
-  auto* stop_button = makeButton(
-      "STOP", "Disengages and disables: also by Escape or Pause", [] {}, this);
-  connect(stop_button, &QPushButton::pressed, this, [stop] { stop(); });
+  QPushButton* stop_button = makeStopButton(stop, this);
   stop_button->setMinimumWidth(kStopWidth);
   grid->addWidget(stop_button, 0, 5, 2, 1);
   for (int column = 0; column < 5; ++column) grid->setColumnStretch(column, 2);

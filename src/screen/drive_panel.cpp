@@ -40,7 +40,7 @@ DrivePanel::DrivePanel(RosLink& link, QWidget* parent) : QWidget(parent), link_(
   row->setSpacing(4);
   row->addWidget(promise_ = new FittedLabel("promise", kLeastPromise, kMostPromise, this), 1);
   keep_view_ = makeButton(
-      "Keep this view", "What is seen now is what the task Hold view keeps", [this] { link_.keepView(); }, this);
+      "Keep this view", "What is seen now is what the task Stabilise keeps", [this] { link_.keepView(); }, this);
   keep_view_->setProperty("task", true);
   keep_view_->setFixedWidth(kKeepWidth);
   keep_view_->setVisible(false);

@@ -70,7 +70,7 @@ void HoldSender::run() {
       message.data = static_cast<std::uint8_t>(pressed);
       dead_man_publisher_.publish(message);
     }
-    const SliderWords::Word word = sliders.turn(!ends && slider_.isHeld(now));
+    const SliderWords::Word word = sliders.turn(!ends && slider_.isHeld(now), now);
     if (word != SliderWords::Word::kNothing) {
       std::array<double, 4> velocity{};
       for (std::size_t k = 0; k < velocity.size() && word == SliderWords::Word::kValue; ++k) {

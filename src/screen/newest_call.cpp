@@ -11,17 +11,19 @@ NewestCall::~NewestCall() {
   shared_->waiting = nullptr;
 }
 
-void NewestCall::ask(const Question& question) {
+bool NewestCall::ask(const Question& question) {
   const std::lock_guard<std::mutex> lock(shared_->mutex);
   if (shared_->runs) {
     shared_->waiting = question;
-    return;
+    return true;
   }
   try {
     std::thread([shared = shared_, question] { run(shared, question); }).detach();
     shared_->runs = true;
-  } catch (const std::exception&) {  // no thread is available: the next question tries again
+  } catch (const std::exception&) {
+    return false;
   }
+  return true;
 }
 
 void NewestCall::run(const std::shared_ptr<Shared>& shared, Question question) {

@@ -10,7 +10,7 @@ namespace laparoscope_servo::screen {
 
 class NewestCall {
  public:
-  // Does the call, and returns the action for its answer.
+  // Does the call, and returns the action for its answer, which must not ask here again.
   using Question = std::function<std::function<void()>()>;
 
   NewestCall() = default;
@@ -19,7 +19,8 @@ class NewestCall {
   NewestCall(const NewestCall&) = delete;
   NewestCall& operator=(const NewestCall&) = delete;
 
-  void ask(const Question& question);
+  // Returns false if no thread is available.
+  bool ask(const Question& question);
 
  private:
   struct Shared {

@@ -11,6 +11,9 @@ namespace laparoscope_servo::screen {
 // press it then.
 QPushButton* makeButton(const QString& text, const QString& tip, const std::function<void()>& act, QWidget* parent);
 
+// Acts when it is pressed, not when it is released.
+QPushButton* makeStopButton(const std::function<void()>& act, QWidget* parent);
+
 // Marks the active one of several buttons.
 void markActive(QPushButton& button, bool active);
 

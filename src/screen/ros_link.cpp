@@ -1,17 +1,12 @@
 #include "screen/ros_link.h"
 
 #include <diagnostic_msgs/DiagnosticArray.h>
-#include <laparoscope_servo/ControlPlayback.h>
 #include <laparoscope_servo/PlaybackState.h>
 #include <laparoscope_servo/ScopeVelocity.h>
-#include <laparoscope_servo/SelectFeatures.h>
-#include <laparoscope_servo/SelectTask.h>
 #include <ros/init.h>
 #include <ros/master.h>
 #include <ros/param.h>
 #include <std_msgs/Empty.h>
-#include <std_srvs/SetBool.h>
-#include <std_srvs/Trigger.h>
 
 #include <chrono>
 #include <limits>
@@ -21,7 +16,6 @@
 #include "ros/common/clocks.h"
 #include "screen/listen.h"
 #include "screen/recorder_status.h"
-#include "screen/task_words.h"
 
 namespace laparoscope_servo::screen {
 
@@ -49,6 +43,14 @@ std::optional<Limits> limitsOf(const ros::NodeHandle& node) {
     if (!node.getParam(std::string("controller/limits/velocity/") + names[k], limits[k])) return std::nullopt;
   }
   return limits;
+}
+
+// What a node said before it ended is not the silence of the one that comes in its place.
+template <class NodeFacts>
+void setConnected(NodeFacts& node, bool connected, double now) {
+  constexpr double kOfTheNewOne = 0.5;  // s: its first message may come before its connection is seen
+  if (connected && !node.connected && now - node.heard_at > kOfTheNewOne) node.heard_at = kNever;
+  node.connected = connected;
 }
 
 }  // namespace
@@ -168,10 +170,11 @@ void RosLink::look(Connection& connection) {
   const bool robot = connection.operating_state.getNumPublishers() > 0;
   const bool playback = connection.playback.getNumPublishers() > 0;
   const bool dead_man = connection.sender->isDeadManWanted();
+  const double now = steadyNow();
   keeper_.change([&](Facts& facts) {
-    facts.tracker.connected = tracker;
-    facts.controller.connected = controller;
-    facts.robot.connected = robot;
+    setConnected(facts.tracker, tracker, now);
+    setConnected(facts.controller, controller, now);
+    setConnected(facts.robot, robot, now);
     facts.dead_man_wanted = dead_man;
     facts.playback.connected = playback;
   });
@@ -181,7 +184,7 @@ void RosLink::look(Connection& connection) {
   choosePicture(connection, tracker, features);
   ++connection.turns;
   if (tracker && connection.turns % kViewTurns == 1) tracker_.listViews();
-  if (!tracker) keeper_.change([](Facts& facts) { facts.views.reset(), facts.frozen.reset(); });
+  if (!tracker) tracker_.forget();
   // The limits cannot change while the controller runs, but may differ after its restart.
   if (!controller) connection.limits_wanted = true;
   if (!controller || !connection.limits_wanted) return;
@@ -211,79 +214,9 @@ void RosLink::choosePicture(Connection& connection, bool tracker, const FeatureL
       });
 }
 
-void RosLink::stop() {
-  dead_man_.letGo();
-  slider_.letGo();
-  tracker_.thaw();
-  bool connected = false;
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (connection_) {
-      connection_->robot_stop.publish(std_msgs::Empty());
-      connection_->controller_stop.publish(std_msgs::Empty());
-      connection_->sender->wake();
-      connected = true;
-    }
-  }
-  {
-    const std::lock_guard<std::mutex> lock(stop_mutex_);
-    stop_report_ = connected ? StopReport(keeper_.facts()) : StopReport();
-  }
-  if (!connected) return take(StopReport().answer());
-  // Without a lock: the answer of another call may ask for it while calls_ waits for that answer.
-  calls_.call(resolved("controller/engage"), "STOP", std_srvs::SetBool(), told(StopReport::Node::kController));
-  calls_.call(resolved("aesop/disable"), "STOP", std_srvs::Trigger(), told(StopReport::Node::kArm));
-}
-
-ServiceCalls::Told RosLink::told(StopReport::Node node) {
-  return [this, node](const Answer& answer) {
-    Answer whole;
-    {
-      const std::lock_guard<std::mutex> lock(stop_mutex_);
-      stop_report_.answered(node, answer);
-      whole = stop_report_.answer();
-    }
-    take(whole);
-  };
-}
-
 std::string RosLink::resolved(const std::string& name) const {
   const std::lock_guard<std::mutex> lock(mutex_);
   return connection_ ? connection_->node.resolveName(name) : "";
-}
-
-void RosLink::trigger(const std::string& service, const std::string& what) {
-  const std::string name = resolved(service);
-  if (!name.empty()) calls_.call(name, what, std_srvs::Trigger());
-}
-
-void RosLink::engage(bool on) {
-  std_srvs::SetBool request;
-  request.request.data = static_cast<std::uint8_t>(on);
-  const std::string name = resolved("controller/engage");
-  if (!name.empty()) calls_.call(name, on ? "Engage" : "Disengage", request);
-}
-
-void RosLink::selectTask(const std::string& task) {
-  SelectTask request;
-  request.request.task = task;
-  const std::string name = resolved("controller/select_task");
-  if (!name.empty()) calls_.call(name, "Task " + nameOfTask(task), request);
-}
-
-void RosLink::keepView() {
-  SelectFeatures request;
-  request.request.selection = "[{id: view, motion: []}]";
-  const std::string name = resolved("motion/select_features");
-  if (!name.empty()) calls_.call(name, "Keep this view", request);
-}
-
-void RosLink::controlPlayback(const std::string& command, double position) {
-  ControlPlayback request;
-  request.request.command = command;
-  request.request.position = position;
-  const std::string name = resolved("player/control");
-  if (!name.empty()) calls_.call(name, "Recording: " + command, request);
 }
 
 void RosLink::setShares(const std::array<double, 4>& shares) {

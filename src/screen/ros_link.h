@@ -26,6 +26,7 @@
 #include "screen/service_calls.h"
 #include "screen/stop_report.h"
 #include "screen/tracker_link.h"
+#include "screen/wish.h"
 
 namespace laparoscope_servo::screen {
 
@@ -47,12 +48,13 @@ class RosLink {
   // Stops over open connections, without a master; then also by the services, if there is a master.
   void stop();
 
-  void enable() { trigger("aesop/enable", "Enable"); }
-  void disable() { trigger("aesop/disable", "Disable"); }
-  void pause() { trigger("aesop/pause", "Hold"); }
-  void resume() { trigger("aesop/resume", "Resume"); }
+  // What lets the arm or the controller move is asked to end once more, if it is answered only after its end was asked
+  // for.
+  void enable();
+  void disable();
+  void pause();
+  void resume();
   void clearFault() { trigger("aesop/clear_fault", "Clear fault"); }
-  void clearRegion() { trigger("tracker/reset", "Clear region"); }
   void engage(bool on);
   void selectTask(const std::string& task);
   // Makes the present view the one that the task STABILISE keeps.
@@ -87,9 +89,10 @@ class RosLink {
   void choosePicture(Connection& connection, bool tracker, const FeatureLink::Connected& features);
   void renewed();
   std::string resolved(const std::string& name) const;
-  void trigger(const std::string& service, const std::string& what);
-  // Who takes what a node answers to STOP.
-  ServiceCalls::Told told(StopReport::Node node);
+  void trigger(const std::string& service, const std::string& what, const ServiceCalls::Manner& manner = {});
+  void setEngaged(bool on, const std::string& what, const ServiceCalls::Manner& manner);
+  // Of a call of STOP: its answer is for the report.
+  ServiceCalls::Manner reportOf(StopReport::Node node);
   void take(const Answer& answer);
 
   std::function<void()> news_;
@@ -105,6 +108,8 @@ class RosLink {
   std::unique_ptr<Connection> connection_;
   std::mutex stop_mutex_;
   StopReport stop_report_;  // of the last STOP
+  Wish stopped_;            // ended by the next STOP
+  Wish enabled_, resumed_, engaged_;
   ParameterLink parameters_;
   ServiceCalls calls_;
   std::thread thread_;

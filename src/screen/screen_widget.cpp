@@ -10,6 +10,7 @@
 #include <QVBoxLayout>
 
 #include "ros/common/clocks.h"
+#include "ros/reasons/reason_table.h"
 #include "screen/action_bar.h"
 #include "screen/band_text.h"
 #include "screen/minute_limits.h"
@@ -32,10 +33,8 @@ const char* const kStyle = R"(
   QPushButton:pressed { background: #5b6678; }
   QPushButton[active="true"] { background: #1f5a36; border: 2px solid #2eb85c; }
   QPushButton[task="true"] { font-size: 13px; padding: 2px; }
-  QPushButton#stop { background: #c01818; color: white; border: 3px solid white; font-size: 40px; }
-  QPushButton#stop:hover { background: #d02020; }
-  QPushButton#stop:pressed { background: #ff3030; }
   QLabel, QCheckBox { color: white; font-size: 14px; }
+  QLabel#cart { font-size: 18px; font-weight: bold; }
   QScrollArea, QWidget#features { background: #10131a; }
   QTabWidget::pane { border: 1px solid #40464f; }
   QTabBar { font-size: 14px; }
@@ -47,6 +46,14 @@ const char* const kStyle = R"(
   QListWidget::item:selected, QTableWidget::item:selected { background: #1f5a86; color: white; }
 )";
 
+// What to do about a refusal; with a space in front. Empty if it is not known.
+QString cureOf(const std::string& refusal) {
+  static const std::string kRefused = "not engaged: ";
+  if (refusal.compare(0, kRefused.size(), kRefused) != 0) return {};
+  const ReasonRow* row = explain(Speaker::kController, refusal.substr(kRefused.size()));
+  return row == nullptr ? QString() : " " + QString::fromStdString(row->cure);
+}
+
 QString wordsOf(const Answer& answer) {
   const QString what = QString::fromStdString(answer.what);
   const QString text = QString::fromStdString(answer.text);
@@ -56,7 +63,7 @@ QString wordsOf(const Answer& answer) {
     case Outcome::kDone:
       return what + ": done. " + text;
     case Outcome::kRefused:
-      return what + ": REFUSED. " + text;
+      return what + ": REFUSED. " + text + cureOf(answer.text);
     case Outcome::kUnanswered:
       break;
   }

@@ -1,4 +1,5 @@
-// Calls services, each call in its own thread, so that a hung one blocks no other. One call of each service at a time.
+// Calls services in separate threads, so that a hung one blocks no other. While a call is unanswered, only the newest
+// one of its line waits.
 #pragma once
 
 #include <ros/node_handle.h>
@@ -9,9 +10,10 @@
 #include <memory>
 #include <mutex>
 #include <string>
-#include <vector>
 
 #include "screen/facts.h"
+#include "screen/newest_call.h"
+#include "screen/wish.h"
 
 namespace laparoscope_servo::screen {
 
@@ -19,8 +21,19 @@ class ServiceCalls {
  public:
   using Told = std::function<void(const Answer&)>;
 
+  struct Manner {
+    // Takes the results instead of the constructor's.
+    Told told = nullptr;
+    // An unwanted call is not sent any more. If it has been sent already, its answer is dropped; null: always wanted.
+    Wish::Holds wanted = nullptr;
+    // Called instead when the node has done what the unwanted call asked for.
+    std::function<void()> late = nullptr;
+    // Calls with the same line are sent in order; empty: the service.
+    std::string line = "";
+  };
+
   // `told` is called from any thread, at the beginning and the end of a call.
-  explicit ServiceCalls(const Told& told) : shared_(std::make_shared<Shared>()) { shared_->told = told; }
+  explicit ServiceCalls(const Told& told) : told_(told) {}
   // Later results are ignored; a hung call keeps its thread.
   ~ServiceCalls();
   ServiceCalls(const ServiceCalls&) = delete;
@@ -29,40 +42,29 @@ class ServiceCalls {
   // `service`: resolved name. `what`: name for texts. The response must have `success` and `message`. `then` is called
   // before `told` on success.
   template <class Service>
-  void call(const std::string& service, const std::string& what, const Service& request,
+  void call(const std::string& service, const std::string& what, const Service& request, const Manner& manner = {},
             const std::function<void(const typename Service::Response&)>& then = nullptr) {
-    start(service, what, asking(service, request, then), nullptr);
-  }
-  // As above, with the results to `told` alone, also those of a call of this service that is under way already.
-  template <class Service>
-  void call(const std::string& service, const std::string& what, const Service& request, const Told& told) {
-    start(service, what, asking<Service>(service, request, nullptr), told);
-  }
-
- private:
-  using Ask = std::function<void(Answer&, std::function<void()>&)>;
-  struct Shared {
-    std::mutex mutex;
-    std::map<std::string, std::vector<Told>> waiting;  // of each call under way: who is told; null: the constructor's
-    Told told;
-    void tell(const Told& who, const Answer& answer);
-    void end(const std::string& service, const Answer& answer, const std::function<void()>& act);
-  };
-  template <class Service>
-  static Ask asking(const std::string& service, const Service& request,
-                    const std::function<void(const typename Service::Response&)>& then) {
-    return [service, request, then](Answer& answer, std::function<void()>& act) {
+    const Ask ask = [service, request, then](Answer& answer, std::function<void()>& act) {
       Service call = request;
       if (!ros::service::call(service, call)) return unanswered(service, answer);
       answer.outcome = call.response.success ? Outcome::kDone : Outcome::kRefused;
       answer.text = call.response.message;
       if (answer.outcome == Outcome::kDone && then) act = [then, response = call.response] { then(response); };
     };
+    start(service, what, ask, manner);
   }
-  static void unanswered(const std::string& service, Answer& answer);
-  void start(const std::string& service, const std::string& what, const Ask& ask, const Told& told);
 
-  std::shared_ptr<Shared> shared_;  // shared with the threads
+ private:
+  using Ask = std::function<void(Answer&, std::function<void()>&)>;
+  static void unanswered(const std::string& service, Answer& answer);
+  static Answer askSafely(const std::string& what, const Ask& ask, std::function<void()>& act);
+  void start(const std::string& service, const std::string& what, const Ask& ask, const Manner& manner);
+  std::shared_ptr<NewestCall> lineOf(const std::string& name);  // null: the destructor has begun
+
+  Told told_;
+  std::mutex mutex_;  // guards what follows; not held while anyone is told
+  bool closed_ = false;
+  std::map<std::string, std::shared_ptr<NewestCall>> lines_;
 };
 
 }  // namespace laparoscope_servo::screen

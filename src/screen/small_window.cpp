@@ -24,12 +24,9 @@ SmallWindow::SmallWindow(ScreenWidget* screen) {
   area->setWidgetResizable(true);
   area->setWidget(screen);
   layout->addWidget(area, 1);
-  auto* stop = makeButton(
-      "STOP", "Disengages and disables: also by Escape or Pause", [] {}, this);
+  QPushButton* stop = makeStopButton([screen] { screen->stop(); }, this);
   stop->setObjectName("stop_in_sight");
-  stop->setStyleSheet("background: #c01818; color: white; font-size: 34px; font-weight: bold;");
   stop->setFixedHeight(kStopHeight);
-  connect(stop, &QPushButton::pressed, screen, &ScreenWidget::stop);
   layout->addWidget(stop);
 }
 

@@ -10,7 +10,7 @@ const std::vector<TaskWords>& taskWords() {
        "a region and a calibrated camera.", "The scope follows the region."},
       {"MANUAL", "By hand", "the scope moves while a slider or stick is held. Only you watch the picture.",
        "the sliders below or a stick.", "The scope is driven by hand."},
-      {"STABILISE", "Hold view", "the scope turns to keep the view as it was at \"Keep this view\".",
+      {"STABILISE", "Stabilise", "the scope turns to keep the view as it was at \"Keep this view\".",
        "the node motion and a calibrated camera.", "The scope holds the whole view."},
       {"CENTRE_TIP", "Centre tip", "the scope turns to a tip that is held still away from the middle.",
        "the node instrument and a calibrated camera.", "The scope keeps the tip near the middle."}};

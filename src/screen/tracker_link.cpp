@@ -5,6 +5,7 @@
 #include <laparoscope_servo/ListViews.h>
 #include <laparoscope_servo/SelectRoi.h>
 #include <laparoscope_servo/StoredView.h>
+#include <std_srvs/Trigger.h>
 
 #include <memory>
 #include <utility>
@@ -19,6 +20,9 @@ namespace laparoscope_servo::screen {
 namespace {
 
 using StoredView_ = laparoscope_servo::StoredView;
+// All that gives the tracker another region is sent in order.
+const char* const kRegionLine = "region";
+
 using Views = std::shared_ptr<const std::vector<StoredView>>;
 
 CheckRoi questionOf(const QRect& pixels, std::int64_t stamp) {
@@ -30,6 +34,10 @@ CheckRoi questionOf(const QRect& pixels, std::int64_t stamp) {
 
 std::int64_t stampOf(const std::optional<Frozen>& frozen) {
   return frozen ? frozen->stamp : 0;
+}
+
+bool same(const std::optional<Drawn>& a, const std::optional<Drawn>& b) {
+  return a && b && a->region == b->region && a->stamp == b->stamp;
 }
 
 Views viewsOf(const ListViews::Response& response) {
@@ -77,14 +85,23 @@ void TrackerLink::takeOffer(const Offer& offer) {
 void TrackerLink::select(const QRect& pixels, std::int64_t stamp) {
   const std::string name = resolved_(stamp != 0 ? "tracker/select_frozen_roi" : "tracker/select_roi");
   if (name.empty()) return;
-  const auto taken = [this] { keeper_.change([](Facts& facts) { facts.drawn.reset(), facts.frozen.reset(); }); };
+  // What was drawn or frozen since then is not ended by the answer.
+  const auto taken = [this, drawn = keeper_.facts().drawn, holds = frozen_.present()](const auto&) {
+    const bool ends_frozen = holds();
+    if (ends_frozen) frozen_.end();
+    keeper_.change([&](Facts& facts) {
+      if (same(facts.drawn, drawn)) facts.drawn.reset();
+      if (ends_frozen) facts.frozen.reset();
+    });
+  };
+  ServiceCalls::Manner manner;
+  manner.line = kRegionLine;
   if (stamp == 0) {
     SelectRoi request;
     request.request.roi = messageOf(pixels);
-    return calls_.call<SelectRoi>(name, "Region", request, [taken](const SelectRoi::Response&) { taken(); });
+    return calls_.call<SelectRoi>(name, "Region", request, manner, taken);
   }
-  calls_.call<CheckRoi>(name, "Region of an earlier picture", questionOf(pixels, stamp),
-                        [taken](const CheckRoi::Response&) { taken(); });
+  calls_.call<CheckRoi>(name, "Region of an earlier picture", questionOf(pixels, stamp), manner, taken);
 }
 
 void TrackerLink::forgetDrawn() {
@@ -114,19 +131,46 @@ void TrackerLink::checkRegion(const QRect& pixels) {
 void TrackerLink::freeze() {
   const std::string name = resolved_("tracker/freeze_image");
   if (name.empty()) return;
-  calls_.call<FreezeImage>(name, "Freeze", FreezeImage(), [this](const FreezeImage::Response& response) {
+  frozen_.end();
+  ServiceCalls::Manner manner;
+  manner.wanted = frozen_.present();
+  calls_.call<FreezeImage>(name, "Freeze", FreezeImage(), manner, [=](const FreezeImage::Response& response) {
     Frozen frozen;
     frozen.image = previewImage(response.preview);
     frozen.stamp = static_cast<std::int64_t>(response.preview.header.stamp.toNSec());
     frozen.size = {side(response.width), side(response.height)};
     frozen.at = steadyNow();
     if (frozen.image.isNull() || frozen.size.isEmpty()) return;
-    keeper_.change([&](Facts& facts) { facts.frozen = frozen; });
+    keeper_.change([&](Facts& facts) {
+      if (manner.wanted()) facts.frozen = frozen;
+    });
   });
 }
 
 void TrackerLink::thaw() {
+  frozen_.end();
   keeper_.change([](Facts& facts) { facts.frozen.reset(), facts.drawn.reset(); });
+}
+
+void TrackerLink::forget() {
+  thaw();
+  keeper_.change([](Facts& facts) { facts.views.reset(), facts.verdict.reset(); });
+}
+
+void TrackerLink::clearRegion() {
+  const std::string name = resolved_("tracker/reset");
+  ServiceCalls::Manner manner;
+  manner.line = kRegionLine;
+  if (!name.empty()) calls_.call(name, "Clear region", std_srvs::Trigger(), manner);
+}
+
+// Each name is a wish of its own.
+void TrackerLink::storeView(const std::string& name) {
+  call("tracker/store_view", "Store view", name, "store view " + name);
+}
+
+void TrackerLink::recallView(const std::string& name) {
+  call("tracker/recall_view", "Recall view", name, kRegionLine);
 }
 
 // Fetches the pictures only if the list has changed.
@@ -142,12 +186,15 @@ void TrackerLink::listViews() {
   });
 }
 
-void TrackerLink::call(const std::string& service, const std::string& what, const std::string& view) {
+void TrackerLink::call(const std::string& service, const std::string& what, const std::string& view,
+                       const std::string& line) {
   const std::string name = resolved_(service);
   if (name.empty()) return;
   StoredView_ request;
   request.request.name = view;
-  calls_.call<StoredView_>(name, what + " '" + view + "'", request,
+  ServiceCalls::Manner manner;
+  manner.line = line;
+  calls_.call<StoredView_>(name, what + " '" + view + "'", request, manner,
                            [this](const StoredView_::Response&) { listViews(); });
 }
 

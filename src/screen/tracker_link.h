@@ -8,6 +8,7 @@
 #include "screen/fact_keeper.h"
 #include "screen/newest_call.h"
 #include "screen/service_calls.h"
+#include "screen/wish.h"
 
 namespace laparoscope_servo::screen {
 
@@ -27,21 +28,25 @@ class TrackerLink {
   void checkRegion(const QRect& pixels);
   void freeze();
   void thaw();
+  // Forgets what an earlier tracker has answered.
+  void forget();
+  void clearRegion();
 
-  void storeView(const std::string& name) { call("tracker/store_view", "Store view", name); }
-  void recallView(const std::string& name) { call("tracker/recall_view", "Recall view", name); }
+  void storeView(const std::string& name);
+  void recallView(const std::string& name);
   // Checks whether the list of views has changed.
   void listViews();
 
  private:
   // `stamp`: as of Offer.
   void select(const QRect& pixels, std::int64_t stamp);
-  void call(const std::string& service, const std::string& what, const std::string& view);
+  void call(const std::string& service, const std::string& what, const std::string& view, const std::string& line);
 
   FactKeeper& keeper_;
   ServiceCalls& calls_;
   std::function<std::string(const std::string&)> resolved_;
   std::function<void()> news_;
+  Wish frozen_;  // ended by all that ends a frozen picture
   NewestCall checks_;
   NewestCall lists_;
 };

@@ -19,11 +19,11 @@ std::vector<bool> DeadManWords::turn(bool held) {
   return {false};
 }
 
-SliderWords::Word SliderWords::turn(bool held) {
-  const bool taken = held && !was_held_;
+SliderWords::Word SliderWords::turn(bool held, double now) {
+  if (held && !was_held_) taken_at_ = now;
   was_held_ = held;
   if (held) farewells_ = kFarewellZeros;
-  if (held) return taken ? Word::kZero : Word::kValue;
+  if (held) return now - taken_at_ < kRest ? Word::kZero : Word::kValue;
   if (farewells_ == 0) return Word::kNothing;
   --farewells_;
   return Word::kZero;

@@ -23,15 +23,19 @@ class DeadManWords {
   int farewells_ = 0;
 };
 
-// Sliders: their velocity while held, then zero for a moment, then nothing. The first message is zero, because the
-// controller accepts only a stick that it has seen at rest.
+// Sliders: their velocity while held, then zero for a moment, then nothing. Zero comes first, because the controller
+// accepts only a stick that it has seen at rest; and stays for kRest, since the controller looks at the newest message
+// only, once in a cycle.
 class SliderWords {
  public:
   enum class Word { kNothing, kZero, kValue };
-  Word turn(bool held);
+  static constexpr double kRest = 0.1;  // s: a cycle of the slowest controller (parameter rate)
+  // `now`: s.
+  Word turn(bool held, double now);
 
  private:
   bool was_held_ = false;
+  double taken_at_ = 0.0;  // s
   int farewells_ = 0;
 };
 

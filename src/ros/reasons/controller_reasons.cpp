@@ -153,7 +153,7 @@ const std::vector<ReasonRow>& controllerReasons() {
        "The scope is at the end of its allowed range.",
        "Choose another view, or another range."},
       {{"slow: visible fraction below ", "not deeper: visible fraction below ", "not deeper: corner error above "},
-       "Little of the region is seen, so the scope goes slower, or no deeper.",
+       "What is followed is seen badly, so the scope goes slower, or no deeper.",
        "Take away what covers it, or wait."},
       {{"slow: image older than "},
        "The pictures come late, so the scope goes slower.",

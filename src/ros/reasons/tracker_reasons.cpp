@@ -70,7 +70,7 @@ const std::vector<ReasonRow>& trackerReasons() {
        "Draw it where tissue is seen."},
       {{" lies on an instrument by "},
        "The region lies on an instrument: the scope would follow it, and not the tissue.",
-       "Draw the region that the reason names, or take the instrument away first.",
+       "Take the region that is offered instead, or take the instrument away first.",
        "first_minutes.md#which-region-can-be-tracked"},
       {{" is not inside the image of "}, "The region lies outside the picture.", "Draw it inside."},
       {{"the picture was frozen ", "the picture that was frozen is kept no more", "no picture is kept"},

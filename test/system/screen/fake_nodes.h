@@ -22,7 +22,10 @@
 #include <std_srvs/Trigger.h>
 
 #include <atomic>
+#include <limits>
+#include <map>
 #include <mutex>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -55,7 +58,11 @@ class FakeNodes {
     changed_ = true;
   }
   void runCamera(bool runs) { camera_runs_ = runs; }
-  void hangEnable(bool hangs) { enable_hangs_ = hangs; }
+  // Of a service: "enable", "engage", "freeze", "region". Closed: its calls are answered only as far as they are
+  // admitted.
+  void close(const std::string& service) { setGate(service, 0); }
+  void admit(const std::string& service, int calls) { setGate(service, calls); }
+  void open(const std::string& service) { setGate(service, std::numeric_limits<int>::max()); }
 
   std::vector<sensor_msgs::RegionOfInterest> regions() const { return get(regions_); }
   std::vector<sensor_msgs::RegionOfInterest> frozenRegions() const { return get(frozen_regions_); }
@@ -77,7 +84,7 @@ class FakeNodes {
     checks = 0;
     dead_man_words_.clear();
     manual_commands_.clear();
-    robot_stops = controller_stops = disables = disengages = enables = 0;
+    robot_stops = controller_stops = disables = disengages = enables = engages = freezes = freezes_answered = 0;
   }
   bool connected() const {
     return preview_.getNumSubscribers() > 0 && states_.getNumSubscribers() > 0 && command_.getNumSubscribers() > 0 &&
@@ -85,13 +92,29 @@ class FakeNodes {
            dead_man_.getNumPublishers() > 0 && manual_.getNumPublishers() > 0;
   }
 
-  std::atomic<int> robot_stops{0}, controller_stops{0}, disables{0}, disengages{0}, enables{0}, checks{0}, freezes{0};
+  std::atomic<int> robot_stops{0}, controller_stops{0}, disables{0}, disengages{0}, enables{0}, checks{0}, freezes{0},
+      freezes_answered{0}, engages{0};
 
  private:
   template <class Value>
   Value get(const Value& value) const {
     const std::lock_guard<std::mutex> lock(mutex_);
     return value;
+  }
+  void setGate(const std::string& service, int calls) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    gates_[service] = calls;
+  }
+  // Blocks a service's thread.
+  void pass(const std::string& service) {
+    const auto admitted = [&] {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      const auto gate = gates_.find(service);
+      if (gate != gates_.end() && gate->second == 0) return false;
+      if (gate != gates_.end()) --gate->second;
+      return true;
+    };
+    while (!admitted() && !ends_ && ros::ok()) ros::WallDuration(0.01).sleep();
   }
   template <class Message, class Value>
   ros::Subscriber keep(const std::string& topic, std::vector<Value>& kept, Value (*of)(const Message&)) {
@@ -153,9 +176,10 @@ class FakeNodes {
   TrackerState tracker_;
   ControllerState controller_;
   OperatingState robot_;
-  std::atomic<bool> changed_{true}, camera_runs_{true}, enable_hangs_{false}, refuses_tasks_{false}, ends_{false};
+  std::atomic<bool> changed_{true}, camera_runs_{true}, refuses_tasks_{false}, ends_{false};
   std::vector<sensor_msgs::RegionOfInterest> regions_, frozen_regions_;
   std::vector<std::string> stored_, recalled_, tasks_, kept_views_;
+  std::map<std::string, int> gates_;  // calls that are still admitted
   std::vector<bool> dead_man_words_;
   std::vector<ScopeVelocity> manual_commands_;
 
@@ -175,12 +199,13 @@ class FakeNodes {
                                                                [](const ScopeVelocity& command) { return command; });
   ros::ServiceServer enable_ = trigger("aesop/enable", [this] {
     ++enables;
-    while (enable_hangs_ && !ends_ && ros::ok()) ros::WallDuration(0.01).sleep();
+    pass("enable");
   });
   ros::ServiceServer disable_ = trigger("aesop/disable", [this] { ++disables; });
   ros::ServiceServer engage_ = node_.advertiseService<std_srvs::SetBool::Request, std_srvs::SetBool::Response>(
       "controller/engage", [this](std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response) {
-        if (request.data == 0) ++disengages;
+        ++(request.data == 0 ? disengages : engages);
+        if (request.data != 0) pass("engage");
         response.success = 1;
         return true;
       });
@@ -204,8 +229,11 @@ class FakeNodes {
   // Takes what is 100 px wide or more; otherwise 100 px would do.
   ros::ServiceServer select_ = node_.advertiseService<SelectRoi::Request, SelectRoi::Response>(
       "tracker/select_roi", [this](SelectRoi::Request& request, SelectRoi::Response& response) {
-        const std::lock_guard<std::mutex> lock(mutex_);
-        regions_.push_back(request.roi);
+        {
+          const std::lock_guard<std::mutex> lock(mutex_);
+          regions_.push_back(request.roi);
+        }
+        pass("region");
         response.success = static_cast<std::uint8_t>(request.roi.width >= 100);
         return true;
       });
@@ -222,6 +250,8 @@ class FakeNodes {
   ros::ServiceServer freeze_ = node_.advertiseService<FreezeImage::Request, FreezeImage::Response>(
       "tracker/freeze_image", [this](FreezeImage::Request&, FreezeImage::Response& response) {
         ++freezes;
+        pass("freeze");
+        ++freezes_answered;
         response.success = 1;
         response.preview = picture(ros::Time(5.0), 3);
         response.width = 1280;

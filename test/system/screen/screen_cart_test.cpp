@@ -52,14 +52,15 @@ TEST_F(ScreenCart, SelectsEnablesEngagesAndStops) {
 TEST_F(ScreenCart, ATaskWhoseInputIsMissingIsNotEngagedAndSaysWhy) {
   show({1280, 800});
   ASSERT_TRUE(waitFor([this] { return word("Robot") == "DISABLED" && word("Controller") == "IDLE"; }, 90.0));
-  click("hold_view");
-  ASSERT_TRUE(waitFor([this] { return find<screen::StateBand>("Controller").text().note == "Task: Hold view"; }));
+  click("stabilise");
+  ASSERT_TRUE(waitFor([this] { return find<screen::StateBand>("Controller").text().note == "Task: Stabilise"; }));
   click("enable");
   ASSERT_TRUE(waitFor([this] { return word("Robot") == "ENABLED"; })) << word("Robot");
   click("engage");
   const auto answer = [this] { return find<QLabel>("answer").text(); };
   EXPECT_TRUE(waitFor([&] {
-    return answer().startsWith("Engage: REFUSED.") && answer().contains("no motion of the view was received");
+    return answer().startsWith("Engage: REFUSED.") && answer().contains("no motion of the view was received") &&
+           answer().contains("cart.launch motion:=true");
   })) << answer().toStdString();
   click("stop");
   EXPECT_TRUE(waitFor([this] { return word("Robot") == "DISABLED"; }));

@@ -244,7 +244,7 @@ TEST_F(ScreenWindow, ATaskIsExplainedBeforeItIsSelected) {
 
 TEST_F(ScreenWindow, TheViewThatIsToBeHeldIsKeptByAButtonOfItsTask) {
   EXPECT_FALSE(find<QPushButton>("keep_this_view").isVisible());
-  click("hold_view");
+  click("stabilise");
   ASSERT_TRUE(waitFor([this] { return find<QPushButton>("keep_this_view").isVisible(); }));
   click("keep_this_view");
   EXPECT_TRUE(waitFor([this] { return nodes_.keptViews() == std::vector<std::string>{"[{id: view, motion: []}]"}; }));
@@ -302,14 +302,14 @@ TEST_F(ScreenWindow, StopsByItsButtonAndByKeysFromAnyFocus) {
 }
 
 TEST_F(ScreenWindow, StopsWhileAServiceHangs) {
-  nodes_.hangEnable(true);
+  nodes_.close("enable");
   click("enable");
   ASSERT_TRUE(waitFor([this] { return nodes_.enables == 1; }));
   nodes_.change([](TrackerState&, ControllerState&, OperatingState& robot) { robot.state = "PAUSED"; });
   EXPECT_TRUE(waitFor([this] { return word("Robot") == "PAUSED"; })) << "the screen lives";
   click("stop");
   EXPECT_TRUE(isStopped(1));
-  nodes_.hangEnable(false);
+  nodes_.open("enable");
 }
 
 TEST_F(ScreenWindow, TheDeadManEndsWithTheMouseButton) {
@@ -326,6 +326,23 @@ TEST_F(ScreenWindow, TheDeadManEndsWithTheFocus) {
   EXPECT_TRUE(deadManIs(false));
   focus(*screen_);
   EXPECT_TRUE(waitFor([this] { return isSilent(); })) << "and stays so";
+  EXPECT_FALSE(nodes_.deadMan().back());
+  hands("mouseup 1");
+}
+
+TEST_F(ScreenWindow, TheDeadManEndsWhenTheWindowIsMinimised) {
+  const test::ChildProcess manager("/usr/bin/env", {"cwm", "-c", "/dev/null"});
+  const std::string window = std::to_string(screen_->winId());
+  ASSERT_TRUE(waitFor([&] {  // it takes the window, and gives it the focus when it is asked to
+    return std::system(("xdotool windowactivate " + window + " 2>/dev/null").c_str()) == 0 && screen_->isActiveWindow();
+  }));
+  holdDeadMan();
+  hands("windowminimize " + window);
+  EXPECT_TRUE(deadManIs(false));
+  EXPECT_TRUE(waitFor([this] { return screen_->isMinimized(); }));
+  hands("windowactivate " + window);
+  EXPECT_TRUE(waitFor([this] { return !screen_->isMinimized() && screen_->isActiveWindow(); }));
+  EXPECT_TRUE(waitFor([this] { return isSilent(); })) << "the button that is still down does not take it again";
   EXPECT_FALSE(nodes_.deadMan().back());
   hands("mouseup 1");
 }

@@ -23,17 +23,22 @@ TEST(DeadManWords, SayReleasedBeforePressedAndThenFallSilent) {
   EXPECT_EQ(words.turn(true), (Words{false, true}));
 }
 
-TEST(SliderWords, SayZeroForAMomentAfterwards) {
+TEST(SliderWords, SayZeroLongEnoughToBeSeenBeforeAndForAMomentAfterwards) {
   using Word = SliderWords::Word;
   SliderWords words;
-  EXPECT_EQ(words.turn(false), Word::kNothing);
-  EXPECT_EQ(words.turn(true), Word::kZero) << "it is seen at rest first";
-  EXPECT_EQ(words.turn(true), Word::kValue);
-  EXPECT_EQ(words.turn(true), Word::kValue);
+  double now = 7.0;
+  EXPECT_EQ(words.turn(false, now), Word::kNothing);
+  EXPECT_EQ(words.turn(true, now), Word::kZero) << "it is seen at rest first";
+  EXPECT_EQ(words.turn(true, now + 0.001), Word::kZero) << "a hand that draws at once wakes the sender at once";
+  EXPECT_EQ(words.turn(true, now + 0.99 * SliderWords::kRest), Word::kZero);
+  now += 1.01 * SliderWords::kRest;
+  EXPECT_EQ(words.turn(true, now), Word::kValue);
+  EXPECT_EQ(words.turn(true, now + 1.0), Word::kValue);
   int zeros = 0;
-  while (words.turn(false) == Word::kZero) ++zeros;
+  while (words.turn(false, now + 1.1) == Word::kZero) ++zeros;
   EXPECT_EQ(zeros, 10);
-  EXPECT_EQ(words.turn(false), Word::kNothing);
+  EXPECT_EQ(words.turn(false, now + 1.1), Word::kNothing);
+  EXPECT_EQ(words.turn(true, now + 1.2), Word::kZero) << "each time that it is taken";
 }
 
 }  // namespace

@@ -253,7 +253,7 @@ TEST(ReasonTable, ExplainsReasonsAsTheyAreSaid) {
        "What was missing did not come back in time."},
       {Speaker::kController, "depth d2 is not between 0.02 and 0.25 m", "The scope is too far out, or too deep."},
       {Speaker::kController, "slow: visible fraction below 0.5; not deeper: visible fraction below 0.5",
-       "Little of the region is seen, so the scope goes slower, or no deeper."},
+       "What is followed is seen badly, so the scope goes slower, or no deeper."},
       {Speaker::kRobot,
        "not connected: port '/dev/ttyX': there is no such port; is the cable plugged in, is the name right?",
        "The arm's serial port is not there."},
