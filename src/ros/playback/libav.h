@@ -14,6 +14,7 @@ extern "C" {
 }
 
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -38,6 +39,15 @@ inline std::string errorText(int code) {
 // A name such as 10:00:00.mp4 is a file, not an address.
 inline std::string fileUrl(const std::string& path) {
   return "file:" + path;
+}
+
+// 0: not known.
+inline double toDouble(AVRational value) {
+  return value.num > 0 && value.den > 0 ? av_q2d(value) : 0.0;
+}
+
+inline double seconds(std::int64_t time, AVRational base) {
+  return static_cast<double>(time) * base.num / base.den;
 }
 
 }  // namespace laparoscope_servo::libav

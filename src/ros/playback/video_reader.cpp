@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdarg>
-#include <cstdio>
 #include <cstring>
 #include <thread>
 
@@ -16,38 +15,7 @@ namespace {
 constexpr unsigned kMostThreads = 16;  // of the decoder; each thread delays the output by one picture
 // failures of reading or decoding in a row, after which the video counts as damaged
 constexpr std::int64_t kMostFailures = 1000;
-// A video may end this many of its longest periods before the end given in its header, since the last period is not
-// always known.
-constexpr double kMissingPeriods = 1.5;
 constexpr std::int64_t kLargestNothing = 19;  // bytes: largest size of an MPEG-4 picture without changes
-
-double toDouble(AVRational value) {
-  return value.num > 0 && value.den > 0 ? av_q2d(value) : 0.0;
-}
-
-std::int64_t indexEntries(AVStream* stream) {
-#if LIBAVFORMAT_VERSION_MAJOR >= 59
-  return avformat_index_get_entries_count(stream);
-#else
-  return stream->nb_index_entries;
-#endif
-}
-
-// Parses Matroska's tag 00:00:03.200000000; 0 if there is none.
-double durationTag(const AVStream& stream) {
-  const AVDictionaryEntry* tag = av_dict_get(stream.metadata, "DURATION", nullptr, 0);
-  int hours = 0;
-  int minutes = 0;
-  double seconds = 0.0;
-  if (tag == nullptr || std::sscanf(tag->value, "%d:%d:%lf", &hours, &minutes, &seconds) != 3) return 0.0;
-  return 3600.0 * hours + 60.0 * minutes + seconds;
-}
-
-std::string timeText(double seconds) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3f s", seconds);
-  return text;
-}
 
 // libav reports damage of a container only by log messages, in the thread that reads.
 thread_local const void* listening_to = nullptr;
@@ -86,7 +54,7 @@ VideoReader::VideoReader(const std::string& path) : path_(path), packet_(av_pack
     if (format->streams[k] != stream_) format->streams[k]->discard = AVDISCARD_ALL;
   }
   openDecoder();
-  learnLength();
+  length_ = VideoLength(*format_, *stream_);
 }
 
 void VideoReader::openDecoder() {
@@ -108,31 +76,6 @@ void VideoReader::openDecoder() {
   if (result < 0) refuse(libav::errorText(result));
 }
 
-void VideoReader::learnLength() {
-  base_num_ = stream_->time_base.num;
-  base_den_ = stream_->time_base.den;
-  rate_ = toDouble(stream_->avg_frame_rate);
-  if (!(rate_ > 0.0)) rate_ = toDouble(av_guess_frame_rate(format_.get(), stream_, nullptr));
-  size_ = stream_->nb_frames > 0 ? static_cast<std::size_t>(stream_->nb_frames) : 0;
-  double duration = stream_->duration != AV_NOPTS_VALUE ? seconds(stream_->duration) : 0.0;
-  const std::string name = format_->iformat->name;
-  if (name.find("mp4") != std::string::npos && indexEntries(stream_) > 0) {
-    // The index does not have the pictures that an edit list cuts off, so its size is the number of pictures to come.
-    promised_ = size_ = static_cast<std::size_t>(indexEntries(stream_));
-  } else if (name == "avi" && size_ > 0) {
-    // Also counts omitted pictures, which have no packet; each takes one unit of time.
-    promised_end_ = seconds(stream_->nb_frames);
-    every_period_is_there_ = true;
-  } else if (name.find("matroska") != std::string::npos) {
-    promised_end_ = durationTag(*stream_);
-    // With several streams, any may be the longest.
-    const bool alone = format_->nb_streams == 1 && format_->duration_estimation_method == AVFMT_DURATION_FROM_STREAM;
-    if (!(promised_end_ > 0.0) && alone) promised_end_ = static_cast<double>(format_->duration) / AV_TIME_BASE;
-  }
-  if (!(duration > 0.0) && format_->duration > 0) duration = static_cast<double>(format_->duration) / AV_TIME_BASE;
-  if (size_ == 0) size_ = static_cast<std::size_t>(std::max(0L, std::lround(duration * rate_)));
-}
-
 Orientation VideoReader::orientation() const {
   const std::uint8_t* data = av_stream_get_side_data(stream_, AV_PKT_DATA_DISPLAYMATRIX, nullptr);
   if (data == nullptr) return {};
@@ -142,7 +85,7 @@ Orientation VideoReader::orientation() const {
 }
 
 double VideoReader::pixelAspect() const {
-  const double aspect = toDouble(av_guess_sample_aspect_ratio(format_.get(), stream_, nullptr));
+  const double aspect = libav::toDouble(av_guess_sample_aspect_ratio(format_.get(), stream_, nullptr));
   return aspect > 0.0 ? aspect : 1.0;
 }
 
@@ -197,19 +140,11 @@ bool VideoReader::readPacket() {
     if (packet_->stream_index != stream_->index) continue;
     ++packets_;
     const std::int64_t time = packet_->pts != AV_NOPTS_VALUE ? packet_->pts : packet_->dts;
-    const double period = packet_->duration > 0 ? seconds(packet_->duration) : rate_ > 0.0 ? 1.0 / rate_ : 0.0;
-    if (time != AV_NOPTS_VALUE) {
-      end_ = std::max(end_, seconds(time) + period);
-      if (packet_->size > 0) addStep(seconds(time));
-    }
+    const double duration = packet_->duration > 0 ? seconds(packet_->duration) : 0.0;
+    if (time != AV_NOPTS_VALUE) length_.read(seconds(time), duration, packet_->size > 0);
     // Some recorders write an empty packet if nothing has changed; for the decoder it would mean the end.
     if (packet_->size > 0) return true;
   }
-}
-
-void VideoReader::addStep(double time) {
-  if (last_sent_ && time > *last_sent_) shortest_step_ = std::min(shortest_step_, time - *last_sent_);
-  last_sent_ = time;
 }
 
 void VideoReader::send() {
@@ -243,7 +178,7 @@ void VideoReader::take(libav::Frame frame) {
   tellHidden(index, seconds(time), lost.size());
   addLost(lost);
   any_shown_ = true;
-  if (time && last_time_) longest_period_ = std::max(longest_period_, seconds(*time) - *last_time_);
+  if (time && last_time_) length_.came(seconds(*time) - *last_time_);
   last_time_ = seconds(time);
   Picture picture;
   picture.time = seconds(time);
@@ -263,11 +198,11 @@ void VideoReader::take(libav::Frame frame) {
 void VideoReader::tellHidden(std::int64_t index, const std::optional<double>& time, std::size_t told) {
   if (!complaint_ || index < *complaint_) return;
   complaint_.reset();
-  if (!time || !last_time_ || !(rate_ > 0.0)) return;
-  const std::int64_t hidden = std::llround((*time - *last_time_) * rate_) - 1 - static_cast<std::int64_t>(told);
+  if (!time || !last_time_ || !(rate() > 0.0)) return;
+  const std::int64_t hidden = std::llround((*time - *last_time_) * rate()) - 1 - static_cast<std::int64_t>(told);
   if (hidden <= 0) return;
   Picture missing;
-  missing.time = *last_time_ + 1.0 / rate_;
+  missing.time = *last_time_ + 1.0 / rate();
   missing.count = static_cast<std::size_t>(hidden);
   missing.error = "the file is damaged here, and " + std::to_string(hidden) + " pictures are missing";
   ready_.push_back(std::move(missing));
@@ -291,29 +226,16 @@ void VideoReader::addLost(const std::vector<PendingPictures::Sent>& pictures) {
 void VideoReader::finish() {
   ended_ = true;
   addLost(pending_.end());
-  double period = 1.0 / rate_;
-  if (every_period_is_there_ && std::isfinite(shortest_step_)) {
-    // The unit in which an AVI counts may be shorter than each of its pictures lasts, as the last one does.
-    end_ += std::max(0.0, shortest_step_ - period);
-    period = std::max(shortest_step_, period);
+  std::optional<VideoLength::Missing> end = length_.missing(static_cast<std::size_t>(packets_));
+  if (!end && (!read_error_.empty() || complaint_)) {
+    const std::string why = read_error_.empty() ? "the file ends within a picture" : read_error_;
+    end = VideoLength::Missing{1, length_.whereItBreaksOff() + " (" + why + ")"};
   }
+  if (!end) return;
   Picture missing;
-  missing.time = end_;
-  const std::string where = "the video breaks off at " + timeText(end_);
-  const auto read = static_cast<std::size_t>(packets_);
-  const double tolerance = every_period_is_there_ ? 0.5 * period : kMissingPeriods * std::max(longest_period_, period);
-  if (read < promised_) {
-    missing.count = promised_ - read;
-    missing.error = where + ": " + std::to_string(missing.count) + " of its " + std::to_string(promised_) +
-                    " pictures are not in the file";
-  } else if (promised_end_ > 0.0 && rate_ > 0.0 && end_ + tolerance < promised_end_) {
-    missing.count = static_cast<std::size_t>(std::lround((promised_end_ - end_) / period));
-    missing.error = where + ", expected at " + timeText(promised_end_);
-  } else if (!read_error_.empty() || complaint_) {
-    missing.error = where + " (" + (read_error_.empty() ? "the file ends within a picture" : read_error_) + ")";
-  } else {
-    return;
-  }
+  missing.time = length_.end();
+  missing.count = end->count;
+  missing.error = end->error;
   ready_.push_back(std::move(missing));
 }
 

@@ -4,13 +4,15 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
-#include <limits>
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "ros/playback/libav.h"
 #include "ros/playback/pending_pictures.h"
 #include "ros/playback/picture_conversion.h"
+#include "ros/playback/video_length.h"
 
 namespace laparoscope_servo {
 
@@ -29,10 +31,10 @@ class VideoReader {
   // Empty at the end. Damage is reported by pictures with an error.
   std::optional<Picture> next();
 
-  double rate() const { return rate_; }       // Hz, on average; 0: not known
-  std::size_t size() const { return size_; }  // number of pictures by the file; 0: not known
-  Orientation orientation() const;            // orientation of all pictures
-  double pixelAspect() const;                 // width of a pixel / height, 1 when not known
+  double rate() const { return length_.rate(); }       // Hz, on average; 0: not known
+  std::size_t size() const { return length_.size(); }  // number of pictures by the file; 0: not known
+  Orientation orientation() const;                     // orientation of all pictures
+  double pixelAspect() const;                          // width of a pixel / height, 1 when not known
   // Number of pictures before the first one shown, which depend on pictures that a cut has removed; no player shows
   // them.
   std::size_t leading() const { return leading_; }
@@ -43,16 +45,14 @@ class VideoReader {
   };
 
   void openDecoder();
-  void learnLength();
   bool readPacket();
-  void addStep(double time);
   void send();
   void take(libav::Frame frame);
   void tellHidden(std::int64_t index, const std::optional<double>& time, std::size_t told);
   void addLost(const std::vector<PendingPictures::Sent>& pictures);
   void finish();
   bool isPicture(const AVPacket& packet) const;
-  double seconds(std::int64_t time) const { return static_cast<double>(time) * base_num_ / base_den_; }
+  double seconds(std::int64_t time) const { return libav::seconds(time, stream_->time_base); }
   std::optional<double> seconds(PendingPictures::Time time) const;
 
   std::string path_;
@@ -60,25 +60,15 @@ class VideoReader {
   AVStream* stream_ = nullptr;
   libav::Codec codec_;
   libav::Packet packet_;
-  double base_num_ = 1.0;  // numerator of the stream's time base [s]
-  double base_den_ = 1.0;
-  double rate_ = 0.0;
-  std::size_t size_ = 0;
-  std::size_t promised_ = 0;            // number of packets to come; 0: not known
-  double promised_end_ = 0.0;           // s, in the file's time; 0: not known
-  bool every_period_is_there_ = false;  // promised_end_ is exact
+  VideoLength length_;
 
   PendingPictures pending_;
   std::deque<Picture> ready_;
   std::map<std::int64_t, std::string> damaged_;  // incomplete packets
   std::int64_t packets_ = 0;
-  std::optional<std::int64_t> complaint_;                           // packet before which the container is damaged
-  std::optional<double> last_time_;                                 // s, time of the last picture returned
-  double longest_period_ = 0.0;                                     // s, between two pictures
-  std::optional<double> last_sent_;                                 // s, time of the last packet with a picture
-  double shortest_step_ = std::numeric_limits<double>::infinity();  // s, between two such packets
-  std::int64_t failures_ = 0;                                       // failures of reading in a row
-  double end_ = 0.0;                                                // s, end of the packets read so far
+  std::optional<std::int64_t> complaint_;  // packet before which the container is damaged
+  std::optional<double> last_time_;        // s, time of the last picture returned
+  std::int64_t failures_ = 0;              // failures of reading in a row
   std::string read_error_;
   std::string decode_error_;
   std::size_t leading_ = 0;
