@@ -101,13 +101,25 @@ double checkedCornerError(RegionAligner& aligner, double max_error) {
   throw std::invalid_argument(message.str());
 }
 
+void checkTellingBlocks(const RegionAligner& aligner) {
+  const BlockMatching& blocks = aligner.blocks();
+  if (!blocks.hasRoom() || blocks.blocks() >= kTellingBlocks) return;
+  std::ostringstream message;
+  message << text(aligner.roi()) << " has too little texture: " << blocks.blocks() << " of "
+          << BlockMatching::kMostBlocks << " pieces differ from what surrounds them, expected at least "
+          << kTellingBlocks;
+  throw std::invalid_argument(message.str());
+}
+
 double takeReference(const cv::Mat& image, const geometry::Rectangle& wanted, const SelectionMask& selectable,
                      const TrackerConfig& config, const image::Lens* lens, RegionAligner& aligner) {
   const geometry::Rectangle roi = checkedRoi(image, wanted, config.min_roi_side, lens);
   selectable.check(roi, lens);
   aligner.setMask(selectable.mask());
   aligner.setReference(image, roi);
-  return checkedCornerError(aligner, config.min_texture);
+  const double error = checkedCornerError(aligner, config.min_texture);
+  checkTellingBlocks(aligner);
+  return error;
 }
 
 double takeReference(const cv::Mat& image, const geometry::Rectangle& wanted, const cv::Mat& mask,

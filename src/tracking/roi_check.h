@@ -31,6 +31,10 @@ void checkClearOfInstruments(const geometry::Rectangle& roi, const cv::Mat& inst
 // when it is more than `max_error`: the ROI has too little texture.
 double checkedCornerError(RegionAligner& aligner, double max_error);
 
+// Throws std::invalid_argument when the ROI has room for blocks, see BlockMatching, but too few of them have unique
+// texture: block matching could then not contradict a wrong estimate.
+void checkTellingBlocks(const RegionAligner& aligner);
+
 // All of these checks: makes the ROI the reference of `aligner`, whose configuration and lens (null: none) are those
 // that are given, and returns its corner error. Throws std::invalid_argument as they do; the aligner's reference is
 // then not to be used. `selectable` is of this image.

@@ -81,6 +81,7 @@ void BlockMatching::setReference(const image::RegionPyramid& reference, const ge
   detail_.create(size);
   column_sums_.assign(3 * static_cast<std::size_t>(size.width), 0.0f);
   blocks_.clear();
+  has_room_ = std::min(inner.width, inner.height) >= kSide + kAlong - 1;
   if (std::min(inner.width, inner.height) < kSide) return;
   look(reference, Eigen::Matrix3d::Identity());
   reference_ = detail_.clone();

@@ -52,6 +52,8 @@ class BlockMatching {
   int level() const { return level_; }
   // Number of blocks whose texture is unique within the search range.
   int blocks() const { return static_cast<int>(blocks_.size()); }
+  // The ROI has room for all kMostBlocks, at different places: if few of them are unique, it is not for its size.
+  bool hasRoom() const { return has_room_; }
   // px of the reference per px of the level on which blocks are searched.
   double scale() const { return scale_; }
   // Side of a block [px of the reference].
@@ -77,6 +79,7 @@ class BlockMatching {
   double scale_ = 1.0;  // px of the reference per px of the level
   Eigen::Matrix3d reference_T_crop_ = Eigen::Matrix3d::Identity();
   cv::Mat1f warped_, valid_, detail_, reference_;
+  bool has_room_ = false;
   std::vector<float> column_sums_;
   std::vector<cv::Point> blocks_;  // first pixel of each block in the crop
   std::vector<BlockShift> shifts_;

@@ -41,8 +41,7 @@ constexpr double kNear = 3.0;  // px, limit of the median distance of the blocks
 // extrapolated by twice what is seen or more: then the corner error counts, with a limit from which on it is wrong.
 constexpr double kSpread = 1.0 / 3.0;
 constexpr double kWrong = 5.0;      // px
-constexpr int kTelling = 8;         // blocks; with fewer that have unique texture, block matching is inconclusive
-constexpr int kVisibleTelling = 6;  // kTelling for blocks that are not covered
+constexpr int kVisibleTelling = 6;  // kTellingBlocks for blocks that are not covered
 constexpr int kFewBlocks = 3;       // blocks that moved alike: the least number for any of them to be confident
 // Share of the blocks that can be visible. On chol_blood.mp4 (of the four films where it was looked at) a sixth of 36
 // overlapping blocks agreed by chance for 20 images.
@@ -88,7 +87,7 @@ double allowedJump(const TrackRecord& record, const QualityConfig& config, const
 }
 
 double leastBlocks(const BlockEvidence& blocks, double visible_fraction) {
-  if (blocks.seen < kTelling) return 0.0;
+  if (blocks.seen < kTellingBlocks) return 0.0;
   return std::max<double>(kFewBlocks,
                           kFoundOfVisible * std::max<double>(blocks.visible, visible_fraction * blocks.seen));
 }

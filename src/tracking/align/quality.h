@@ -48,6 +48,9 @@ struct BlockEvidence {
 // wrong from 5 px on.
 constexpr double kMostOff = 4.0;
 
+// With fewer blocks that have unique texture, block matching is inconclusive.
+constexpr int kTellingBlocks = 8;
+
 // Least number of confident blocks for an estimate to be accepted; 0 if there are too few blocks for a decision.
 double leastBlocks(const BlockEvidence& blocks, double visible_fraction);
 

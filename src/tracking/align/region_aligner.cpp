@@ -3,7 +3,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -29,8 +28,7 @@ constexpr double kFarOff = 1.5;  // lengthUnit()s of the image, the blocks' medi
 constexpr double kMostMissing = 0.5;  // share of the blocks that are found, from which on they are not searched further
 constexpr double kBlockVisible = 0.8;  // share of a visible block's pixels that have weight
 constexpr double kGateShift = 2.0;  // lengthUnit()s of the image: masks drawn this far from the estimate are outdated
-constexpr double kCoarse =
-    4.0;  // px of the image per px of the blocks' level: in a ROI of over 320 px, one spans 96 px
+constexpr double kCoarse = 4.0;  // px of the image per px of the blocks' level; in a ROI of over 320 px one has 96 px
 constexpr double kBorder = 4.0;  // px of the coarsest level, of what smoothing takes in from beyond the ROI
 
 // The channel that is tracked first, before any smoothing. `image`: CV_8UC1 or CV_8UC3.
@@ -74,6 +72,7 @@ void RegionAligner::setReference(const cv::Mat& image, const geometry::Rectangle
   blocks_.setReference(pyramid_, roi);
   far_blocks_.setReference(pyramid_, roi, blocks_.level() + 1);
   if (blocks_.scale() >= kCoarse) fine_blocks_.setReference(pyramid_, roi, std::max(blocks_.level() - 1, 0));
+  deformation_ = DeformationMemory();
   sample(image, Eigen::Matrix3d::Identity());
   gates_.setReference(patch_, patchSize(), coloursIn(channels_));
   const bool hidden = !mask_.empty() && cv::countNonZero(covered_.blue) > 0;
@@ -177,6 +176,7 @@ Alignment RegionAligner::align(const cv::Mat& image, const EsmState& start, cons
     correct(result.esm, result.blocks);
     lookFurther(result.esm, result.blocks);
     correctFinely(result.esm, result.blocks);
+    if (prior != nullptr) deformation_.complete(result.blocks.confident, result.blocks.deformation);
   }
   const Matrix8d covariance = result.esm.covariance + result.blocks.deformation;
   result.corner_error = std::isfinite(result.esm.corner_error) ? cornerError(result.esm.state.g, roi(), covariance)

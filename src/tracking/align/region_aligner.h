@@ -82,6 +82,7 @@ class RegionAligner {
   // What the reference's texture, beyond its noise, determines.
   ReferenceTexture referenceTexture();
 
+  const BlockMatching& blocks() const { return blocks_; }
   const Esm& esm() const { return esm_; }
   const OcclusionGates& gates() const { return gates_; }
   // Current weights of the finest level's pixels; valid until the next call of a member function.
@@ -118,7 +119,8 @@ class RegionAligner {
   cv::Mat mask_;
   image::ColourPatch covered_;                           // the mask, as the patch is sampled
   Eigen::Matrix3d shown_ = Eigen::Matrix3d::Identity();  // the homography at which the colour gate was last evaluated
-  double noise_ = 0.0;                                   // grey levels, noise of the reference image
+  DeformationMemory deformation_;
+  double noise_ = 0.0;     // grey levels, noise of the reference image
   double surprise_ = 0.0;  // px, distance of the worst corner from the prediction in the last image
 };
 

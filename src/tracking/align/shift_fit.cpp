@@ -24,8 +24,6 @@ constexpr double kShift = 0.08, kAffine = 0.04, kPerspective = 0.024;
 // films with noise of 1 and 3 grey levels and without then differ by 0.2 to 1.1 times what is claimed, in single images
 // by up to 4.5; with 36 pieces by 0.25 to 1.2 and 5.1; where nothing of this is claimed by 1.3 and 6.7 on one film.
 constexpr double kPieces = 9.0;
-// Fewer blocks, beside an instrument, tell nothing of the rest of the region.
-constexpr int kTelling = 8;
 
 Matrix8d knownBefore() {
   geometry::Vector8d spread;
@@ -82,17 +80,32 @@ double spreadOfShifts(const std::vector<BlockShift>& shifts, const geometry::Rec
 Matrix8d deformationCovariance(const std::vector<BlockShift>& shifts, double median, const geometry::Rectangle& roi) {
   const double deviation = median / robust::kRayleighMedian;  // in each direction
   const int count = confidentShifts(shifts);
-  if (!(deviation > kPlace) || count < kTelling) return Matrix8d::Zero();
-  const double variance = (deviation * deviation - kPlace * kPlace) / std::pow(halfSize(roi), 2);
-  const double alike = std::max(1.0, static_cast<double>(shifts.size()) / kPieces);  // blocks of one piece
+  if (!(deviation > kPlace) || count < kTellingShifts) return Matrix8d::Zero();
+  const double left = (deviation * deviation - kPlace * kPlace) / std::pow(halfSize(roi), 2);  // variance
+  const double alike = std::max(1.0, static_cast<double>(shifts.size()) / kPieces);            // blocks of one piece
   const Eigen::Matrix3d n = templateFromPixels(roi);
-  Matrix8d a = knownBefore();
+  Matrix8d seen = Matrix8d::Zero();
   for (const BlockShift& s : shifts) {
     if (!s.confident) continue;
     const Eigen::Matrix<double, 2, 8> j = pointJacobian(geometry::apply(n, s.centre));
-    a += j.transpose() * j / (alike * variance);
+    seen += j.transpose() * j / alike;
   }
-  return a.ldlt().solve(Matrix8d::Identity());
+  const Matrix8d known = knownBefore();
+  const auto covariance = [&](double variance) -> Matrix8d {
+    return (seen / variance + known).ldlt().solve(Matrix8d::Identity());
+  };
+  // The fit has taken up a part of the deformation, the larger the fewer pieces are seen.
+  const double coordinates = 2.0 * count / alike;
+  const double parameters = 8.0 - (covariance(left) * known).trace();  // those that the pieces determine
+  return covariance(left * coordinates / std::max(coordinates - parameters, 1.0));
+}
+
+void DeformationMemory::complete(int confident, Matrix8d& covariance) {
+  if (confident >= kTellingShifts) {
+    last_ = covariance;
+  } else {
+    covariance = last_;
+  }
 }
 
 std::optional<ShiftFit> fitShifts(const std::vector<BlockShift>& shifts, const geometry::Rectangle& roi, double side) {

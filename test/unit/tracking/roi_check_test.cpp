@@ -163,6 +163,31 @@ TEST(CheckedCornerError, IsThatOfTheImagesOwnNoiseWhereThatIsMoreThanUsual) {
   }
 }
 
+// Stripes that repeat within the range that blocks are searched in determine a motion, up to a period.
+TEST(CheckTellingBlocks, RefusesWhereEveryPieceLooksLikeItsNeighbour) {
+  cv::Mat scene(140, 160, CV_8UC3);
+  for (int j = 0; j < scene.rows; ++j) {
+    for (int i = 0; i < scene.cols; ++i)
+      scene.at<cv::Vec3b>(j, i) = cv::Vec3b::all(cv::saturate_cast<uchar>(110 + 30 * std::sin(i) + 30 * std::sin(j)));
+  }
+  RegionAligner periodic{TrackerConfig()}, tissue{TrackerConfig()}, small{TrackerConfig()};
+  periodic.setReference(scene, {40, 30, 80, 80});
+  EXPECT_NO_THROW(checkedCornerError(periodic, 0.5));
+  try {
+    checkTellingBlocks(periodic);
+    FAIL() << "a region that repeats was accepted";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_EQ(
+        std::string(error.what()),
+        "ROI x=40 y=30 width=80 height=80 has too little texture: 0 of 36 pieces differ from what surrounds them, "
+        "expected at least 8");
+  }
+  tissue.setReference(test::tissue(cv::Size(160, 140), 5), {40, 30, 80, 80});
+  EXPECT_NO_THROW(checkTellingBlocks(tissue));
+  small.setReference(scene, {40, 30, 24, 80});  // without room for blocks
+  EXPECT_NO_THROW(checkTellingBlocks(small));
+}
+
 TEST(TakeReference, MakesEveryCheckAndLeavesTheMasksPixelsOut) {
   const cv::Mat scene = test::tissue(cv::Size(160, 140), 5);
   const geometry::Rectangle wanted = {40.6, 30.2, 80.0, 80.9};

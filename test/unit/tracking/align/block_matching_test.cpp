@@ -50,6 +50,14 @@ TEST_F(BlockMatchingTest, FindsNearlyEveryBlockWhereItIs) {
   }
 }
 
+TEST_F(BlockMatchingTest, SaysWhetherThereIsRoomForAllBlocks) {
+  EXPECT_TRUE(matching_.hasRoom());
+  matching_.setReference(pyramid(scene_), {100, 80, 29, 29});
+  EXPECT_TRUE(matching_.hasRoom());
+  matching_.setReference(pyramid(scene_), {100, 80, 28, 110});
+  EXPECT_FALSE(matching_.hasRoom());
+}
+
 TEST_F(BlockMatchingTest, AShiftLeadsFromTheCentreToWhereTheBlockIsSeen) {
   const std::vector<BlockShift>& shifts = measured(moved(3.4, -2.6));
   EXPECT_GE(confidentShifts(shifts), 30);

@@ -164,5 +164,32 @@ TEST(DeformationCovariance, IsLargerFarFromTheBlocksThatAreFound) {
   EXPECT_LT(centreError(Eigen::Matrix3d::Identity(), kRoi, half), cornersBy(half));
 }
 
+// A fit to few pieces follows most of what each of them deforms by, so that little of it is left at them.
+TEST(DeformationCovariance, CountsWhatTheFitHasTakenUp) {
+  const auto shifts = shiftsOf(geometry::Vector8d::Zero(), 0.1);
+  const auto ofEvery = [&](int step) {
+    auto some = shifts;
+    for (std::size_t k = 0; k < some.size(); ++k) some[k].confident = k % step == 0;
+    return cornersBy(deformationCovariance(some, 0.5, kRoi));
+  };
+  EXPECT_GT(ofEvery(4), 2.2 * ofEvery(1));  // by their number alone it would be twice
+}
+
+TEST(DeformationMemory, KeepsWhatWasSeenUntilEnoughIsSeenAgain) {
+  DeformationMemory memory;
+  Matrix8d covariance = Matrix8d::Identity();
+  memory.complete(kTellingShifts - 1, covariance);
+  EXPECT_TRUE(covariance.isZero());  // there was none before
+  covariance = 2.0 * Matrix8d::Identity();
+  memory.complete(kTellingShifts, covariance);
+  EXPECT_TRUE(covariance.isApprox(2.0 * Matrix8d::Identity()));
+  covariance.setZero();
+  memory.complete(0, covariance);
+  EXPECT_TRUE(covariance.isApprox(2.0 * Matrix8d::Identity()));
+  covariance.setZero();
+  memory.complete(kTellingShifts, covariance);  // a plane that does not deform is seen
+  EXPECT_TRUE(covariance.isZero());
+}
+
 }  // namespace
 }  // namespace laparoscope_servo::tracking
