@@ -13,7 +13,7 @@ constexpr double kFitRange = 6.0;              // px: what the search leaves
 constexpr double kSlack = 2.0 * M_PI / 180.0;  // what a fit may be off
 constexpr double kSame = 6.0;                  // px between points of the model: two fits that have met
 // Sites beyond these need no evidence of their own: what agrees by chance has at most 1.05 nats per site where there
-// are up to 60 sites, at most 0.43 where there are more than 150, and at most 83 nats in all (bench_model_chance).
+// are up to 60 sites, at most 0.50 where there are more than 150, and at most 96 nats in all (bench_model_chance).
 constexpr int kEnoughSites = 150;
 
 // About the axis of the camera about which it is the largest, rad.

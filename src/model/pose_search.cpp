@@ -9,6 +9,7 @@ namespace laparoscope_servo::model {
 
 namespace {
 
+constexpr int kFinest = 1;                     // level of the last refinement
 constexpr double kCoarseRadius = 20.0;         // px of the model in the coarse field; the fine one has twice as many
 constexpr double kTurn = 15.0 * M_PI / 180.0;  // from one orientation to the next; half of it moves edges by 2 px
 constexpr double kGrowth = 1.13;               // from one size to the next
@@ -52,8 +53,8 @@ std::vector<PoseCandidate> PoseSearch::find(const cv::Mat& image, const Outline&
       cv::Point(static_cast<int>(std::floor(centre.x() - reach)), static_cast<int>(std::floor(centre.y() - reach))),
       cv::Point(static_cast<int>(std::ceil(centre.x() + reach)), static_cast<int>(std::ceil(centre.y() + reach))));
   occluders_.reserve(outline.model());
-  std::vector<PoseCandidate> all, best;
-  if ((area & cv::Rect({0, 0}, image.size())).empty()) return best;
+  if ((area & cv::Rect({0, 0}, image.size())).empty()) return {};
+  std::vector<PoseCandidate> all;
   coarse_.compute(image, area, level, min_contrast);
   fine_.compute(image, area, level - 1, min_contrast);
   scoreShifts(outline, range, all);
@@ -66,18 +67,38 @@ std::vector<PoseCandidate> PoseSearch::find(const cv::Mat& image, const Outline&
     one.score = refine(candidate, kKnown);
     one.camera_T_object = candidate.pose();
   }
+  std::vector<PoseCandidate> best;
+  keepBest(all, outline, range.rotation, most, best);
+  // Down to where the fit to the image itself takes over: an edge of the model that is off by more than the fit's range
+  // would be drawn to whatever else is near it.
+  for (int finer = level - 2; finer >= kFinest; --finer) {
+    fine_.compute(image, area, finer, min_contrast);
+    all = best;
+    for (PoseCandidate& one : all) {
+      candidate.setPose(one.camera_T_object);
+      one.score = refine(candidate, kKnown);
+      one.camera_T_object = candidate.pose();
+    }
+    keepBest(all, outline, range.rotation, most, best);
+  }
+  return best;
+}
+
+void PoseSearch::keepBest(std::vector<PoseCandidate>& all, const Outline& expected, double rotation, std::size_t most,
+                          std::vector<PoseCandidate>& best) const {
+  best.clear();
   std::sort(all.begin(), all.end(), isBetter);
+  Outline candidate = expected;
+  const double same = kApart / fine_.scale();
   for (const PoseCandidate& one : all) {
     if (best.size() == most || !(one.score > 0.0)) break;
-    if (!isWithin(outline.pose(), one.camera_T_object, range.rotation)) continue;
+    if (!isWithin(expected.pose(), one.camera_T_object, rotation)) continue;
     candidate.setPose(one.camera_T_object);
-    const double same = kApart / fine_.scale();
     const bool is_new = std::none_of(best.begin(), best.end(), [&](const PoseCandidate& other) {
       return candidate.apart(other.camera_T_object) < same;
     });
     if (is_new) best.push_back(one);
   }
-  return best;
 }
 
 void PoseSearch::scoreShifts(const Outline& expected, const PoseRange& range, std::vector<PoseCandidate>& all) {

@@ -45,6 +45,31 @@ TEST_F(PoseSearchTest, theTruthIsAmongTheCandidates) {
   EXPECT_LT(best(start({-0.5, 0.4, -0.4}, {0.03, -0.02, 0.04}), range), 2.5);
 }
 
+// However large the model is in the image: what follows looks for edges within 6 px.
+TEST_F(PoseSearchTest, theTruthOfALargeModelIsAmongTheCandidates) {
+  const auto model = test::modelOf(test::kCubeAndTube);
+  test::ModelScene scene;
+  scene.camera = {547.0, 547.0, 319.5, 239.5};
+  scene.size = {640, 480};
+  scene.texture = scene.clutter = 8.0;
+  const test::ModelRenderer renderer(*model, scene);
+  for (int view = 0; view < 4; ++view) {
+    const Eigen::Isometry3d truth = test::viewOf(*model, 0.4 + 0.04 * view, 0.5 + 0.2 * view);
+    const cv::Mat image = renderer.draw(truth, 1);
+    for (const Eigen::Vector3d& turn : {Eigen::Vector3d(0.2, -0.1, 0.15), Eigen::Vector3d(-0.3, 0.2, -0.25)}) {
+      Eigen::Isometry3d pose = truth;
+      pose.linear() = geometry::so3Exp(turn) * pose.linear();
+      pose.translation() = truth * model->centre - pose.linear() * model->centre;
+      const auto found = search_.find(image, Outline(model, scene.camera, scene.size, pose), {0.52, 1.0}, 8.0, 12);
+      double least = 1e9;
+      for (const PoseCandidate& one : found) {
+        least = std::min(least, Outline(model, scene.camera, scene.size, one.camera_T_object).apart(truth));
+      }
+      EXPECT_LT(least, 1.2) << view << ": " << turn.transpose();
+    }
+  }
+}
+
 TEST_F(PoseSearchTest, noCandidateIsTurnedFurtherThanAsked) {
   const Outline outline = start({0.2, 0.0, 0.0}, {0.0, 0.0, 0.0});
   for (const PoseCandidate& one : search_.find(image_, outline, {0.2, 0.5}, 8.0, 20)) {
