@@ -29,7 +29,8 @@ TEST_F(ScreenCart, SelectsEnablesEngagesAndStops) {
   const QSize shown = image().size();
   drag(image().mapToGlobal(QPoint(shown.width() * 2 / 5, shown.height() * 2 / 5)),
        image().mapToGlobal(QPoint(shown.width() * 3 / 5, shown.height() * 3 / 5)));
-  ASSERT_TRUE(waitFor([this] { return word("Tracker") == "TRACKING"; })) << word("Tracker");
+  ASSERT_TRUE(waitFor([this] { return word("Tracker") == "TRACKING"; }))
+      << word("Tracker") << ": " << find<QLabel>("answer").text().toStdString();
   click("enable");
   ASSERT_TRUE(waitFor([this] { return word("Robot") == "ENABLED"; })) << word("Robot");
   click("engage");
