@@ -61,34 +61,28 @@ std::vector<PoseCandidate> PoseSearch::find(const cv::Mat& image, const Outline&
   const std::size_t refined = std::min(kRefined, all.size());
   std::partial_sort(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(refined), all.end(), isBetter);
   all.resize(refined);
-  Outline candidate = outline;
-  for (PoseCandidate& one : all) {
-    candidate.setPose(one.camera_T_object);
-    one.score = refine(candidate, kKnown);
-    one.camera_T_object = candidate.pose();
-  }
   std::vector<PoseCandidate> best;
-  keepBest(all, outline, range.rotation, most, best);
+  refineBest(all, outline, range.rotation, most, best);
   // Down to where the fit to the image itself takes over: an edge of the model that is off by more than the fit's range
   // would be drawn to whatever else is near it.
   for (int finer = level - 2; finer >= kFinest; --finer) {
     fine_.compute(image, area, finer, min_contrast);
     all = best;
-    for (PoseCandidate& one : all) {
-      candidate.setPose(one.camera_T_object);
-      one.score = refine(candidate, kKnown);
-      one.camera_T_object = candidate.pose();
-    }
-    keepBest(all, outline, range.rotation, most, best);
+    refineBest(all, outline, range.rotation, most, best);
   }
   return best;
 }
 
-void PoseSearch::keepBest(std::vector<PoseCandidate>& all, const Outline& expected, double rotation, std::size_t most,
-                          std::vector<PoseCandidate>& best) const {
+void PoseSearch::refineBest(std::vector<PoseCandidate>& all, const Outline& expected, double rotation, std::size_t most,
+                            std::vector<PoseCandidate>& best) {
+  Outline candidate = expected;
+  for (PoseCandidate& one : all) {
+    candidate.setPose(one.camera_T_object);
+    one.score = refine(candidate, kKnown);
+    one.camera_T_object = candidate.pose();
+  }
   best.clear();
   std::sort(all.begin(), all.end(), isBetter);
-  Outline candidate = expected;
   const double same = kApart / fine_.scale();
   for (const PoseCandidate& one : all) {
     if (best.size() == most || !(one.score > 0.0)) break;

@@ -39,9 +39,9 @@ class PoseSearch {
   void sumShifts(const Eigen::Vector2d& centre, double growth, int reach);
   int leastShift(int reach, cv::Point& shift) const;
   void coverShift(int reach, const cv::Point& shift);
-  // The best of them, no two of which are the same in the fine field. Sorts `all`.
-  void keepBest(std::vector<PoseCandidate>& all, const Outline& expected, double rotation, std::size_t most,
-                std::vector<PoseCandidate>& best) const;
+  // Refines them in the fine field and keeps the best, no two of which are the same there. Sorts `all`.
+  void refineBest(std::vector<PoseCandidate>& all, const Outline& expected, double rotation, std::size_t most,
+                  std::vector<PoseCandidate>& best);
   double refine(Outline& outline, double range);
   double score(const Outline& outline);
 
