@@ -9,7 +9,8 @@
 #include "closed_loop/noise.h"
 #include "laparoscope_servo/scope/geometry.h"
 #include "laparoscope_servo/scope/insertion_point.h"
-#include "laparoscope_servo/servo/tip_error.h"
+#include "laparoscope_servo/servo/place_error.h"
+#include "laparoscope_servo/servo/points_error.h"
 #include "laparoscope_servo/servo/view_region.h"
 
 namespace laparoscope_servo::closed_loop {
@@ -17,6 +18,7 @@ namespace laparoscope_servo::closed_loop {
 namespace {
 
 constexpr double kStep = 0.001;         // s, of the integration
+constexpr int kPointsAlong = 6;         // points in a row and in a column of the region
 constexpr double kEnoughInView = 0.25;  // share of the reference image, as AnchoredMotion needs it
 
 Eigen::Matrix3d pictureOf(const PictureConfig& config) {
@@ -26,12 +28,21 @@ Eigen::Matrix3d pictureOf(const PictureConfig& config) {
   return geometry::so3Exp({0.0, 0.0, config.roll}) * mirror.asDiagonal();
 }
 
+servo::Task taskOf(const std::string& name) {
+  if (name == "STABILISE") return servo::Task::kStabilise;
+  if (name == "CENTRE_TIP") return servo::Task::kCentreTip;
+  if (name == "FOLLOW") return servo::Task::kFollow;
+  if (name == "POINTS") return servo::Task::kPoints;
+  return servo::Task::kHoldView;
+}
+
 class Loop {
  public:
   Loop(const ControllerSetup& controller, const SimulationConfig& config, unsigned seed)
       : config_(config),
         shaft_R_camera_(scope::obliqueOptics(config.optics_angle, config.optics_roll).transpose()),
-        centre_tip_(controller.control.centre_tip),
+        setup_(controller.control),
+        points_error_(controller.control.points, controller.control.features.desired_depth),
         controller_(controller.control),
         actuator_(config.robot),
         patient_(config.patient, {0.0, 0.0, config.tissue_distance}),
@@ -40,8 +51,7 @@ class Loop {
         body_(startPose(), insertion_point_, config.scope_length, config.wrist),
         picture_(pictureOf(config.picture)),
         signs_(config.signs[0], config.signs[1], config.signs[2], config.signs[3]) {
-    if (config.task == "STABILISE") controller_.select(servo::Task::kStabilise);
-    if (config.task == "CENTRE_TIP") controller_.select(servo::Task::kCentreTip);
+    controller_.select(taskOf(config.task));
   }
 
   bool seesRoi(double time) const { return nearestToBorder(cornersAt(time, config_.roi)) >= 0.0; }
@@ -54,10 +64,18 @@ class Loop {
     const double noise = config_.corner_noise * (1.0 + covered * (config_.crossing.noise - 1.0));
     input.visible_fraction = 1.0 - covered * config_.crossing.cover;
     input.corner_error = noise;
-    if (controller_.task() == servo::Task::kCentreTip) {
-      exposeTip(time, noise, input);
-    } else {
-      exposeRegion(time, noise, input);
+    switch (controller_.task()) {
+      case servo::Task::kCentreTip:
+        exposePlace(time, noise, {setup_.centre_tip.x, setup_.centre_tip.y}, input);
+        break;
+      case servo::Task::kFollow:
+        exposePlace(time, noise, {setup_.follow.x, setup_.follow.y}, input);
+        break;
+      case servo::Task::kPoints:
+        exposePoints(time, noise, input);
+        break;
+      default:
+        exposeRegion(time, noise, input);
     }
     images_.emplace_back(time, input);
   }
@@ -70,9 +88,7 @@ class Loop {
       latest_ = images_.front();
       images_.pop_front();
     }
-    servo::TaskErrorInput& seen = controller_.task() == servo::Task::kStabilise   ? input.view
-                                  : controller_.task() == servo::Task::kCentreTip ? input.tip
-                                                                                  : input.task_error;
+    servo::TaskErrorInput& seen = input.seenBy(controller_.task());
     seen = latest_.second;
     seen.image_time = latest_.first;
     seen.age = seen.image_age = std::max(0.0, time - latest_.first);
@@ -110,11 +126,45 @@ class Loop {
   }
 
  private:
-  void exposeTip(double time, double noise, servo::TaskErrorInput& input) {
+  bool isInImage(const Eigen::Vector2d& p) const {
+    return p.x() >= 0.0 && p.y() >= 0.0 && p.x() <= config_.width - 1.0 && p.y() <= config_.height - 1.0;
+  }
+
+  Eigen::Vector2d normalised(const Eigen::Vector2d& pixel) const {
+    return (config_.camera.inverseMatrix() * pixel.homogeneous()).head<2>();
+  }
+
+  // A tip, or the middle of an object.
+  void exposePlace(double time, double noise, const Eigen::Vector2d& desired, servo::TaskErrorInput& input) {
     const Eigen::Matrix3d g = geometry::pixelsFromNormalised(seenHomography(time), config_.camera);
-    const Eigen::Vector2d tip = geometry::apply(g, config_.roi.centre()) + noise_.draw(noise);
-    input.valid = tip.x() >= 0.0 && tip.y() >= 0.0 && tip.x() <= config_.width - 1.0 && tip.y() <= config_.height - 1.0;
-    input.error = servo::tipError((config_.camera.inverseMatrix() * tip.homogeneous()).head<2>(), centre_tip_);
+    const Eigen::Vector2d place = geometry::apply(g, config_.roi.centre()) + noise_.draw(noise);
+    input.valid = isInImage(place);
+    input.error = servo::placeError(normalised(place), desired);
+  }
+
+  // Points of a grid about the region's centre. Those astray stay where they were in the reference image, whatever the
+  // scope does.
+  void exposePoints(double time, double noise, servo::TaskErrorInput& input) {
+    const Eigen::Matrix3d g = geometry::pixelsFromNormalised(seenHomography(time), config_.camera);
+    std::vector<servo::PointTask> points;
+    int astray = 0;
+    for (int k = 0; k < kPointsAlong * kPointsAlong; ++k) {
+      const Eigen::Vector2d cell((k % kPointsAlong + 0.5) / kPointsAlong, (k / kPointsAlong + 0.5) / kPointsAlong);
+      const Eigen::Vector2d reference(config_.roi.x + cell.x() * config_.roi.width,
+                                      config_.roi.y + cell.y() * config_.roi.height);
+      const bool is_astray = astray < config_.points_astray * (k + 1);
+      astray += is_astray ? 1 : 0;
+      const Eigen::Vector2d place = (is_astray ? reference : geometry::apply(g, reference)) + noise_.draw(noise);
+      servo::PointTask& point = points.emplace_back();
+      point.point = normalised(place);
+      point.desired = normalised(reference);
+      point.weight = isInImage(place) ? 1.0 : 0.0;
+    }
+    const servo::PointsSeen seen =
+        points_error_.from(points, normalised(config_.roi.centre()), {shaft_R_camera_.transpose(), believedDepth()});
+    input.valid = seen.is_known;
+    input.error = seen.error;
+    input.corner_error = config_.camera.fx * seen.stddev;
   }
 
   void exposeRegion(double time, double noise, servo::TaskErrorInput& input) {
@@ -249,7 +299,8 @@ class Loop {
 
   SimulationConfig config_;
   Eigen::Matrix3d shaft_R_camera_;
-  servo::CentreTipConfig centre_tip_;
+  servo::ControllerConfig setup_;
+  servo::PointsError points_error_;
   servo::Controller controller_;
   sim::ScopeActuator actuator_;
   sim::Patient patient_;
