@@ -147,7 +147,7 @@ DrawnStart drawStart(const SimulationConfig& config, unsigned seed) {
 RunSummary summariseRun(const std::vector<SimulationSample>& samples, const SimulationConfig& config,
                         const RunBounds& bounds) {
   RunSummary run;
-  Settling centre(bounds.centre), scale(bounds.scale), orientation(bounds.orientation);
+  Settling centre(bounds.centre), scale(bounds.scale), orientation(bounds.orientation), slant(bounds.slant);
   Reversals reversals;
   const bool freezes = config.picture.frozen_from < samples.back().t;
   Stopping stopping(freezes ? config.picture.frozen_from : 0.0, config.start.vector());
@@ -158,6 +158,9 @@ RunSummary summariseRun(const std::vector<SimulationSample>& samples, const Simu
     centre.add(s.t, offset);
     scale.add(s.t, scale_error);
     orientation.add(s.t, s.alpha);
+    slant.add(s.t, s.slant);
+    run.slant = s.slant;
+    if (run.normal_error < 0.0 && !std::isnan(s.normal_error)) run.normal_error = s.normal_error;
     run.left_image = run.left_image || !(s.worst_corner >= 0.0);
     run.max_commanded_lateral_speed = robust::largest(run.max_commanded_lateral_speed, s.commanded_lateral_speed);
     run.max_lateral_speed = robust::largest(run.max_lateral_speed, s.lateral_speed);
@@ -172,6 +175,7 @@ RunSummary summariseRun(const std::vector<SimulationSample>& samples, const Simu
   run.settled_centre = centre.since();
   run.settled_scale = scale.since();
   run.settled_orientation = orientation.since();
+  run.faced = slant.since();
   if (std::min({run.settled_centre, run.settled_scale, run.settled_orientation}) >= 0.0) {
     run.settled = std::max({run.settled_centre, run.settled_scale, run.settled_orientation});
   }
@@ -184,7 +188,7 @@ void writeRuns(const std::vector<RunSummary>& runs, std::ostream& stream) {
   stream << "seed,start_pan,start_tilt,start_spin,start_insertion,refused_starts,settled,settled_centre,settled_scale,"
             "settled_orientation,left_image,centre_rms,scale_rms,orientation_rms,moving_share,reversals,"
             "max_commanded_lateral_speed,max_lateral_speed,max_lateral_offset,final_state,stopped,holds,"
-            "turned,inserted,turned_away,inserted_away,evidence,unconfirmed,leash\n";
+            "turned,inserted,turned_away,inserted_away,evidence,unconfirmed,leash,faced,slant,normal_error\n";
   stream.precision(9);
   for (const RunSummary& r : runs) {
     const scope::Velocity& start = r.drawn.start;
@@ -194,7 +198,8 @@ void writeRuns(const std::vector<RunSummary>& runs, std::ostream& stream) {
            << r.orientation_rms << ',' << r.moving_share << ',' << r.reversals << ',' << r.max_commanded_lateral_speed
            << ',' << r.max_lateral_speed << ',' << r.max_lateral_offset << ',' << name(r.final_state) << ','
            << r.stopped << ',' << r.holds << ',' << r.turned << ',' << r.inserted << ',' << r.turned_away << ','
-           << r.inserted_away << ',' << r.evidence << ',' << r.unconfirmed << ',' << r.leash << '\n';
+           << r.inserted_away << ',' << r.evidence << ',' << r.unconfirmed << ',' << r.leash << ','
+           << r.faced << ',' << r.slant << ',' << r.normal_error << '\n';
   }
 }
 
@@ -237,6 +242,16 @@ void printRuns(const std::vector<RunSummary>& runs, const RunBounds& bounds, std
   printSpread("  share of the motion allowed unseen", all([](const RunSummary& r) { return r.unconfirmed; }), "",
               stream);
   printSpread("  share of the leash", all([](const RunSummary& r) { return r.leash; }), "", stream);
+  if (runs.front().normal_error >= 0.0) {
+    stream << "the image plane against the tissue\n";
+    printSpread("  error of the normal", all([](const RunSummary& r) { return r.normal_error / kDegree; }), " deg",
+                stream);
+    printSpread("  slant at the end", all([](const RunSummary& r) { return r.slant / kDegree; }), " deg", stream);
+    printSpread("  below the bound after", all([](const RunSummary& r) {
+                  return r.faced < 0.0 ? std::numeric_limits<double>::infinity() : r.faced;
+                }),
+                " s", stream);
+  }
   stream << "at the insertion point\n";
   printSpread("  commanded lateral speed", all([](const RunSummary& r) { return r.max_commanded_lateral_speed; }),
               " m/s", stream);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <deque>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 
 #include "closed_loop/noise.h"
@@ -22,6 +23,7 @@ servo::Task taskOf(const std::string& name) {
   if (name == "CENTRE_TIP") return servo::Task::kCentreTip;
   if (name == "FOLLOW") return servo::Task::kFollow;
   if (name == "POINTS") return servo::Task::kPoints;
+  if (name == "PARALLEL") return servo::Task::kParallel;
   return servo::Task::kHoldView;
 }
 
@@ -75,6 +77,9 @@ class Loop {
       input.robot_report.age = time - reported_;
     }
     if (!engaged_once_) engaged_once_ = controller_.engage(input).empty();
+    const bool announced = controller_.figures().parallel.stage == servo::ParallelStage::kAnnounced;
+    if (!announced) announced_at_ = time;
+    if (announced && time - announced_at_ >= config_.reading_time) controller_.engage(input);
     const servo::ControllerOutput output = controller_.update(input);
     actuator_.command(time, output.command.vector());
     executed_ = actuator_.velocity(time);
@@ -98,14 +103,33 @@ class Loop {
   // z points out of the body.
   Eigen::Isometry3d measuredPose() {
     Eigen::Isometry3d world_T_insertion_point = Eigen::Isometry3d::Identity();
-    world_T_insertion_point.linear() = shaft_R_camera_.transpose() * geometry::so3Exp({M_PI, 0.0, 0.0});
+    world_T_insertion_point.linear() = insertionPointAxes();
     world_T_insertion_point.translation() = config_.believed_depth_factor * insertion_point_;
     Eigen::Isometry3d pose = world_T_insertion_point.inverse() * body_.pose();
+    if (config_.pose_turn != 1.0) pose = Eigen::Isometry3d(toldTurn(pose.linear()) * pose);
     const Eigen::Vector2d xy = noise_.draw(config_.pose_noise), z = noise_.draw(config_.pose_noise);
     const Eigen::Vector2d turn = noise_.draw(config_.direction_noise);
     pose.translation() += Eigen::Vector3d(xy.x(), xy.y(), z.x());
     pose.linear() = pose.linear() * geometry::so3Exp({turn.x(), turn.y(), 0.0});
     return pose;
+  }
+
+  // world_R_insertion_point: z points out of the body at the reference.
+  Eigen::Matrix3d insertionPointAxes() const {
+    return shaft_R_camera_.transpose() * geometry::so3Exp({M_PI, 0.0, 0.0});
+  }
+
+  // About the insertion point, from the true pose to the one that the arm tells: the turns since the first one.
+  Eigen::AngleAxisd toldTurn(const Eigen::Matrix3d& insertion_point_R_shaft) {
+    if (!first_R_shaft_) first_R_shaft_ = insertion_point_R_shaft;
+    const Eigen::Vector3d turned = geometry::so3Log(insertion_point_R_shaft * first_R_shaft_->transpose());
+    return {(config_.pose_turn - 1.0) * turned.norm(), turned.stableNormalized()};
+  }
+
+  // The tissue's normal in the camera's frame.
+  Eigen::Vector3d normalInCamera(double time) const {
+    return (shaft_R_camera_.transpose() * body_.pose().linear().transpose()) *
+           (patient_.tissueMotion(time).linear() * normalInWorld());
   }
 
   // world_T_tip; the world is the camera's frame at the reference.
@@ -119,9 +143,12 @@ class Loop {
     return world_T_shaft * turned * Eigen::Translation3d(0.0, 0.0, config_.depth + config_.start.insertion);
   }
 
+  Eigen::Vector3d normalInWorld() const {
+    return geometry::so3Exp({config_.tissue_slant_x, config_.tissue_slant_y, 0.0}) * Eigen::Vector3d::UnitZ();
+  }
+
   Eigen::Matrix3d trueHomography(double time) const {
-    const Eigen::Vector3d normal =
-        geometry::so3Exp({config_.tissue_slant_x, config_.tissue_slant_y, 0.0}) * Eigen::Vector3d::UnitZ();
+    const Eigen::Vector3d normal = normalInWorld();
     Eigen::Isometry3d tip_T_camera = Eigen::Isometry3d::Identity();
     tip_T_camera.linear() = shaft_R_camera_;
     const Eigen::Isometry3d camera_T_world = (body_.pose() * tip_T_camera).inverse();
@@ -166,6 +193,11 @@ class Loop {
     s.lateral_speed = scope::twistAtInsertionPoint(tip, s.d2).head<2>().norm();                       // eq. (9)
     s.commanded_lateral_speed = scope::twistAtInsertionPoint(tip, believedDepth()).head<2>().norm();  // eq. (9)
     s.lateral_offset = body_.lateralOffset();
+    const Eigen::Vector3d normal = normalInCamera(time);
+    s.slant = std::atan2(normal.head<2>().norm(), normal.z());
+    const Eigen::Vector3d known = insertionPointAxes() * figures.parallel.normal;
+    const Eigen::Vector3d there = patient_.tissueMotion(time).linear() * normalInWorld();
+    s.normal_error = figures.parallel.is_known ? std::atan2(known.cross(there).norm(), known.dot(there)) : std::nan("");
     s.state = output.state;
     return s;
   }
@@ -184,6 +216,8 @@ class Loop {
   std::deque<std::pair<double, servo::TaskErrorInput>> images_;
   std::pair<double, servo::TaskErrorInput> latest_{0.0, servo::TaskErrorInput()};
   bool engaged_once_ = false;
+  double announced_at_ = 0.0;  // s, of PARALLEL
+  std::optional<Eigen::Matrix3d> first_R_shaft_;
   Eigen::Vector4d signs_;
   Eigen::Vector4d moved_ = Eigen::Vector4d::Zero();  // displacement of the scope
 };

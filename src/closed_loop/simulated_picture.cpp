@@ -60,6 +60,9 @@ servo::TaskErrorInput SimulatedPicture::expose(servo::Task task, double time, co
     case servo::Task::kPoints:
       exposePoints(g, d2, input, noise);
       break;
+    case servo::Task::kParallel:
+      exposeView(h, input, noise);
+      break;
     default:
       exposeRegion(g, task == servo::Task::kStabilise, input, noise);
   }
@@ -144,6 +147,27 @@ void SimulatedPicture::exposePoints(const Eigen::Matrix3d& g, double d2, servo::
   input.valid = seen.is_known;
   input.error = seen.error;
   input.corner_error = config_.camera.fx * seen.stddev;
+}
+
+// As AnchoredMotion does it: by the reference image where enough of it is in view, otherwise from image to image.
+void SimulatedPicture::exposeView(const Eigen::Matrix3d& h, servo::TaskErrorInput& input, Noise& noise) {
+  const geometry::Rectangle region = servo::viewRegion(config_.width, config_.height);
+  const Eigen::Matrix3d g = pixels(h);
+  const bool is_anchored = !shown_before_ || referenceInView(g) >= kEnoughInView;
+  const Eigen::Matrix3d exact = is_anchored ? g : Eigen::Matrix3d(g * shown_before_->inverse());
+  geometry::Quadrilateral corners = geometry::apply(exact, region.corners());
+  for (Eigen::Vector2d& corner : corners) corner += noise.draw(is_anchored ? input.corner_error : config_.step_noise);
+  const Eigen::Matrix3d noisy = geometry::fromCorners(region.corners(), corners);
+  followed_ = is_anchored ? noisy : Eigen::Matrix3d(noisy * followed_);
+  shown_before_ = g;
+  servo::ViewMotion motion;
+  motion.h = geometry::normalisedFromPixels(followed_, config_.camera);
+  motion.corners = region.corners();
+  for (Eigen::Vector2d& corner : motion.corners) corner = normalised(corner);
+  motion.error = input.corner_error / config_.camera.fx;
+  input.error = servo::taskError(motion.h, region, config_.camera);
+  input.motion = motion;
+  input.valid = true;
 }
 
 // The whole view is compared with the anchor by what of it is in the image; a region has to be in it.

@@ -39,6 +39,7 @@ class SimulatedPicture {
   double nearestToBorder(const geometry::Quadrilateral& corners) const;
   double referenceInView(const Eigen::Matrix3d& g) const;
   double crossing(double time) const;
+  void exposeView(const Eigen::Matrix3d& h, servo::TaskErrorInput& input, Noise& noise);
   void exposePlace(const Eigen::Matrix3d& g, const Eigen::Vector2d& desired, servo::TaskErrorInput& input,
                    Noise& noise) const;
   void exposePoints(const Eigen::Matrix3d& g, double d2, servo::TaskErrorInput& input, Noise& noise);
@@ -50,6 +51,8 @@ class SimulatedPicture {
   servo::PointsError points_error_;
   Eigen::Matrix3d picture_;  // takes the correct picture to the one shown, normalised coordinates
   std::optional<Eigen::Matrix3d> frozen_;
+  std::optional<Eigen::Matrix3d> shown_before_;  // of the image before
+  Eigen::Matrix3d followed_ = Eigen::Matrix3d::Identity();  // what was told of it
 };
 
 }  // namespace laparoscope_servo::closed_loop

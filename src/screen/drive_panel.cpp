@@ -90,7 +90,7 @@ void DrivePanel::show(const Facts& facts, double now) {
   controller_ = controllerSpeaks(facts, now) ? facts.controller : ControllerFacts();
   const std::string& task = controller_.task;
   for (std::size_t k = 0; k < tasks_.size(); ++k) markActive(*tasks_[k], task == taskWords()[k].task);
-  keep_view_->setVisible(task == "STABILISE");
+  keep_view_->setVisible(task == "STABILISE" || task == "PARALLEL");
   tellTask();
   const bool by_hand = task == "MANUAL" && facts.limits.has_value();
   for (std::size_t k = 0; k < sliders_.size(); ++k) {

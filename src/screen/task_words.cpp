@@ -17,7 +17,9 @@ const std::vector<TaskWords>& taskWords() {
       {"FOLLOW", "Follow object", "the scope turns to keep the object that was selected in the middle.",
        "the node motion with a region and a calibrated camera.", "The scope follows the object."},
       {"POINTS", "Bring points", "the scope brings the points to the places that were selected for them.",
-       "the node points with desired places and a calibrated camera.", "The scope brings the points to their places."}};
+       "the node points with desired places and a calibrated camera.", "The scope brings the points to their places."},
+      {"PARALLEL", "Face tissue", "the scope circles, says how far it would turn, and turns when engaged again.",
+       "the node motion, the arm's pose and a calibrated camera.", "The scope turns to face the tissue."}};
   return all;
 }
 

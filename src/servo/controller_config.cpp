@@ -214,6 +214,8 @@ void describe(Table& table, ControllerConfig& c) {
               [&] { describe(table, c.follow); });
   table.group("points", "the task POINTS, which brings points of texture to their desired places",
               [&] { describe(table, c.points); });
+  table.group("parallel", "the task PARALLEL, which turns the view onto the tissue by pan and tilt",
+              [&] { describe(table, c.parallel); });
   table.group("safety", "what the scope has to be sure of before it moves", [&] { describe(table, c.safety); });
 }
 

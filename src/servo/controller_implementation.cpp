@@ -47,6 +47,7 @@ Controller::Implementation::Implementation(const ControllerConfig& config)
       machine_(config.safety),
       stick_(config.safety, config.limits.velocity),
       tip_(config.centre_tip.dwell, config.centre_tip.still),
+      parallel_(config.parallel, config.range, config.features.desired_depth),
       repeats_(config.safety.max_repeated_errors),
       effect_(config.effect, {config.target.centre_noise, config.target.depth_noise, config.target.orientation_noise}),
       opposed_(config.dead_zone.width),
@@ -74,6 +75,7 @@ SafetyFacts Controller::Implementation::facts(const ControllerInput& input) cons
   facts.tracker = {task.problem,          task.age,         task.image_age, task.valid, task.region,
                    task.visible_fraction, task.corner_error};
   if (task.problem.empty() && task.valid) facts.tracker.problem = problemOf(task);
+  if (task_ == Task::kParallel && facts.tracker.problem.empty()) facts.tracker.problem = planeProblem(input);
   return facts;
 }
 
@@ -107,6 +109,7 @@ std::string Controller::Implementation::engage(const ControllerInput& input) {
   SafetyFacts request = facts(input);
   request.request = EngageRequest::kOn;
   machine_.step(request);
+  if (task_ == Task::kParallel) parallel_.engage(input.time);
   effect_.rearm();
   opposed_.restart();
   leash_.restart();
@@ -132,6 +135,8 @@ void Controller::Implementation::select(Task task) {
   task_changed_ = true;
   stick_.restart();
   leash_.restart();
+  parallel_.restart();
+  keyed_view_.restart();
   effect_.anotherTracker();
   servo_.setUse(servoUse(task, config_));
   servo_.restart(last_time_);
@@ -161,6 +166,7 @@ ControllerOutput Controller::Implementation::update(const ControllerInput& input
   watchEffect(input);
   watchLeash(input);
   watchTip(input.tip);
+  watchPlane(input);
   // A non-finite time is ignored here, and the budget stays; the state machine stops the scope.
   const bool has_clock = std::isfinite(input.time);
   const double told_for = std::clamp(input.time - last_time_, 0.0, config_.predictor.command_lifetime);
@@ -204,6 +210,7 @@ ControllerFigures Controller::Implementation::figures() const {
   figures.evidence = effect_.evidence();
   figures.unconfirmed = effect_.budget().spent();
   figures.leash = leash_.used();
+  figures.parallel = parallel_.figures();
   return figures;
 }
 
@@ -244,6 +251,10 @@ ServoInput Controller::Implementation::servoInput(const ControllerInput& input) 
   servo.pose_time = input.time - input.depth.age;
   servo.insertion_point_T_tip = input.depth.insertion_point_T_tip;
   servo.period = has_time_ ? std::min(input.time - last_time_, config_.safety.max_period) : 0.0;
+  if (task_ == Task::kParallel && parallel_.stage() == ParallelStage::kTurn) {
+    servo.error = parallel_.error();
+    servo.image_time = servo.pose_time = parallel_.errorTime();
+  }
   return servo;
 }
 
@@ -252,6 +263,7 @@ scope::Velocity Controller::Implementation::follow(const ControllerInput& input,
     servo_.stop(input.time);
     return scope::Velocity();
   }
+  if (task_ == Task::kParallel) return faceTissue(input, safety);
   return servo_.command(servoInput(input), limits(safety, input.time));
 }
 

@@ -13,6 +13,8 @@
 #include "servo/safety/repeat_watch.h"
 #include "servo/safety/safety_machine.h"
 #include "servo/scope_servo.h"
+#include "servo/task/parallel/keyed_view.h"
+#include "servo/task/parallel/parallel_task.h"
 #include "servo/task/tip_stillness.h"
 
 namespace laparoscope_servo::servo {
@@ -49,6 +51,9 @@ class Controller::Implementation {
   ServoInput servoInput(const ControllerInput& input) const;
   void watchRepetition(const TaskErrorInput& task_error);
   void watchTip(const TaskErrorInput& tip);
+  void watchPlane(const ControllerInput& input);
+  std::string planeProblem(const ControllerInput& input) const;
+  scope::Velocity faceTissue(const ControllerInput& input, const SafetyOutput& safety);
   scope::Velocity follow(const ControllerInput& input, const SafetyOutput& safety);
   scope::Velocity drive(const ControllerInput& input, const std::string& problem);
   std::string caution(const SafetyOutput& safety, const std::string& stick) const;
@@ -60,6 +65,8 @@ class Controller::Implementation {
   bool task_changed_ = false;  // since the last step
   ManualStick stick_;
   TipStillness tip_;
+  ParallelTask parallel_;
+  KeyedView keyed_view_;
   RepeatWatch repeats_;
   EffectGuard effect_;
   OpposedMotion opposed_;

@@ -18,6 +18,7 @@ constexpr double kShows = 0.1;
 const TaskErrorInput& ControllerInput::seenBy(Task task) const {
   switch (task) {
     case Task::kStabilise:
+    case Task::kParallel:
       return view;
     case Task::kCentreTip:
       return tip;
@@ -56,6 +57,8 @@ std::string Controller::Implementation::problemOf(const TaskErrorInput& seen) co
     return "where the object is, is not known well enough: its expected error is above follow/max_error";
   if (task_ == Task::kPoints && !(seen.corner_error <= config_.points.max_error))
     return "where the points are, is not known well enough: their expected error is above points/max_error";
+  if (task_ == Task::kParallel && !(seen.corner_error <= config_.parallel.max_error))
+    return "where the view is, is not known well enough: its expected error is above parallel/max_error";
   if (repeats_.repeats())
     return "the picture repeats: the task error stays the same to the last digit while the scope moves";
   return "";
@@ -86,25 +89,37 @@ void Controller::Implementation::watchEffect(const ControllerInput& input) {
   image.desired_depth = config_.features.desired_depth;
   image.corner_error = task.corner_error;
   image.breath_known = servo_.breathingRate() > 0.0;
+  if (task_ == Task::kParallel) {
+    const std::optional<KeyedError> keyed = task.motion ? keyed_view_.see(image.time, *task.motion) : std::nullopt;
+    if (!keyed) return;
+    image.error = keyed->error;
+    image.region = keyed->key;
+    if (keyed->key_changed) image.in_last_region = keyed->last_key;
+  }
   effect_.observe(image, servo_.history(), servo_.delay());
 }
 
 // It begins where somebody engages, or presses the dead-man switch, and looks; that of a hand anew wherever the scope
 // stands.
 void Controller::Implementation::watchLeash(const ControllerInput& input) {
-  const bool waits_for_hand = !servo_.use().is_tissue && told_.isZero(0.0);
-  if (machine_.state() == SafetyState::kArmed || !engaged() || task_ == Task::kManual || waits_for_hand)
+  const bool waits_for_hand = task_ == Task::kCentreTip && told_.isZero(0.0);
+  const bool goes_round = task_ == Task::kParallel && parallel_.stage() != ParallelStage::kTurn;
+  if (machine_.state() == SafetyState::kArmed || !engaged() || task_ == Task::kManual || waits_for_hand || goes_round)
     leash_.restart();
-  if (!isUsable(input)) return;
-  const ServoInput servo = servoInput(input);
+  if (!isUsable(input) || goes_round) return;
+  ServoInput servo = servoInput(input);
+  if (task_ == Task::kParallel) servo.error = parallel_.goalError();
   const TaskErrorInput& task = seen(input);
   LeashObservation image{*task.image_time,
                          task.region,
                          task.error,
                          servo_.toTarget(servo),
                          servo_.sinceImage(servo),
+                         true,
                          input.depth.d2,
                          servo.insertion_point_T_tip};
+  // Pan and then tilt turn the shaft about itself, too.
+  image.has_orientation = task_ != Task::kParallel;
   // Without insertion the scope follows no depth.
   if (!servo_.use().insertion) image.d2 = image.to_target[3] = image.to_pose[3] = 0.0;
   leash_.observe(image);

@@ -23,6 +23,7 @@ struct RunBounds {
   double centre = 1.0;                      // px, distance of the ROI's centre from its target
   double scale = 0.01;                      // relative to the reference: 0.01 is 1 %
   double orientation = 0.5 * M_PI / 180.0;  // rad
+  double slant = 1.0 * M_PI / 180.0;        // rad, of the tissue against the image plane, in PARALLEL
   double rest_after = 15.0;                 // s, from which the figures of rest are computed
 };
 
@@ -34,6 +35,9 @@ struct RunSummary {
   double settled_centre = -1.0;
   double settled_scale = -1.0;
   double settled_orientation = -1.0;
+  double faced = -1.0;         // s, for the tissue's slant against the image plane
+  double slant = 0.0;          // rad, that slant at the end
+  double normal_error = -1.0;  // rad, of the normal that PARALLEL knows, when it became known; -1: none did
   bool left_image = false;       // a corner of the ROI was outside of the image at some time
   double centre_rms = 0.0;       // px, at rest, like the next four
   double scale_rms = 0.0;        // 0.01 is 1 %

@@ -4,7 +4,8 @@
 // The camera measures the exact homography of the plane, with noise on the ROI's corners; in STABILISE on those of
 // servo::viewRegion(), as long as enough of the reference image is in view for AnchoredMotion; in CENTRE_TIP
 // the ROI's centre is an instrument's tip, which a hand moves as the patient's tissue moves, and in FOLLOW the middle
-// of an object; in POINTS there are 36 points in the ROI, of which a share may be astray. The robot executes the
+// of an object; in PARALLEL the view is followed from image to image where too little of the reference image is left;
+// in POINTS there are 36 points in the ROI, of which a share may be astray. The robot executes the
 // commands after a delay and with a dead zone, as the end-effector's velocity of eq. (12). Tissue and insertion point
 // may move, the optics may be oblique, and the controller's depths and delay may be wrong. Deterministic: the same
 // configuration and seed give the same numbers. World frame: the camera's at the reference pose.
@@ -38,10 +39,14 @@ struct CrossingConfig {
 };
 
 struct SimulationConfig {
-  std::string task = "HOLD_VIEW";                              // "STABILISE", "CENTRE_TIP", "FOLLOW", "POINTS"
+  std::string task = "HOLD_VIEW";                              // or another task that follows a picture
   double frame_rate = 25.0;                                    // Hz, of the camera
   double image_delay = 0.0;                                    // s, from the exposure to the task error
   double corner_noise = 0.3;                                   // px, standard deviation of each corner coordinate
+  // px, standard deviation of each coordinate of the view's corners from an image to the next, where the view is
+  // followed so
+  double step_noise = 0.03;
+  double reading_time = 1.0;                                   // s, from PARALLEL's announcement to engaging again
   double points_astray = 0.0;                                  // share of the points of POINTS that do not move
   double width = 640.0;                                        // px, of the image
   double height = 480.0;                                       // px
@@ -67,6 +72,7 @@ struct SimulationConfig {
   bool poses = false;               // the controller gets the shaft's pose, and may estimate the insertion point
   double pose_noise = 0.0005;       // m, standard deviation per axis
   double direction_noise = 0.0035;  // rad, of the shaft's direction, per axis
+  double pose_turn = 1.0;           // times: of the turns since the start, what the poses tell
   sim::PatientConfig patient;
   PictureConfig picture;
   CrossingConfig crossing;
@@ -100,6 +106,9 @@ struct SimulationSample {
   double evidence = 0.0;     // evidence of the effect guard
   double unconfirmed = 0.0;  // used share of the effect budget
   double leash = 0.0;        // used share of the leash
+  double slant = 0.0;        // rad, of the tissue against the image plane
+  // rad, between the normal that PARALLEL knows and the true one, in the arm's base; NaN: none is known
+  double normal_error = 0.0;
   servo::ControllerState state = servo::ControllerState::kIdle;
 };
 

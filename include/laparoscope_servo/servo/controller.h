@@ -14,6 +14,7 @@
 #include "laparoscope_servo/servo/controller_config.h"
 #include "laparoscope_servo/servo/insertion_point_estimator.h"
 #include "laparoscope_servo/servo/manual_input.h"
+#include "laparoscope_servo/servo/parallel_figures.h"
 #include "laparoscope_servo/servo/safety_facts.h"
 #include "laparoscope_servo/servo/task.h"
 #include "laparoscope_servo/servo/task_error_input.h"
@@ -44,7 +45,7 @@ struct ControllerInput {
   std::string ended;          // what has ended the engagement since the last step; empty: nothing
   TaskErrorInput task_error;  // of HOLD_VIEW: of the region of interest
   TaskErrorInput tip;         // of CENTRE_TIP: see placeError()
-  TaskErrorInput view;        // of STABILISE: of viewRegion(), from the anchor image to this one
+  TaskErrorInput view;        // of STABILISE and PARALLEL: of viewRegion(), from the anchor image to this one
   TaskErrorInput object;      // of FOLLOW: see placeError()
   TaskErrorInput points;      // of POINTS: see points_error.h
   ManualInput manual;         // unusable input stops the scope at once
@@ -82,6 +83,7 @@ struct ControllerFigures {
   double evidence = 0.0;                  // log likelihood ratio of the best fault hypothesis over none
   double unconfirmed = 0.0;               // used share of the motion that is allowed before its effect is confirmed
   double leash = 0.0;                     // used share of the leash, see src/servo/safety/leash.h
+  ParallelFigures parallel;               // of the task PARALLEL
 };
 
 class Controller {

@@ -51,6 +51,7 @@ struct ControllerConfig {
   CentreTipConfig centre_tip;
   FollowConfig follow;
   PointsConfig points;
+  ParallelConfig parallel;
   EffectConfig effect;
   LeashConfig leash;
   SafetyConfig safety;

@@ -40,10 +40,24 @@ struct PointsConfig {
   double max_error = 2.0;   // px, expected error of the points' common place, beyond which the scope stands
 };
 
+// The task PARALLEL.
+struct ParallelConfig {
+  double radius = 0.05;        // rad, of the circle that measures the tissue's slant
+  double period = 4.0;         // s, that a circle takes
+  double turns = 3.0;          // circles at most; then the scope stands
+  double stddev = 0.003;       // rad, of the normal, at which it is known and the circle ends
+  double max_error = 2.0;      // px, expected error of the view at its worst corner, beyond which the scope stands
+  double max_turn = 0.7;       // rad, longest turn onto the normal
+  double min_distance = 0.03;  // m, least distance of the camera to the tissue after the turn
+  double max_change = 0.1;     // rad, by which picture and arm may tell the normal differently during the turn
+  double keep = 60.0;          // s, for which a normal that was measured may be turned to
+};
+
 // Adds the rows of all parameters, with range and meaning.
 void describe(parameters::Table& table, StabiliseConfig& config);
 void describe(parameters::Table& table, CentreTipConfig& config);
 void describe(parameters::Table& table, FollowConfig& config);
 void describe(parameters::Table& table, PointsConfig& config);
+void describe(parameters::Table& table, ParallelConfig& config);
 
 }  // namespace laparoscope_servo::servo

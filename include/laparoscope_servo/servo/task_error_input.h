@@ -6,6 +6,7 @@
 #include <string>
 
 #include "laparoscope_servo/servo/task_function.h"
+#include "laparoscope_servo/servo/view_motion.h"
 
 namespace laparoscope_servo::servo {
 
@@ -20,6 +21,7 @@ struct TaskErrorInput {
   std::optional<double> image_time;  // s, time of the image on the clock of ControllerInput::time
   double visible_fraction = 0.0;     // 0 to 1, visible share of the region of interest
   double corner_error = std::numeric_limits<double>::infinity();  // px, expected error of the worst corner
+  std::optional<ViewMotion> motion;  // of the view, whose task error this is; empty: of something else
 };
 
 // Which value is impossible for a region in the image, in a text that does not change while it is so; empty if all are

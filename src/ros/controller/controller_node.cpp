@@ -10,6 +10,7 @@
 
 #include "ros/common/clocks.h"
 #include "ros/controller/controller_conversions.h"
+#include "ros/controller/plane_markers.h"
 
 namespace laparoscope_servo {
 
@@ -31,6 +32,8 @@ const char* doing(servo::Task task) {
       return "follows the object";
     case servo::Task::kPoints:
       return "brings the points to their places";
+    case servo::Task::kParallel:
+      return "faces the tissue";
   }
   return "";
 }
@@ -50,6 +53,7 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
       diagnostics_(node, private_node),
       command_publisher_(node.advertise<ScopeVelocity>("servo_command", 1)),
       state_publisher_(private_node.advertise<ControllerState>("state", 1, true)),
+      plane_publisher_(private_node.advertise<visualization_msgs::MarkerArray>("tissue_plane", 1, true)),
       live_(private_node, config) {
   diagnostics_.setHardwareID("none");
   diagnostics_.add("control", this, &ControllerNode::report);
@@ -110,6 +114,7 @@ void ControllerNode::onTick() {
   inputs_.taken();
   publish(controller_.update(last_input_));
   inputs_.know(controller_.engaged(), controller_.task());
+  publishPlane();
 }
 
 // A looped bag or a restarted simulation: earlier data is invalid, and the arm must not go on.
@@ -172,6 +177,14 @@ void ControllerNode::publishState(const servo::ControllerOutput& output) {
   state_published_ = true;
 }
 
+void ControllerNode::publishPlane() {
+  const servo::ParallelFigures figures = controller_.figures().parallel;
+  const Eigen::Vector3d normal = figures.is_known ? figures.normal : Eigen::Vector3d(Eigen::Vector3d::Zero());
+  if (normal == plane_published_) return;
+  plane_published_ = normal;
+  plane_publisher_.publish(planeMarkers(config_.insertion_point, figures));
+}
+
 void ControllerNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   using diagnostic_msgs::DiagnosticStatus;
   using State = servo::ControllerState;
@@ -208,6 +221,8 @@ void ControllerNode::report(diagnostic_updater::DiagnosticStatusWrapper& status)
   status.add("insertion point by the poses, from its frame [m]", point.valid ? point.point.norm() : 0.0);
   status.add("its standard deviation [m]", point.valid ? std::sqrt(point.covariance.trace() / 3.0) : 0.0);
   status.add("residual of the shafts [m]", figures.insertion_point_residual);
+  status.add("views of the tissue's plane", figures.parallel.views);
+  status.add("standard deviation of its normal [rad]", figures.parallel.stddev);
   status.add("delay [s]", figures.delay);
   status.add("breathing rate [Hz]", figures.breathing_rate);
   status.add("evidence of a fault in the picture", figures.evidence);

@@ -3,7 +3,8 @@
 // Subscribes `task_error` (TaskError), `motion_features` (TrackedFeatures), `camera_info`, `~manual` (ScopeVelocity),
 // `~stop` (std_msgs/Empty) and, where they are required, `operating_state` (OperatingState) and `dead_man`
 // (std_msgs/Bool), see controller_inputs.h; publishes `servo_command` (ScopeVelocity, at a fixed rate, zero unless the
-// arm may move), `~state` (ControllerState, latched) and diagnostics; services `~engage` (std_srvs/SetBool),
+// arm may move), `~state` (ControllerState, latched), `~tissue_plane` (visualization_msgs/MarkerArray, latched, what
+// PARALLEL knows) and diagnostics; services `~engage` (std_srvs/SetBool),
 // `~select_task` (SelectTask). d2 comes from tf. The rate and all ages run on a steady clock: ROS time that stands
 // still or jumps back stops the arm. Not thread-safe: one thread calls all callbacks.
 #pragma once
@@ -49,6 +50,7 @@ class ControllerNode {
   servo::ControllerInput input();
   void publish(const servo::ControllerOutput& output);
   void publishState(const servo::ControllerOutput& output);
+  void publishPlane();
   void warn(const std::string& caution);
   void report(diagnostic_updater::DiagnosticStatusWrapper& status);
 
@@ -63,6 +65,7 @@ class ControllerNode {
   servo::ControllerInput last_input_;
   servo::ControllerOutput last_output_;
   bool state_published_ = false;
+  Eigen::Vector3d plane_published_ = Eigen::Vector3d::Zero();  // its normal; zero: none
   std::string said_caution_;   // last caution on the terminal
   double next_caution_ = 0.0;  // s, steady
 
@@ -70,6 +73,7 @@ class ControllerNode {
   diagnostic_updater::Updater diagnostics_;
   ros::Publisher command_publisher_;
   ros::Publisher state_publisher_;
+  ros::Publisher plane_publisher_;
   ros::ServiceServer engage_service_;
   ros::ServiceServer select_task_service_;
   ros::SteadyTimer tick_timer_;

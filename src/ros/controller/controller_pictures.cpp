@@ -42,7 +42,9 @@ void ControllerInputs::onMotion(const ros::MessageEvent<TrackedFeatures const>& 
   const TrackedFeatures& message = *event.getConstMessage();
   Picture& picture = task_ == servo::Task::kFollow ? object_ : view_;
   Picture& other = task_ == servo::Task::kFollow ? view_ : object_;
-  if (!takes(motion_input_, picture, event, task_ == servo::Task::kStabilise || task_ == servo::Task::kFollow)) return;
+  const bool follows =
+      task_ == servo::Task::kStabilise || task_ == servo::Task::kFollow || task_ == servo::Task::kParallel;
+  if (!takes(motion_input_, picture, event, follows)) return;
   other.watch.arrived(message.header.stamp, steadyNow());
   keep(view_, viewInput(message, camera_));
   keep(object_, object_place_.from(message, camera_));

@@ -28,8 +28,8 @@ Eigen::Vector2d movedThrough(const FeatureCamera& camera, const Eigen::Matrix3d&
   return *seen;
 }
 
-// The texts have no numbers, which would change from image to image.
-servo::TaskError errorOf(const TrackedFeature& motion, const FeatureCamera& camera) {
+// The task error, and the motion that it is of. The texts have no numbers, which would change from image to image.
+void read(const TrackedFeature& motion, const FeatureCamera& camera, servo::TaskErrorInput& input) {
   if (!motion.desired.empty()) throw std::invalid_argument("the motion has desired values, expected none");
   const std::size_t count = motion.parameters.size();
   if (count != 2 && count != 6 && count != 8)
@@ -53,7 +53,12 @@ servo::TaskError errorOf(const TrackedFeature& motion, const FeatureCamera& came
   }
   try {
     const Eigen::Matrix3d moved = geometry::fromCorners(region.corners(), seen);
-    return servo::taskError(geometry::normalisedFromPixels(moved, camera.camera()), region, camera.camera());
+    servo::ViewMotion view;
+    view.h = geometry::normalisedFromPixels(moved, camera.camera());
+    view.corners = geometry::apply(camera.camera().inverseMatrix(), region.corners());
+    view.error = motion.expected_error / camera.camera().fx;
+    input.error = servo::taskError(view.h, region, camera.camera());
+    input.motion = view;
   } catch (const std::invalid_argument&) {
     throw std::invalid_argument("the motion takes the view to where no camera sees it");
   }
@@ -76,7 +81,7 @@ servo::TaskErrorInput viewInput(const TrackedFeatures& message, const FeatureCam
   }
   const TrackedFeature& motion = message.features[0];
   try {
-    input.error = errorOf(motion, camera);
+    read(motion, camera, input);
     input.valid = true;
   } catch (const std::invalid_argument& error) {
     input.problem = error.what();

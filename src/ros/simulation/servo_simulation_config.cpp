@@ -56,7 +56,7 @@ void describeScope(Table& table, SimulationConfig& c) {
 void describeRobot(Table& table, SimulationConfig& c) {
   table.group("robot", "", [&] {
     describe(table, c.robot);
-    table.numbers("signs", c.signs, 4, {-1, 1}, "", "factors on pan, tilt, spin, insertion; -1: reversed");
+    table.numbers("signs", c.signs, 4, {-2, 2}, "", "factors on pan, tilt, spin, insertion; -1: reversed");
   });
   table.flag("reports", c.reports, "the robot reports its velocity");
   table.number("report_noise", c.report_noise, {0, 1}, "rad/s", "standard deviation; a tenth of it in m/s");
@@ -64,6 +64,7 @@ void describeRobot(Table& table, SimulationConfig& c) {
   table.number("pose_noise", c.pose_noise, {0, 0.1}, "m", "of the shaft's place, standard deviation per axis");
   table.number("direction_noise", c.direction_noise, {0, 0.5}, "rad",
                "of the shaft's direction, standard deviation per axis");
+  table.number("pose_turn", c.pose_turn, {0.5, 2}, "times", "of the turns that the scope makes, what the poses tell");
 }
 
 void describeDisturbances(Table& table, SimulationConfig& c) {
@@ -87,7 +88,7 @@ void describeDisturbances(Table& table, SimulationConfig& c) {
 }  // namespace
 
 void describe(Table& table, SimulationConfig& c) {
-  table.choice("task", c.task, {"HOLD_VIEW", "STABILISE", "CENTRE_TIP", "FOLLOW", "POINTS"},
+  table.choice("task", c.task, {"HOLD_VIEW", "STABILISE", "CENTRE_TIP", "FOLLOW", "POINTS", "PARALLEL"},
                "which the controller does");
   table.number("duration", c.duration, {0.1, 36000}, "s", "of simulated time, where --duration is not given");
   table.number("rest_from", c.rest_from, {0, 0.999}, "share",
@@ -96,6 +97,9 @@ void describe(Table& table, SimulationConfig& c) {
   table.number("image_delay", c.image_delay, {0, 1}, "s", "from the exposure to the task error");
   table.number("corner_noise", c.corner_noise, {0, 20}, "px",
                "standard deviation of each coordinate of the region's corners");
+  table.number("step_noise", c.step_noise, {0, 20}, "px",
+               "the same of the view's corners from an image to the next, where it is followed so, in PARALLEL");
+  table.number("reading_time", c.reading_time, {0, 1000}, "s", "from PARALLEL's announcement to engaging again");
   table.number("points_astray", c.points_astray, {0, 1}, "share",
                "of the points of POINTS, that stand still in the image, as those on an instrument or on the lens");
   describeImage(table, c);

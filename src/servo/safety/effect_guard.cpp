@@ -187,7 +187,24 @@ bool EffectGuard::isOther(const EffectObservation& image) const {
   return !started_ || !(dt > 0.0 && dt <= kGap) || other_region || other_optics;
 }
 
+// The same tissue and the same motion, seen at another place: each explanation keeps its likelihood.
+void EffectGuard::changeRegion(const EffectObservation& image) {
+  for (Track& track : tracks_) {
+    track.place += track.seen(image.error) - track.seen(*image.in_last_region);
+  }
+  last_ = image;
+}
+
 void EffectGuard::judge(const EffectObservation& image, const CommandHistory& commands, double delay) {
+  if (image.in_last_region) {
+    EffectObservation before = image;
+    before.in_last_region.reset();
+    before.region = last_.region;
+    before.error = *image.in_last_region;
+    judge(before, commands, delay);
+    changeRegion(image);
+    return;
+  }
   const double dt = image.time - last_.time;
   if (isOther(image)) {
     scatter_.restart();

@@ -24,6 +24,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <deque>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,7 @@ struct EffectObservation {
   double time = 0.0;  // s, of the exposure
   TaskError error;
   double region = 0.0;         // identifies what the error is of
+  std::optional<TaskError> in_last_region;  // where that is another one that goes on: the error of the last one
   scope::Geometry scope;       // as configured
   double desired_depth = 0.0;  // m, Z*
   double corner_error = 0.0;   // px, expected of the worst corner
@@ -95,6 +97,7 @@ class EffectGuard {
   bool isOther(const EffectObservation& image) const;
   bool reports(double time) const;
   void judge(const EffectObservation& image, const CommandHistory& commands, double delay);
+  void changeRegion(const EffectObservation& image);
   void advance(double dt);
   Eigen::Vector4d executed(double end, double late, const CommandHistory& commands, double delay) const;
   Features predicted(const EffectExplanation& explanation, const Eigen::Vector4d& displacement) const;

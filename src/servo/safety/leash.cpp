@@ -58,7 +58,8 @@ void Leash::observe(const LeashObservation& image) {
   if (last_ && !(image.time > last_->time)) return;
   Target target;
   target.d2 = image.d2 - image.to_pose[3] + image.to_target[3];
-  const Eigen::Vector3d turn_to_go = rotationOf(image.to_target);
+  Eigen::Vector3d turn_to_go = rotationOf(image.to_target);
+  if (!image.has_orientation) turn_to_go.z() = 0.0;
   if (image.insertion_point_T_tip) {
     target.insertion_point_R_shaft = image.insertion_point_T_tip->linear() *
                                      geometry::so3Exp(-rotationOf(image.to_pose)) * geometry::so3Exp(turn_to_go);
@@ -74,6 +75,11 @@ void Leash::observe(const LeashObservation& image) {
   Eigen::Vector3d turn = Eigen::Vector3d::Zero();
   if (target.insertion_point_R_shaft)
     turn = geometry::so3Log(anchor_.insertion_point_R_shaft->transpose() * *target.insertion_point_R_shaft);
+  if (target.insertion_point_R_shaft && !image.has_orientation) {
+    const Eigen::Vector3d there = anchor_.insertion_point_R_shaft->transpose() * target.insertion_point_R_shaft->col(2);
+    turn = geometry::so3Log(
+        Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), there).toRotationMatrix());
+  }
   const Shares wandered = shares(turn, target.d2 - anchor_.d2, target.d2 - mean_d2_);
   mean_d2_ = target.d2 + kept * (mean_d2_ - target.d2);
   // Along the shaft, depths that are wrong by two err by all that is left to go, beside what the tissue does meanwhile.

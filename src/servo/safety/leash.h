@@ -28,7 +28,8 @@ struct LeashObservation {
   // target, and to the scope's pose, which is of another time.
   Eigen::Vector4d to_target = Eigen::Vector4d::Zero();
   Eigen::Vector4d to_pose = Eigen::Vector4d::Zero();
-  double d2 = 0.0;  // m, of the pose
+  bool has_orientation = true;  // false: the scope follows none about its shaft, and the target has none
+  double d2 = 0.0;              // m, of the pose
   std::optional<Eigen::Isometry3d>
       insertion_point_T_tip;  // with the shaft's axes; empty: only the insertion is bounded
 };

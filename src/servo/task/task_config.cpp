@@ -45,4 +45,20 @@ void describe(parameters::Table& table, PointsConfig& c) {
                "expected error of where the points are together, beyond which the scope stands");
 }
 
+void describe(parameters::Table& table, ParallelConfig& c) {
+  table.number("radius", c.radius, {0.005, 0.2}, "rad", "of the circle that measures the tissue's slant");
+  table.number("period", c.period, {1, 60}, "s", "that a circle takes");
+  table.number("turns", c.turns, {0.5, 20}, "circles", "after which the scope stands if the normal is not known");
+  table.number("stddev", c.stddev, {1e-4, 0.1}, "rad",
+               "standard deviation of the normal at which it is known, and the circle ends");
+  table.number("max_error", c.max_error, {0.1, 100}, "px",
+               "expected error of the view at its worst corner; beyond it the scope stands");
+  table.number("max_turn", c.max_turn, {0.01, 0.8}, "rad", "longest turn onto the normal");
+  table.number("min_distance", c.min_distance, {0.005, 0.5}, "m",
+               "least distance of the camera to the tissue after the turn");
+  table.number("max_change", c.max_change, {0.01, 1.5}, "rad",
+               "by which picture and arm may tell the normal differently during the turn");
+  table.number("keep", c.keep, {1, 3600}, "s", "for which a normal that was measured may be turned to");
+}
+
 }  // namespace laparoscope_servo::servo

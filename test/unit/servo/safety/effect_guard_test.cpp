@@ -58,6 +58,12 @@ class Scene {
     image.error.x = seen.x() + noise_(random_);
     image.error.y = seen.y() + noise_(random_);
     image.error.alpha *= picture.determinant();
+    if (goes_on) image.in_last_region = image.error;
+    if (goes_on) offset -= image.error.x;
+    if (goes_on) region += 1.0;
+    goes_on = false;
+    image.error.x += offset;
+    image.region = region;
     image.scope = loop.scope();
     image.desired_depth = kZ;
     image.corner_error = corner_error;
@@ -78,6 +84,9 @@ class Scene {
   double stamps_off = 0.0;   // s, each by another time up to this
   int report_every = 1;      // of its reports so many are one that comes
   bool breath_known = false;
+  bool goes_on = false;  // the next image is of another region, in the middle, and tells where the last one is
+  double offset = 0.0;   // of the region from the first one, along x
+  double region = 0.0;
   double strongest = -100.0;
   double time = 0.0;
 
@@ -97,6 +106,24 @@ const scope::Velocity kMotion{0.08, -0.05, 0.03, 0.004};
 
 Eigen::Matrix2d rolled(double degrees) {
   return Eigen::Rotation2Dd(degrees * M_PI / 180.0).toRotationMatrix();
+}
+
+// The same tissue at another place: what was seen counts on, for a good picture and for one that freezes then.
+TEST(EffectGuard, ARegionThatGoesOnKeepsWhatWasSeen) {
+  for (const bool freezes : {false, true}) {
+    Scene scene;
+    scene.run(kRest, 0.5);
+    scene.run(kMotion, 1.0);
+    ASSERT_TRUE(scene.guard.confirmed());
+    const double spent = scene.guard.budget().spent();
+    scene.goes_on = true;
+    scene.run(kMotion, kStep);
+    EXPECT_TRUE(scene.guard.confirmed());
+    EXPECT_LE(scene.guard.budget().spent(), spent + 0.1) << "nothing is open again";
+    scene.frozen = freezes;
+    for (const double sign : {-1.0, 1.0}) scene.run(scope::Velocity::fromVector(sign * kMotion.vector()), 1.0);
+    EXPECT_EQ(scene.guard.effect() == Effect::kAsCommanded, !freezes);
+  }
 }
 
 TEST(EffectGuard, BelievesAPictureThatMovesAsTheScopeDoes) {

@@ -226,6 +226,28 @@ TEST(Leash, NumbersThatAreNoneAndOldImagesChangeNothing) {
   EXPECT_EQ(leash.used(), 0.0);
 }
 
+// A scope that follows no orientation about its shaft turns about itself where it pans, then tilts: that does not count,
+// and what is sideways still does.
+TEST(Leash, WithoutAnOrientationItBoundsTheDirectionAlone) {
+  for (const bool has_orientation : {true, false}) {
+    Leash leash{LeashConfig()};
+    LeashObservation image;
+    image.d2 = 0.1;
+    image.has_orientation = has_orientation;
+    const auto see = [&](const Eigen::Vector3d& turned) {
+      image.time += 0.04;
+      Eigen::Isometry3d tip = Eigen::Isometry3d::Identity();
+      tip.linear() = geometry::so3Exp(turned);
+      image.insertion_point_T_tip = tip;
+      leash.observe(image);
+      return leash.words();
+    };
+    EXPECT_EQ(see({0.0, 0.0, 0.0}), "");
+    EXPECT_EQ(see({0.0, 0.0, 0.3}).empty(), !has_orientation);
+    EXPECT_NE(see({0.3, 0.0, 0.0}), "");
+  }
+}
+
 TEST(Leash, DisabledItBoundsNothing) {
   LeashConfig config;
   config.enabled = false;
