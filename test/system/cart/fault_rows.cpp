@@ -40,7 +40,7 @@ FaultRow stranger(const std::string& name, unsigned usually, unsigned otherwise,
 }
 
 FaultRow alsoByFeatures(FaultRow row) {
-  row.usually |= kFeatures;
+  row.usually |= row.outcome == Outcome::kStands ? kFeatures | kParallel : kFeatures;
   return row;
 }
 

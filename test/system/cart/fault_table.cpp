@@ -157,7 +157,7 @@ std::vector<FaultRow> ofProcesses() {
   for (FaultRow& row : rows) {
     if (row.name != "tracker: hangs") continue;
     row.otherwise = kServo | kHold;
-    row.usually |= kFeatures;
+    row.usually |= kFeatures | kParallel;
   }
   return rows;
 }
