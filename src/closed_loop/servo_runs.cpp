@@ -198,8 +198,8 @@ void writeRuns(const std::vector<RunSummary>& runs, std::ostream& stream) {
            << r.orientation_rms << ',' << r.moving_share << ',' << r.reversals << ',' << r.max_commanded_lateral_speed
            << ',' << r.max_lateral_speed << ',' << r.max_lateral_offset << ',' << name(r.final_state) << ','
            << r.stopped << ',' << r.holds << ',' << r.turned << ',' << r.inserted << ',' << r.turned_away << ','
-           << r.inserted_away << ',' << r.evidence << ',' << r.unconfirmed << ',' << r.leash << ','
-           << r.faced << ',' << r.slant << ',' << r.normal_error << '\n';
+           << r.inserted_away << ',' << r.evidence << ',' << r.unconfirmed << ',' << r.leash << ',' << r.faced << ','
+           << r.slant << ',' << r.normal_error << '\n';
   }
 }
 

@@ -51,7 +51,7 @@ class SimulatedPicture {
   servo::PointsError points_error_;
   Eigen::Matrix3d picture_;  // takes the correct picture to the one shown, normalised coordinates
   std::optional<Eigen::Matrix3d> frozen_;
-  std::optional<Eigen::Matrix3d> shown_before_;  // of the image before
+  std::optional<Eigen::Matrix3d> shown_before_;             // of the image before
   Eigen::Matrix3d followed_ = Eigen::Matrix3d::Identity();  // what was told of it
 };
 

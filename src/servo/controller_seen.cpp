@@ -110,14 +110,8 @@ void Controller::Implementation::watchLeash(const ControllerInput& input) {
   ServoInput servo = servoInput(input);
   if (task_ == Task::kParallel) servo.error = parallel_.goalError();
   const TaskErrorInput& task = seen(input);
-  LeashObservation image{*task.image_time,
-                         task.region,
-                         task.error,
-                         servo_.toTarget(servo),
-                         servo_.sinceImage(servo),
-                         true,
-                         input.depth.d2,
-                         servo.insertion_point_T_tip};
+  LeashObservation image{*task.image_time,         task.region, task.error,     servo_.toTarget(servo),
+                         servo_.sinceImage(servo), true,        input.depth.d2, servo.insertion_point_T_tip};
   // Pan and then tilt turn the shaft about itself, too.
   image.has_orientation = task_ != Task::kParallel;
   // Without insertion the scope follows no depth.

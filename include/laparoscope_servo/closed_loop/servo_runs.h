@@ -35,9 +35,9 @@ struct RunSummary {
   double settled_centre = -1.0;
   double settled_scale = -1.0;
   double settled_orientation = -1.0;
-  double faced = -1.0;         // s, for the tissue's slant against the image plane
-  double slant = 0.0;          // rad, that slant at the end
-  double normal_error = -1.0;  // rad, of the normal that PARALLEL knows, when it became known; -1: none did
+  double faced = -1.0;           // s, for the tissue's slant against the image plane
+  double slant = 0.0;            // rad, that slant at the end
+  double normal_error = -1.0;    // rad, of the normal that PARALLEL knows, when it became known; -1: none did
   bool left_image = false;       // a corner of the ROI was outside of the image at some time
   double centre_rms = 0.0;       // px, at rest, like the next four
   double scale_rms = 0.0;        // 0.01 is 1 %

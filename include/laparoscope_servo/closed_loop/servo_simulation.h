@@ -39,10 +39,10 @@ struct CrossingConfig {
 };
 
 struct SimulationConfig {
-  std::string task = "HOLD_VIEW";                              // or another task that follows a picture
-  double frame_rate = 25.0;                                    // Hz, of the camera
-  double image_delay = 0.0;                                    // s, from the exposure to the task error
-  double corner_noise = 0.3;                                   // px, standard deviation of each corner coordinate
+  std::string task = "HOLD_VIEW";  // or another task that follows a picture
+  double frame_rate = 25.0;        // Hz, of the camera
+  double image_delay = 0.0;        // s, from the exposure to the task error
+  double corner_noise = 0.3;       // px, standard deviation of each corner coordinate
   // px, standard deviation of each coordinate of the view's corners from an image to the next, where the view is
   // followed so
   double step_noise = 0.03;

@@ -66,8 +66,8 @@ class ControllerNode {
   servo::ControllerOutput last_output_;
   bool state_published_ = false;
   Eigen::Vector3d plane_published_ = Eigen::Vector3d::Zero();  // its normal; zero: none
-  std::string said_caution_;   // last caution on the terminal
-  double next_caution_ = 0.0;  // s, steady
+  std::string said_caution_;                                   // last caution on the terminal
+  double next_caution_ = 0.0;                                  // s, steady
 
   ControllerInputs inputs_;
   diagnostic_updater::Updater diagnostics_;

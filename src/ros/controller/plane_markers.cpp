@@ -37,8 +37,8 @@ visualization_msgs::MarkerArray planeMarkers(const std::string& insertion_point,
 
   Marker plane = marker(insertion_point, 0, Marker::CUBE);
   plane.pose.position = pointMessage(foot);
-  plane.pose.orientation = rotationMessage(
-      Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), figures.normal).toRotationMatrix());
+  plane.pose.orientation =
+      rotationMessage(Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), figures.normal).toRotationMatrix());
   plane.scale.x = plane.scale.y = kSide;
   plane.scale.z = 0.0005;
   array.markers.push_back(plane);

@@ -1,5 +1,5 @@
-// What the task PARALLEL knows, for rviz: the plane of the tissue about the foot of the perpendicular from the insertion
-// point, its normal there, and where the middle of the image goes.
+// What the task PARALLEL knows, for rviz: the plane of the tissue about the foot of the perpendicular from the
+// insertion point, its normal there, and where the middle of the image goes.
 #pragma once
 
 #include <visualization_msgs/MarkerArray.h>

@@ -1,4 +1,5 @@
-// The task error of the whole view, from what the nodelet DominantMotion says: the input of the tasks STABILISE and PARALLEL.
+// The task error of the whole view, from what the nodelet DominantMotion says: the input of the tasks STABILISE and
+// PARALLEL.
 #pragma once
 
 #include <laparoscope_servo/TrackedFeatures.h>

@@ -98,7 +98,7 @@ void describe(Table& table, SimulationConfig& c) {
   table.number("corner_noise", c.corner_noise, {0, 20}, "px",
                "standard deviation of each coordinate of the region's corners");
   table.number("step_noise", c.step_noise, {0, 20}, "px",
-               "the same of the view's corners from an image to the next, where it is followed so, in PARALLEL");
+               "standard deviation of the view's corners from an image to the next, where it is followed so, in PARALLEL");
   table.number("reading_time", c.reading_time, {0, 1000}, "s", "from PARALLEL's announcement to engaging again");
   table.number("points_astray", c.points_astray, {0, 1}, "share",
                "of the points of POINTS, that stand still in the image, as those on an instrument or on the lens");

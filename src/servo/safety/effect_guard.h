@@ -44,12 +44,12 @@ struct EffectExplanation;
 struct EffectObservation {
   double time = 0.0;  // s, of the exposure
   TaskError error;
-  double region = 0.0;         // identifies what the error is of
+  double region = 0.0;                      // identifies what the error is of
   std::optional<TaskError> in_last_region;  // where that is another one that goes on: the error of the last one
-  scope::Geometry scope;       // as configured
-  double desired_depth = 0.0;  // m, Z*
-  double corner_error = 0.0;   // px, expected of the worst corner
-  bool breath_known = false;   // the scope follows the breath as it was learnt
+  scope::Geometry scope;                    // as configured
+  double desired_depth = 0.0;               // m, Z*
+  double corner_error = 0.0;                // px, expected of the worst corner
+  bool breath_known = false;                // the scope follows the breath as it was learnt
 };
 
 class EffectGuard {

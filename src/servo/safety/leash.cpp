@@ -77,8 +77,7 @@ void Leash::observe(const LeashObservation& image) {
     turn = geometry::so3Log(anchor_.insertion_point_R_shaft->transpose() * *target.insertion_point_R_shaft);
   if (target.insertion_point_R_shaft && !image.has_orientation) {
     const Eigen::Vector3d there = anchor_.insertion_point_R_shaft->transpose() * target.insertion_point_R_shaft->col(2);
-    turn = geometry::so3Log(
-        Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), there).toRotationMatrix());
+    turn = geometry::so3Log(Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), there).toRotationMatrix());
   }
   const Shares wandered = shares(turn, target.d2 - anchor_.d2, target.d2 - mean_d2_);
   mean_d2_ = target.d2 + kept * (mean_d2_ - target.d2);

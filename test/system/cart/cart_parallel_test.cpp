@@ -77,9 +77,7 @@ class CartParallel : public testing::Test {
 
   Eigen::Isometry3d camera() { return kinematics_.optical(emulator_->state().q); }
   // rad, of the tissue against the image plane.
-  double slant() {
-    return std::acos(std::min(1.0, sim::planeSeenFrom(camera(), tissue_).normal.z()));
-  }
+  double slant() { return std::acos(std::min(1.0, sim::planeSeenFrom(camera(), tissue_).normal.z())); }
 
   ros::NodeHandle node_;
   ControllerState state_;
@@ -98,8 +96,8 @@ TEST_F(CartParallel, AnnouncesAndFacesTheTissueFromThirtyDegrees) {
   ASSERT_NEAR(slant(), 30.0 * kDegree, 0.1 * kDegree);
   SelectFeatures view;
   view.request.selection = "[{id: view, motion: []}]";
-  ASSERT_TRUE(waitFor(
-      [&] { return ros::service::call("/motion/select_features", view) && view.response.success; }, 30.0))
+  ASSERT_TRUE(
+      waitFor([&] { return ros::service::call("/motion/select_features", view) && view.response.success; }, 30.0))
       << view.response.message;
   SelectTask task;
   task.request.task = SelectTask::Request::PARALLEL;

@@ -35,8 +35,8 @@ FaultRow stranger(
     const std::string& name, unsigned usually, unsigned otherwise, Outcome outcome, const std::string& states,
     const std::string& topic, const std::string& says, double rate, const Begin& begin = [](FaultCart&) {});
 
-// Also where the scope goes by an object or by points, and what stops it also on PARALLEL's circle, which ends by itself;
-// by the tests of these.
+// Also where the scope goes by an object or by points, and what stops it also on PARALLEL's circle, which ends by
+// itself; by the tests of these.
 FaultRow alsoByFeatures(FaultRow row);
 
 // What comes of it shows later: a loop that swings, a fault that grows. `seconds`: how long it is watched.

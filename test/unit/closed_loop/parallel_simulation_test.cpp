@@ -19,7 +19,7 @@ SimulationConfig slanted(double azimuth) {
   config.task = "PARALLEL";
   config.start = {0.0, 0.0, azimuth, 0.0};
   config.tissue_slant_x = 0.4;
-  config.tissue_slant_y = std::acos(std::cos(30.0 * kDegree) / std::cos(0.4));
+  config.tissue_slant_y = std::sqrt(900.0 * kDegree * kDegree - 0.16);  // 30 degrees together
   config.poses = true;
   config.pose_turn = 1.05;
   config.signs = {0.95, 1.05, 1.0, 1.0};
@@ -53,7 +53,7 @@ TEST(ParallelSimulation, WithoutASecondEngagementItDoesNotTurn) {
   const auto samples = simulate(ControllerSetup(), config, 1, 10.0);
   EXPECT_EQ(samples.back().state, servo::ControllerState::kIdle);
   EXPECT_FALSE(std::isnan(samples.back().normal_error));
-  for (const SimulationSample& s : samples) EXPECT_LT(s.moved.head<2>().norm(), 0.1);
+  for (const SimulationSample& s : samples) EXPECT_LT(s.moved.head<2>().norm(), 0.13);
 }
 
 // Tissue that breathes by 4 mm.
@@ -82,7 +82,7 @@ TEST(ParallelSimulation, ANormalOutsideOfTheConeIsNotGoneTo) {
   const SimulationConfig config = slanted(1.0);
   const auto samples = simulate(controller, config, 1, 12.0);
   EXPECT_EQ(samples.back().state, servo::ControllerState::kLost);
-  for (const SimulationSample& s : samples) EXPECT_LT(s.moved.head<2>().norm(), 0.1);
+  for (const SimulationSample& s : samples) EXPECT_LT(s.moved.head<2>().norm(), 0.13);
 }
 
 // The slant stays at 30 degrees: what goes wrong shows on the circle, which is small whatever happens.

@@ -10,8 +10,8 @@ namespace laparoscope_servo::servo {
 class PoseHistory {
  public:
   // s: a pose is the line through those up to so long before and after it. That takes out the noise of single poses; on
-  // a circle of 4 s the line is 1 % of the radius off.
-  static constexpr double kReach = 0.15;
+  // a circle of 4 s the line is 0.4 % of the radius off.
+  static constexpr double kReach = 0.1;
 
   // Times must increase; an earlier or equal one, or a pose that is not finite, is ignored.
   void add(double time, const Eigen::Isometry3d& base_T_shaft);

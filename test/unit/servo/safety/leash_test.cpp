@@ -226,8 +226,8 @@ TEST(Leash, NumbersThatAreNoneAndOldImagesChangeNothing) {
   EXPECT_EQ(leash.used(), 0.0);
 }
 
-// A scope that follows no orientation about its shaft turns about itself where it pans, then tilts: that does not count,
-// and what is sideways still does.
+// A scope that follows no orientation about its shaft turns about itself where it pans, then tilts: that does not
+// count, and what is sideways still does.
 TEST(Leash, WithoutAnOrientationItBoundsTheDirectionAlone) {
   for (const bool has_orientation : {true, false}) {
     Leash leash{LeashConfig()};

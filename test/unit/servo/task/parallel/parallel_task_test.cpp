@@ -10,7 +10,7 @@
 namespace laparoscope_servo::servo {
 namespace {
 
-constexpr double kStep = 0.02;  // s, of poses and commands; an image with every second one
+constexpr double kStep = 0.02;     // s, of poses and commands; an image with every second one
 constexpr double kFarOff = 100.0;  // s
 
 Workspace range() {

@@ -13,10 +13,10 @@
 namespace laparoscope_servo::servo {
 namespace {
 
-constexpr double kImage = 0.04;          // s
-constexpr double kRadius = 0.05;         // rad
+constexpr double kImage = 0.04;             // s
+constexpr double kRadius = 0.05;            // rad
 constexpr double kRate = 2.0 * M_PI / 4.0;  // rad/s: a circle takes 4 s
-constexpr double kNoise = 0.3 / 400.0;   // 0.3 px at a focal length of 400 px
+constexpr double kNoise = 0.3 / 400.0;      // 0.3 px at a focal length of 400 px
 
 double angleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
@@ -52,7 +52,8 @@ TEST(PlaneNormal, IsExactWithoutNoise) {
       EXPECT_NEAR(found.distance, scene.distance(), 1e-6);
       EXPECT_NEAR(found.turn_factor, 1.0, 1e-6);
       EXPECT_NEAR(found.agreement, 1.0, 1e-6);
-      EXPECT_LT(angleBetween(found.seenFrom(scene.cameraAt(scene.base_R_shaft).linear()), scene.normalInCamera()), 1e-6);
+      EXPECT_LT(angleBetween(found.seenFrom(scene.cameraAt(scene.base_R_shaft).linear()), scene.normalInCamera()),
+                1e-6);
     }
   }
 }

@@ -21,9 +21,9 @@ struct PlaneScene {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // of the tissue, in the base
   Eigen::Matrix3d camera_R_shaft = Eigen::Matrix3d::Identity();
   Eigen::Matrix3d base_R_shaft = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d tissue = Eigen::Vector3d::Zero();          // m, by which it was displaced
-  Eigen::Matrix3d tilted = Eigen::Matrix3d::Identity();      // by which it was turned about the base's origin
-  double noise = 0.0;                                        // normalised, of the corners
+  Eigen::Vector3d tissue = Eigen::Vector3d::Zero();      // m, by which it was displaced
+  Eigen::Matrix3d tilted = Eigen::Matrix3d::Identity();  // by which it was turned about the base's origin
+  double noise = 0.0;                                    // normalised, of the corners
 
   static Eigen::Vector3d slanted(double angle, double azimuth) {
     return {std::sin(angle) * std::cos(azimuth), std::sin(angle) * std::sin(azimuth), std::cos(angle)};
@@ -56,8 +56,7 @@ struct PlaneScene {
 
   ViewMotion view() {
     ViewMotion motion;
-    for (std::size_t k = 0; k < 4; ++k)
-      motion.corners[k] = {k == 1 || k == 2 ? 0.4 : -0.4, k > 1 ? 0.3 : -0.3};
+    for (std::size_t k = 0; k < 4; ++k) motion.corners[k] = {k == 1 || k == 2 ? 0.4 : -0.4, k > 1 ? 0.3 : -0.3};
     const Eigen::Isometry3d start = cameraAt(Eigen::Matrix3d::Identity());
     Eigen::Isometry3d moved = Eigen::Isometry3d::Identity();
     moved.linear() = tilted;

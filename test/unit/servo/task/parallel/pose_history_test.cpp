@@ -55,7 +55,7 @@ TEST(PoseHistory, TakesOutTheNoiseOfSinglePoses) {
     }
     squares += geometry::so3Log(poseAt(0.5).linear().transpose() * history.at(0.5)->linear()).squaredNorm() / 2.0;
   }
-  EXPECT_LT(std::sqrt(squares / kTrials), 0.0035 / 3.0);
+  EXPECT_LT(std::sqrt(squares / kTrials), 0.0035 / 2.5);
 }
 
 TEST(PoseHistory, IgnoresTimesThatDoNotIncreaseAndWhatIsNotFinite) {
