@@ -34,8 +34,8 @@ TEST(PoseHistory, WaitsForPosesAndKnowsNoneFromBefore) {
   PoseHistory history;
   EXPECT_FALSE(history.reaches(0.0));
   for (int k = 50; k <= 100; ++k) history.add(0.02 * k, poseAt(0.02 * k));
-  EXPECT_FALSE(history.reaches(1.9));
-  EXPECT_FALSE(history.at(1.9));
+  EXPECT_FALSE(history.reaches(1.95));
+  EXPECT_FALSE(history.at(1.95));
   EXPECT_FALSE(history.at(0.9));
   history.clear();
   EXPECT_FALSE(history.at(1.5));
