@@ -32,6 +32,10 @@ void checkOptions(const SourceOptions& options) {
   if (!(options.start >= 0.0) || !std::isfinite(options.start)) {
     throw SourceError("start = " + std::to_string(options.start) + " s, expected 0 or more");
   }
+  if (!(options.end > options.start)) {
+    throw SourceError("end = " + std::to_string(options.end) + " s, expected more than start, " +
+                      std::to_string(options.start) + " s");
+  }
   if (!(options.folder_rate > 0.0) || !std::isfinite(options.folder_rate)) {
     throw SourceError("rate = " + std::to_string(options.folder_rate) + " Hz, expected more than 0");
   }

@@ -41,7 +41,8 @@ void decode(const sensor_msgs::CompressedImage& message, SourceImage& image) {
 
 class BagSource : public ImageSource {
  public:
-  BagSource(const std::vector<std::string>& paths, const SourceOptions& options) : name_(paths.front()) {
+  BagSource(const std::vector<std::string>& paths, const SourceOptions& options)
+      : name_(paths.front()), span_(options) {
     if (paths.size() > 1) name_ += "' and " + std::to_string(paths.size() - 1) + " more '";
     for (const std::string& path : paths) openBag(path);
     try {
@@ -115,7 +116,7 @@ class BagSource : public ImageSource {
     size_ = images->size();
     const double duration = (images->getEndTime() - images->getBeginTime()).toSec();
     rate_ = size_ > 1 && duration > 0.0 ? static_cast<double>(size_ - 1) / duration : options.folder_rate;
-    start_ = images->getBeginTime() + ros::Duration(options.start);
+    begin_ = images->getBeginTime();
 
     std::vector<std::string> read_topics{image_topic_};
     const std::string camera_info_topic = chooseCameraInfoTopic(topics, name_, image_topic_, options.camera_info_topic);
@@ -157,7 +158,9 @@ class BagSource : public ImageSource {
         continue;
       }
       const std::size_t frame = frame_++;
-      if (instance.getTime() < start_) continue;
+      const double time = (instance.getTime() - begin_).toSec();
+      if (span_.isSkipped(time)) continue;
+      if (span_.isBehind(time)) break;
       SourceImage image = imageOf(instance);
       image.frame = frame;
       image.record_time = instance.getTime();
@@ -197,7 +200,8 @@ class BagSource : public ImageSource {
   std::string image_topic_;
   std::size_t size_ = 0;
   double rate_ = 0.0;
-  ros::Time start_;
+  ros::Time begin_;
+  ImageSpan span_;
   std::unique_ptr<rosbag::View> view_;
   rosbag::View::iterator position_;
   std::size_t frame_ = 0;

@@ -21,6 +21,7 @@ void describeInput(options::options_description& description, OfflineOptions& of
   add("camera-info-topic", options::value(&offline.source.camera_info_topic),
       "of a bag, when it is not camera_info beside the images");
   add("start", options::value(&offline.source.start), "skip so many seconds of the input");
+  add("end", options::value(&offline.source.end), "s: the image at this time is the first that is left out");
   add("rate", options::value(&offline.source.folder_rate), "images per second of a folder (default 25)");
   add("camera-info", options::value(&offline.camera_info),
       "calibration file (YAML, INI), instead of the bag's camera_info; needed for rectify: true where there is none");

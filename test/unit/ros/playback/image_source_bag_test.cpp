@@ -28,6 +28,16 @@ TEST_F(ImageSourceBagTest, BagGivesMessagesWithTheirHeaders) {
   EXPECT_NEAR(openImageSource(folder_.file("raw.bag"), {})->rate(), 10.0, 1e-6);
 }
 
+TEST_F(ImageSourceBagTest, BagIsReadFromTheStartToTheEnd) {
+  SourceOptions options;
+  options.start = 0.1;
+  options.end = 0.3;  // s of the recording's time, in which images are 0.1 s apart
+  const auto images = readAll(writeBag("raw.bag", {"/scope/image_raw"}), options);
+  ASSERT_EQ(images.size(), 2u);
+  EXPECT_EQ(numberOf(images[0]), 1);
+  EXPECT_EQ(images[1].frame, 2u);
+}
+
 TEST_F(ImageSourceBagTest, BagHasCameraInfoFromTheFirstImageOn) {
   const auto images = readAll(writeBag("raw.bag", {"/scope/image_raw"}));
   ASSERT_EQ(images.size(), 5u);

@@ -43,6 +43,18 @@ TEST_F(ImageSourceTest, FolderSkipsToTheStartAndKeepsTheNumbers) {
   EXPECT_EQ(images[0].header.stamp, ros::Time(0.3));
 }
 
+TEST_F(ImageSourceTest, FolderEndsInFrontOfTheImageAtTheEnd) {
+  for (int k = 0; k < 8; ++k) cv::imwrite(folder_.file(std::to_string(k) + ".png"), numbered(k));
+  SourceOptions options;
+  options.folder_rate = 10.0;
+  options.start = 0.2;
+  options.end = 0.7;  // frame 7 is at 0.7 s, whatever rounding says
+  const auto images = readAll(folder_.path(), options);
+  ASSERT_EQ(images.size(), 5u);
+  EXPECT_EQ(numberOf(images.front()), 2);
+  EXPECT_EQ(numberOf(images.back()), 6);
+}
+
 TEST_F(ImageSourceTest, FolderNamesAFileThatCannotBeReadAndGoesOn) {
   cv::imwrite(folder_.file("a.png"), numbered(0));
   writeFile("b.png", "this is no image");
@@ -148,6 +160,10 @@ TEST_F(ImageSourceTest, VideoHasStampsOfItsRate) {
   ASSERT_EQ(later.size(), 4u);
   EXPECT_EQ(later[0].frame, 2u);
   EXPECT_EQ(numberOf(later[0]), 2);
+  options.end = 0.2;
+  const auto middle = readAll(path, options);
+  ASSERT_EQ(middle.size(), 2u);
+  EXPECT_EQ(numberOf(middle[1]), 3);
   // Frames are buffers of their own.
   EXPECT_NE(images[0].decoded.data, images[1].decoded.data);
 }
@@ -166,6 +182,8 @@ TEST_F(ImageSourceTest, RefusesOptionsThatMakeNoSense) {
   SourceOptions options;
   options.start = -1.0;
   EXPECT_TRUE(mentions(errorOf(folder_.path(), options), "start"));
+  options.start = options.end = 1.0;
+  EXPECT_TRUE(mentions(errorOf(folder_.path(), options), "end"));
   options = {};
   options.folder_rate = 0.0;
   EXPECT_TRUE(mentions(errorOf(folder_.path(), options), "rate"));

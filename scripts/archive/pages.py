@@ -1,0 +1,75 @@
+"""Pages of an archive: one for each case with its lines, and the index, sorted by what deserves a look."""
+import gzip
+import pathlib
+import shutil
+import tempfile
+
+import jinja2
+import markupsafe
+
+from . import files
+
+COLOURS = {"IDLE": "#90a4ae", "TRACKING": "#2e7d32", "SEARCHING": "#ef8f00", "LOST": "#c62828"}  # as in session/drawing.py
+BAND_WIDTH, BAND_HEIGHT = 400, 14  # px
+TABLE = ("id", "case", "state", "images", "seconds", "tracking_images", "tracking_share", "covered", "lost", "found", "lost_at_end", "longest_lost",
+         "visible", "corner_error", "corner_error_99", "ms", "ms_99", "cpu_seconds", "peak_mb", "sha256", "reasons")
+
+
+def band(record):
+    """The states over time as SVG."""
+    if not record.get("changes") or not record["seconds"]:
+        return ""
+    scale = BAND_WIDTH / record["seconds"]
+    ends = [time for time, _ in record["changes"][1:]] + [record["seconds"]]
+    parts = [f'<rect x="{scale * begin:.1f}" width="{max(scale * (end - begin), 0.5):.1f}" height="{BAND_HEIGHT}" fill="{COLOURS.get(state, "#000000")}"/>'
+             for (begin, state), end in zip(record["changes"], ends)]
+    return markupsafe.Markup(f'<svg width="{BAND_WIDTH}" height="{BAND_HEIGHT}">{"".join(parts)}</svg>')
+
+
+def urgency(record):
+    """Sorts by what deserves a look: failed, damaged, lost until the end, then by the share that was not tracked."""
+    order = ("failed", "damaged", "done").index(record["state"])
+    return order, not record.get("lost_at_end", False), record.get("tracking_share", 0.0), record["id"]
+
+
+def environment():
+    e = jinja2.Environment(loader=jinja2.FileSystemLoader(pathlib.Path(__file__).parent), autoescape=True)
+    e.filters.update(percent=lambda v: "" if v is None else f"{100 * v:.1f} %", number=lambda v, digits=1: "" if v is None else f"{v:.{digits}f}")
+    return e
+
+
+def shown(record, archive):
+    return {**record, "band": band(record), "picture": (archive / "results" / "thumbnails" / f"{record['id']}.jpg").is_file()}
+
+
+def line_page(archive, record):
+    """The page that session_report makes of the line's table."""
+    from session.facts import Session, read_csv  # matplotlib behind it takes a second to load, which the index does without
+    from session.page import Page
+    session = Session()
+    with tempfile.TemporaryDirectory() as folder:
+        table = pathlib.Path(folder) / "images.csv"
+        with gzip.open(archive / "results" / "images" / f"{record['id']}.csv.gz", "rb") as packed, open(table, "wb") as file:
+            shutil.copyfileobj(packed, file)
+        read_csv(session, table, lambda stamp: None)
+    session.sources = [(f"images/{record['id']}.csv.gz", "")]
+    files.write_text(archive / "results" / "lines" / f"{record['id']}.html", Page(session, record["id"]).html())
+
+
+def write_case(archive, case, records):
+    for record in records:
+        if record["state"] != "failed":
+            line_page(archive, record)
+    page = environment().get_template("case.html")
+    files.write_text(archive / "results" / "cases" / f"{case}.html", page.render(case=case, records=[shown(r, archive) for r in records]))
+
+
+def write_index(archive, records):
+    files.write_table(archive / "results" / "lines.csv", TABLE,
+                      [{**{k: r[k] for k in TABLE if r.get(k) is not None}, "reasons": "; ".join(r["reasons"])} for r in records])
+    ordered = [shown(r, archive) for r in sorted(records, key=urgency)]
+    total = {"lines": len(records), "cases": len({r["case"] for r in records}), "hours": sum(r.get("seconds", 0.0) for r in records) / 3600,
+             "images": sum(r.get("images", 0) for r in records), "tracking": sum(r.get("tracking_images", 0) for r in records),
+             "cpu_hours": sum(r["cpu_seconds"] for r in records) / 3600,
+             **{state: sum(r["state"] == state for r in records) for state in ("done", "damaged", "failed")}}
+    files.write_text(archive / "results" / "index.html", environment().get_template("index.html").render(records=ordered, total=total, colours=COLOURS))

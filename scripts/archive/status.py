@@ -1,0 +1,67 @@
+"""Where an archive stands: each line of its plan is in one of five states, and the counts add up to the lines."""
+import os
+import pathlib
+import socket
+import subprocess
+import time
+
+from . import files, plan
+
+STATES = ("done", "damaged", "failed", "running", "interrupted", "waiting")
+ALIVE = 60.0  # s: track_bag writes to its log every 10 s, so a log that is older belongs to a job that is gone
+
+
+def slurm_knows(job):
+    """Whether Slurm has the job running; None where Slurm cannot be asked."""
+    try:
+        done = subprocess.run(["squeue", "-h", "-j", job, "-o", "%T"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, timeout=30, check=False)
+    except (OSError, subprocess.TimeoutExpired):
+        return None
+    return done.stdout.decode().strip() in ("RUNNING", "COMPLETING", "SUSPENDED") if done.returncode == 0 else None
+
+
+def is_running(marker, log):
+    mark = files.read_json(marker)
+    if mark["slurm_job"]:
+        known = slurm_knows(mark["slurm_job"])
+        if known is not None:
+            return known
+    elif mark["host"] == socket.gethostname():
+        try:
+            return b"archive_track" in pathlib.Path(f"/proc/{mark['process']}/cmdline").read_bytes()
+        except OSError:
+            return False
+    return log.is_file() and time.time() - log.stat().st_mtime < ALIVE
+
+
+def state_of(archive, identity):
+    """State and reason of a line."""
+    private = archive / "private"
+    record, marker = archive / "results" / "records" / f"{identity}.json", private / "running" / f"{identity}.json"
+    try:
+        if is_running(marker, private / "logs" / f"{identity}.log"):
+            where = files.read_json(marker)
+            return "running", f"on {where['host']}" + (f", Slurm job {where['slurm_job']}" if where["slurm_job"] else "")
+        return "interrupted", "ended without a result (killed, or its machine was lost); it runs again with the next start"
+    except FileNotFoundError:
+        pass
+    try:
+        told = files.read_json(record)
+    except FileNotFoundError:
+        return "waiting", ""
+    job = private / "jobs" / f"{identity}.json"
+    if job.stat().st_mtime_ns > record.stat().st_mtime_ns:
+        return "waiting", "its line was changed since it was tracked"
+    return told["state"], "; ".join(told["reasons"])
+
+
+def of(archive):
+    """(id, state, reason) of every line."""
+    archive = pathlib.Path(archive)
+    return [(row["id"], *state_of(archive, row["id"])) for row in plan.read(archive)]
+
+
+def forget(archive, identities):
+    """Takes the records of these lines away, so that the workflow tracks them again, and nothing else."""
+    for identity in identities:
+        os.unlink(pathlib.Path(archive) / "results" / "records" / f"{identity}.json")
