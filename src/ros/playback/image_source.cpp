@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <utility>
 
 #include "ros/playback/image_sources.h"
 
@@ -41,6 +42,38 @@ void checkOptions(const SourceOptions& options) {
   }
 }
 
+std::string sizeText(const cv::Size& size) {
+  return std::to_string(size.width) + "x" + std::to_string(size.height);
+}
+
+// One view of a stereo video, say. An image that is too small for it is as one that cannot be decoded.
+class CroppedSource : public ImageSource {
+ public:
+  CroppedSource(std::unique_ptr<ImageSource> source, const cv::Rect& crop) : source_(std::move(source)), crop_(crop) {}
+
+  std::optional<SourceImage> next() override {
+    std::optional<SourceImage> image = source_->next();
+    if (!image || image->decoded.empty()) return image;
+    if ((cv::Rect({}, image->decoded.size()) & crop_) == crop_) {
+      image->decoded = image->decoded(crop_).clone();
+    } else {
+      image->error = "the image has " + sizeText(image->decoded.size()) + " px, expected at least " +
+                     sizeText(cv::Size(crop_.br().x, crop_.br().y)) + " for crop";
+      image->decoded.release();
+    }
+    return image;
+  }
+
+  std::size_t size() const override { return source_->size(); }
+  double rate() const override { return source_->rate(); }
+  bool hasRecordedStamps() const override { return source_->hasRecordedStamps(); }
+  std::vector<std::string> notes() const override { return source_->notes(); }
+
+ private:
+  std::unique_ptr<ImageSource> source_;
+  cv::Rect crop_;
+};
+
 enum class Kind { kFolder, kBag, kVideo };
 
 Kind kindOf(const std::string& path) {
@@ -72,8 +105,11 @@ std::unique_ptr<ImageSource> openImageSource(const std::vector<std::string>& pat
     const Kind kind = kindOf(path);
     if (kind == Kind::kBag) continue;
     if (paths.size() > 1) throw SourceError("'" + path + "' is no bag, expected bags where several inputs are given");
-    return kind == Kind::kFolder ? openFolderSource(path, options) : openVideoSource(path, options);
+    auto source = kind == Kind::kFolder ? openFolderSource(path, options) : openVideoSource(path, options);
+    return options.crop.empty() ? std::move(source) : std::make_unique<CroppedSource>(std::move(source), options.crop);
   }
+  if (!options.crop.empty())
+    throw SourceError("crop is given, and '" + paths.front() + "' is a bag, expected a video or a folder of images");
   return openBagSource(paths, options);
 }
 

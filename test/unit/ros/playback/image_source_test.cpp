@@ -55,6 +55,32 @@ TEST_F(ImageSourceTest, FolderEndsInFrontOfTheImageAtTheEnd) {
   EXPECT_EQ(numberOf(images.back()), 6);
 }
 
+TEST_F(ImageSourceTest, CropGivesThatPartOfEachImageAndRefusesSmallerOnes) {
+  cv::Mat image(60, 40, CV_8UC3, cv::Scalar::all(10));
+  image(cv::Rect(5, 30, 20, 10)).setTo(200);
+  cv::imwrite(folder_.file("a.png"), image);
+  cv::imwrite(folder_.file("b.png"), image.rowRange(0, 35));
+  cv::imwrite(folder_.file("c.png"), image);
+  SourceOptions options;
+  options.crop = {5, 30, 20, 10};
+  const auto images = readAll(folder_.path(), options);
+  ASSERT_EQ(images.size(), 3u);
+  for (const std::size_t k : {0u, 2u}) {
+    ASSERT_EQ(images[k].decoded.size(), cv::Size(20, 10));
+    EXPECT_TRUE(images[k].decoded.isContinuous());
+    EXPECT_EQ(cv::mean(images[k].decoded)[0], 200.0);
+  }
+  EXPECT_EQ(images[1].error, "the image has 40x35 px, expected at least 25x40 for crop");
+  EXPECT_TRUE(images[1].decoded.empty());
+}
+
+TEST_F(ImageSourceTest, CropIsNoneOfABag) {
+  writeFile("a.bag", "#ROSBAG V2.0");
+  SourceOptions options;
+  options.crop = {0, 0, 20, 10};
+  EXPECT_NE(errorOf(folder_.file("a.bag"), options).find("expected a video or a folder of images"), std::string::npos);
+}
+
 TEST_F(ImageSourceTest, FolderNamesAFileThatCannotBeReadAndGoesOn) {
   cv::imwrite(folder_.file("a.png"), numbered(0));
   writeFile("b.png", "this is no image");
