@@ -6,8 +6,9 @@ import pathlib
 
 from . import recordings
 
-COLUMNS = ("case", "file", "start", "end", "roi", "image_topic", "camera_info", "tracker", "params")
+COLUMNS = ("case", "file", "start", "end", "roi", "image_topic", "camera_info", "tracker", "params", "crop", "truth", "benchmark")
 NEEDED = ("case", "file", "roi")
+FILES = ("file", "camera_info", "params", "truth")  # paths, seen from the manifest
 TRACKERS = ("region",)  # others need a file that says what is tracked, for which a line has no place
 END_TOLERANCE = 1.0  # s: the length that a file states is rounded, and so is what people write
 
@@ -42,7 +43,7 @@ def read(path, problems):
             elif cells:
                 row = dict.fromkeys(COLUMNS, "")
                 row.update(zip(header, (cell.strip() for cell in cells)), line=line)
-                for name in ("file", "camera_info", "params"):
+                for name in FILES:
                     row[name] = str(folder / os.path.expanduser(row[name])) if row[name] else ""
                 row["tracker"] = row["tracker"] or TRACKERS[0]
                 rows.append(row)
@@ -92,6 +93,17 @@ def region(row, problems):
     return None
 
 
+def crop_of(row, problems):
+    """x, y, width, height in whole px, or None."""
+    if not row["crop"]:
+        return None
+    values = row["crop"].split(",")
+    if len(values) == 4 and all(value.isdigit() for value in values) and int(values[2]) > 0 and int(values[3]) > 0:
+        return tuple(map(int, values))
+    problems.add(row["line"], f"crop is '{row['crop']}', expected x,y,width,height in whole px, width and height more than 0")
+    return None
+
+
 def check_cells(row, problems):
     """What can be seen without the recording. Returns start, end, region, each None where it is empty or wrong."""
     if not row["case"]:
@@ -126,12 +138,34 @@ def check_recording(row, cells, facts, problems):
         problems.add(row["line"], f"'{row['file']}': {facts['error']}")
         return
     width, height, length = int(facts["width"]), int(facts["height"]), recordings.seconds(facts)
+    crop = crop_of(row, problems)
+    if crop:
+        if crop[0] + crop[2] > width or crop[1] + crop[3] > height:
+            problems.add(row["line"], f"crop {row['crop']} lies outside of the image, which has {width} x {height} px")
+        width, height = crop[2:]
     if roi and (roi[0] < 0 or roi[1] < 0 or roi[0] + roi[2] > width or roi[1] + roi[3] > height):
-        problems.add(row["line"], f"roi {row['roi']} lies outside of the image, which has {width} x {height} px")
+        problems.add(row["line"], f"roi {row['roi']} lies outside of the {'crop' if crop else 'image'}, which has {width} x {height} px")
     if length and start is not None and not start < length:
         problems.add(row["line"], f"start is {row['start']} s, the recording has {length:.1f} s")
     if length and end is not None and end > length + END_TOLERANCE:
         problems.add(row["line"], f"end is {row['end']} s, the recording has {length:.1f} s")
+
+
+def check_truths(rows, problems):
+    """Once for each thing that is wrong: many lines may have one truth."""
+    with_truth = [row for row in rows if row["benchmark"] or row["truth"]]
+    if not with_truth:
+        return
+    from . import layouts, truth  # OpenCV behind them takes a while to load, which lines without truth do without
+    told = set()
+    for row in with_truth:
+        try:
+            layouts.load(row, row.get("facts"))
+        except truth.BadTruth as error:
+            for text in error.problems:
+                if text not in told:
+                    problems.add(row["line"], text)
+                told.add(text)
 
 
 def check(path, facts, problems):
@@ -144,4 +178,5 @@ def check(path, facts, problems):
         if row["file"]:
             row["facts"] = known[row["file"], row["image_topic"]]
             check_recording(row, values, row["facts"], problems)
+    check_truths(rows, problems)
     return rows

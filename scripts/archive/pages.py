@@ -13,6 +13,7 @@ COLOURS = {"IDLE": "#90a4ae", "TRACKING": "#2e7d32", "SEARCHING": "#ef8f00", "LO
 BAND_WIDTH, BAND_HEIGHT = 400, 14  # px
 TABLE = ("id", "case", "state", "images", "seconds", "tracking_images", "tracking_share", "covered", "lost", "found", "lost_at_end", "longest_lost",
          "visible", "corner_error", "corner_error_99", "ms", "ms_99", "cpu_seconds", "peak_mb", "sha256", "reasons")
+BENCHMARKS = ("benchmark", "case", "id", "metric", "value")
 
 
 def band(record):
@@ -32,9 +33,33 @@ def urgency(record):
     return order, not record.get("lost_at_end", False), record.get("tracking_share", 0.0), record["id"]
 
 
+def benchmark_groups(records):
+    """layouts.groups() of the records."""
+    if not any("benchmark" in record for record in records):
+        return []
+    from . import layouts  # OpenCV behind it takes a while to load, which an archive without truth does without
+    return list(layouts.groups(records))
+
+
+def benchmark_rows(groups):
+    """Of benchmarks.csv: a row for each metric, of a line, of a case, of all of a data set."""
+    rows = []
+    for group in groups:
+        for record, values in group.lines:
+            rows += [(group.name, record["case"], record["id"], metric, value) for metric, value in values.items()]
+        rows += [(group.name, case, "", metric, value) for case, values in group.cases for metric, value in values.items()]
+        rows += [(group.name, "", "", metric, value) for metric, value in group.whole.items()]
+    return [dict(zip(BENCHMARKS, row)) for row in rows]
+
+
+def shown_value(value):
+    """A share with three digits, a count without any; empty where there is no value."""
+    return "" if value is None or isinstance(value, jinja2.Undefined) else f"{value:.3f}" if isinstance(value, float) else str(value)
+
+
 def environment():
     e = jinja2.Environment(loader=jinja2.FileSystemLoader(pathlib.Path(__file__).parent), autoescape=True)
-    e.filters.update(percent=lambda v: "" if v is None else f"{100 * v:.1f} %", number=lambda v, digits=1: "" if v is None else f"{v:.{digits}f}")
+    e.filters.update(percent=lambda v: "" if v is None else f"{100 * v:.1f} %", number=lambda v, digits=1: "" if v is None else f"{v:.{digits}f}", value=shown_value)
     return e
 
 
@@ -60,8 +85,8 @@ def write_case(archive, case, records):
     for record in records:
         if record["state"] != "failed":
             line_page(archive, record)
-    page = environment().get_template("case.html")
-    files.write_text(archive / "results" / "cases" / f"{case}.html", page.render(case=case, records=[shown(r, archive) for r in records]))
+    page = environment().get_template("case.html").render(case=case, records=[shown(r, archive) for r in records], benchmarks=benchmark_groups(records))
+    files.write_text(archive / "results" / "cases" / f"{case}.html", page)
 
 
 def write_index(archive, records):
@@ -72,4 +97,12 @@ def write_index(archive, records):
              "images": sum(r.get("images", 0) for r in records), "tracking": sum(r.get("tracking_images", 0) for r in records),
              "cpu_hours": sum(r["cpu_seconds"] for r in records) / 3600,
              **{state: sum(r["state"] == state for r in records) for state in ("done", "damaged", "failed")}}
-    files.write_text(archive / "results" / "index.html", environment().get_template("index.html").render(records=ordered, total=total, colours=COLOURS))
+    groups = benchmark_groups(records)
+    page = environment().get_template("index.html").render(records=ordered, total=total, colours=COLOURS, benchmarks=groups)
+    files.write_text(archive / "results" / "index.html", page)
+    rows = benchmark_rows(groups)
+    table = archive / "results" / "benchmarks.csv"
+    if rows:
+        files.write_table(table, BENCHMARKS, rows)
+    elif table.is_file():
+        table.unlink()

@@ -13,7 +13,7 @@ from . import files, manifest, recordings
 
 PLAN = ("id", "case", "width", "height", "seconds", "images")
 KEY = ("id", "case_id", *manifest.COLUMNS, "line")
-SAME_LINE = ("case", "file", "start", "end")  # of a line whose region was corrected
+SAME_LINE = ("case", "file", "start", "end", "benchmark")  # of a line whose region was corrected
 
 
 def digest(path):
@@ -72,7 +72,7 @@ def job(row, identity, case_id):
     """All that tracking depends on."""
     wanted = {name: row[name] for name in manifest.COLUMNS if name != "case"}
     wanted.update(id=identity, case_id=case_id, bytes=row["facts"]["bytes"], modified=row["facts"]["modified"],
-                  params_sha256=digest(row["params"]), camera_info_sha256=digest(row["camera_info"]))
+                  params_sha256=digest(row["params"]), camera_info_sha256=digest(row["camera_info"]), truth_sha256=digest(row["truth"]))
     return wanted
 
 

@@ -22,5 +22,6 @@ def program(name):
 
 def source_options(row):
     """Options of track_bag and describe_recording that say which images are meant, of a line of a manifest."""
-    names = {"start": "--start", "end": "--end", "image_topic": "--image-topic", "camera_info": "--camera-info", "params": "--params"}
+    names = {"start": "--start", "end": "--end", "image_topic": "--image-topic", "camera_info": "--camera-info", "params": "--params",
+             "crop": "--crop"}
     return [f"{option}={row[column]}" for column, option in names.items() if row.get(column)]

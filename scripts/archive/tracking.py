@@ -32,11 +32,13 @@ class Stopped(Exception):
 
 
 def forbid_names(text, job):
-    """The text without the recording's path and name, which may be a patient's."""
-    path = job["file"]
-    for name in sorted({path, os.path.realpath(path), os.path.dirname(path), os.path.basename(path), pathlib.Path(path).stem}, key=len, reverse=True):
+    """The text without path and name of the recording and its truth, which may be a patient's."""
+    words = {}
+    for path, word in ((job.get("truth", ""), "TRUTH"), (job["file"], "RECORDING")):
+        words.update({os.path.dirname(path): "FOLDER", **dict.fromkeys((path, os.path.realpath(path), os.path.basename(path), pathlib.Path(path).stem), word)})
+    for name in sorted(words, key=len, reverse=True):
         if len(name) > 1:
-            text = text.replace(name, "RECORDING" if name != os.path.dirname(path) else "FOLDER")
+            text = text.replace(name, words[name])
     return text
 
 
@@ -125,6 +127,19 @@ def track(job, archive):
     return record
 
 
+def judged(record, job, table):
+    """The record, with what the line's truth says of the table, None when there is none. Without a truth that can be used it has failed."""
+    if not job.get("benchmark"):
+        return record
+    from . import layouts, truth  # OpenCV behind them takes a while to load, which lines without truth do without
+    try:
+        record["benchmark"] = layouts.load(job).score(truth.Tracked.read(table) if table else None)
+    except truth.BadTruth as error:
+        reasons = [forbid_names(text, job) for text in error.problems[:MOST_REASONS]]
+        return {**{name: record[name] for name in ("id", "case", "cpu_seconds", "peak_mb")}, "state": "failed", "reasons": reasons}
+    return record
+
+
 def track_in(scratch, job, results, log):
     table = scratch / "images.csv"
     command = [programs.program("track_bag"), job["file"], "--tracker", job["tracker"], "--roi", job["roi"], "--csv", str(table),
@@ -137,11 +152,11 @@ def track_in(scratch, job, results, log):
         raise TrackingEnded(words[-1])
     record = {"id": job["id"], "case": job["case_id"], "state": "done", "reasons": [], **used}
     if not table.is_file():
-        return {**record, "state": "failed", "reasons": words[-MOST_REASONS:] or [f"track_bag ended with status {status}"]}
+        return judged({**record, "state": "failed", "reasons": words[-MOST_REASONS:] or [f"track_bag ended with status {status}"]}, job, None)
     if status != 0:
         lost = [line for line in words if "is left out" in line or "could not be processed" in line or "damaged" in line]
         record.update(state="damaged", reasons=lost[:MOST_REASONS - 1] + words[-1:])
     record.update(summary.summarise(table))
     record["sha256"] = compress(table, results / "images" / f"{job['id']}.csv.gz", job["id"])
     thumbnail(job, results / "thumbnails" / f"{job['id']}.jpg")
-    return record
+    return judged(record, job, table)
