@@ -32,10 +32,12 @@ class Stopped(Exception):
 
 
 def forbid_names(text, job):
-    """The text without path and name of the recording and its truth, which may be a patient's."""
+    """The text without the paths and names of the line's files, which may be a patient's."""
     words = {}
-    for path, word in ((job.get("truth", ""), "TRUTH"), (job["file"], "RECORDING")):
-        words.update({os.path.dirname(path): "FOLDER", **dict.fromkeys((path, os.path.realpath(path), os.path.basename(path), pathlib.Path(path).stem), word)})
+    for column in ("truth", "params", "camera_info", "file"):
+        for path in {job[column], os.path.realpath(job[column])} if job.get(column) else ():
+            word = "RECORDING" if column == "file" else column.upper()
+            words.update({os.path.dirname(path): "FOLDER", path: word, os.path.basename(path): word, pathlib.Path(path).stem: word})
     for name in sorted(words, key=len, reverse=True):
         if len(name) > 1:
             text = text.replace(name, words[name])
@@ -114,8 +116,10 @@ def track(job, archive):
     record_file = results / "records" / f"{identity}.json"
     with contextlib.suppress(FileNotFoundError):
         record_file.unlink()
-    scratch = results / "images" / f".{identity}.{os.getpid()}"
-    scratch.mkdir()
+    for left in (private / "scratch").glob(f"{identity}.*"):  # of a process that was killed, or that another machine may still run: it fails then
+        shutil.rmtree(left, ignore_errors=True)
+    scratch = private / "scratch" / f"{identity}.{os.getpid()}"
+    scratch.mkdir(parents=True)
     try:
         with marked(private / "running" / f"{identity}.json", identity):
             record = track_in(scratch, job, results, private / "logs" / f"{identity}.log")

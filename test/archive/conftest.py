@@ -1,7 +1,9 @@
 """Made recordings, and the archive's programs as a user runs them."""
+import contextlib
 import csv
 import os
 import pathlib
+import signal
 import subprocess
 import sys
 
@@ -61,10 +63,27 @@ def plan(folder, rows, status=0):
     return folder / "archive"
 
 
-def snakemake(archive, *options, profile="local", **popen):
-    command = ["snakemake", "--snakefile", ROOT / "workflow" / "Snakefile", "--profile", ROOT / "workflow" / "profiles" / profile, "--directory", archive]
-    command = ["/usr/bin/python3", "/usr/bin/snakemake", *map(str, command[1:]), *options]
-    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, env={**os.environ, "USER": os.environ.get("USER", "root")}, **popen)
+STARTED = []  # every snakemake, each with its jobs a group of processes
+
+
+def snakemake(archive, *options, profile="local"):
+    command = ["/usr/bin/python3", "/usr/bin/snakemake", "--snakefile", ROOT / "workflow" / "Snakefile", "--profile", ROOT / "workflow" / "profiles" / profile,
+               "--directory", archive, *options]
+    STARTED.append(subprocess.Popen(list(map(str, command)), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, start_new_session=True,
+                                    env={**os.environ, "USER": os.environ.get("USER", "root")}))  # of which Slurm's executor makes no default
+    return STARTED[-1]
+
+
+@pytest.fixture(autouse=True)
+def nothing_goes_on():
+    """A test that fails leaves no jobs behind."""
+    yield
+    while STARTED:
+        process = STARTED.pop()
+        if process.poll() is None:
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)
+            process.wait()
 
 
 def run(archive, *options, status=0, profile="local"):

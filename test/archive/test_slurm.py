@@ -2,12 +2,14 @@
 
 Slurm resolves no address where a machine has none but 127.0.0.1 (AI_ADDRCONFIG); `ip address add 127.0.0.2/8 dev lo` is enough then.
 """
+import contextlib
 import os
 import pathlib
 import shutil
 import signal
 import socket
 import subprocess
+import tempfile
 import time
 
 import pytest
@@ -29,6 +31,7 @@ SelectTypeParameters=CR_Core
 ReturnToService=2
 StateSaveLocation={folder}/state
 SlurmdSpoolDir={folder}/spool
+SlurmdParameters=config_overrides
 SlurmctldPidFile={folder}/slurmctld.pid
 SlurmdPidFile={folder}/slurmd.pid
 SlurmctldLogFile={folder}/slurmctld.log
@@ -36,15 +39,19 @@ SlurmdLogFile={folder}/slurmd.log
 AccountingStorageType=accounting_storage/none
 JobAcctGatherType=jobacct_gather/none
 SchedulerParameters=sched_interval=2
+MaxArraySize=2
 NodeName={host} NodeAddr=127.0.0.1 CPUs={cores} RealMemory=8000 State=UNKNOWN
 PartitionName=all Nodes={host} Default=YES MaxTime=INFINITE State=UP
 """
 
 
-def free_port():
-    with socket.socket() as s:
-        s.bind(("127.0.0.1", 0))
-        return s.getsockname()[1]
+def free_ports(count):
+    """Of TCP, all different: each is held until the last is known."""
+    with contextlib.ExitStack() as held:
+        sockets = [held.enter_context(socket.socket()) for _ in range(count)]
+        for one in sockets:
+            one.bind(("127.0.0.1", 0))
+        return [one.getsockname()[1] for one in sockets]
 
 
 class Slurm:
@@ -57,7 +64,8 @@ class Slurm:
         self.key, self.config = folder / "munge.key", folder / "slurm.conf"
         self.key.write_bytes(os.urandom(128))
         self.key.chmod(0o600)
-        self.config.write_text(CONFIG.format(folder=folder, host=self.host, controller_port=free_port(), node_port=free_port(),
+        controller_port, node_port = free_ports(2)
+        self.config.write_text(CONFIG.format(folder=folder, host=self.host, controller_port=controller_port, node_port=node_port,
                                              cores=len(os.sched_getaffinity(0))), encoding="utf-8")
 
     def start(self, name):
@@ -79,13 +87,20 @@ class Slurm:
                 process.wait()
 
     def ask(self, *command):
-        done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=60, check=False)
+        try:
+            done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=60, check=False)
+        except subprocess.TimeoutExpired:
+            return f"{command[0]} gets no answer"
         return done.stdout.decode().strip()
 
     def node_state(self):
         return self.ask("sinfo", "-h", "-o", "%T")
 
+    def queued(self):
+        return len(self.ask("squeue", "-h", "-t", "PENDING,RUNNING").splitlines())
+
     def ends(self):
+        self.ask("scancel", "--user", "root")  # jobs of a test that failed
         for name in ("slurmd", "slurmctld", "munged"):
             self.stop(name)
 
@@ -96,13 +111,12 @@ def targets(archive):
 
 
 @pytest.fixture(scope="module")
-def slurm(tmp_path_factory):
+def slurm():
     missing = [name for name in ("munged", "slurmctld", "slurmd", "sbatch") if shutil.which(name, path="/usr/sbin:/usr/bin") is None]
     if missing or os.getuid() != 0:
         pytest.skip(f"Slurm cannot be started here: {', '.join(missing) or 'this is not root'}")
-    folder = tmp_path_factory.mktemp("slurm")
-    for place in [folder, *folder.parents][:4]:
-        place.chmod(0o755)  # munged refuses a socket that others cannot reach
+    folder = pathlib.Path(tempfile.mkdtemp(prefix="slurm_"))  # not among pytest's, which others cannot enter: munged refuses a socket there
+    folder.chmod(0o755)
     cluster = Slurm(folder)
     before = os.environ.get("SLURM_CONF")
     os.environ["SLURM_CONF"] = str(cluster.config)
@@ -113,7 +127,7 @@ def slurm(tmp_path_factory):
         while "idle" not in cluster.node_state():
             if time.monotonic() > end:
                 said = [path.read_text(errors="replace").strip().splitlines()[-1:] for path in sorted(folder.glob("*.log"))]
-                pytest.skip(f"Slurm cannot be started here: {cluster.node_state().splitlines()[-1:]}, {said}")
+                pytest.skip(f"Slurm cannot be started here: {cluster.node_state()}, {said}")
             time.sleep(0.5)
         yield cluster
     finally:
@@ -122,6 +136,7 @@ def slurm(tmp_path_factory):
             del os.environ["SLURM_CONF"]
         else:
             os.environ["SLURM_CONF"] = before
+        shutil.rmtree(folder, ignore_errors=True)
 
 
 def test_the_results_are_those_of_one_machine(slurm, clips, tmp_path):
@@ -129,8 +144,14 @@ def test_the_results_are_those_of_one_machine(slurm, clips, tmp_path):
     archive = plan(tmp_path, rows)
     copy = tmp_path / "copy"
     shutil.copytree(archive, copy)
-    text = run(archive, profile="slurm")
+    process, most = snakemake(archive, "--jobs", "2", profile="slurm"), 0
+    while process.poll() is None:
+        most = max(most, slurm.queued())
+        time.sleep(0.2)
+    text = process.stdout.read().decode()
+    assert process.returncode == 0, text
     assert text.count("has been submitted with SLURM jobid") == 6, text  # three lines, three cases; the index is made where snakemake runs
+    assert most == 2, "no more jobs are in the queue at once than it was told"
     run(copy)
     assert {i: r["sha256"] for i, r in records(archive).items()} == {i: r["sha256"] for i, r in records(copy).items()}
     assert call("archive_status", archive).splitlines()[-1].startswith("2 done, 1 damaged, 0 failed")

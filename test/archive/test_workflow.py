@@ -126,6 +126,21 @@ def test_a_broken_recording_is_a_result_and_does_not_stop_the_rest(tmp_path, cli
     assert times(archive)[f"{good}.json"] == before[f"{good}.json"], "the failed one alone is run again"
 
 
+def test_no_reason_has_the_name_of_a_file(tmp_path, clips):
+    wrong = tmp_path / PATIENT / "Jane.yaml"
+    wrong.parent.mkdir()
+    wrong.write_text("tracking: {esm: {max_iterations: many}}", encoding="utf-8")
+    camera = tmp_path / PATIENT / "Jane_camera.yaml"
+    camera.write_text("camera_matrix: many", encoding="utf-8")
+    archive = plan(tmp_path, [{"case": "a", "file": clips / "a" / "whole.avi", "roi": ROI, "params": wrong},
+                              {"case": "b", "file": clips / "b" / "other.avi", "roi": ROI, "camera_info": camera}])
+    for identity in ids(archive).values():
+        call("archive_track", archive, identity)
+    reasons = {case: " ".join(records(archive)[identity]["reasons"]) for case, identity in ids(archive).items()}
+    assert "PARAMS" in reasons["a"] and "CAMERA_INFO" in reasons["b"], reasons
+    assert not any(name in text for text in reasons.values() for name in (PATIENT, "Jane", str(tmp_path)))
+
+
 def test_a_corrected_region_is_tracked_again_and_nothing_else(tmp_path, clips):
     rows = [("a", clips / "a" / "whole.avi", ROI), ("b", clips / "b" / "other.avi", ROI)]
     archive = plan(tmp_path, rows)
@@ -151,7 +166,7 @@ def test_a_job_that_is_killed_is_run_again_and_nothing_else(tmp_path, clips):
     assert process.returncode == 0, text
     assert "Trying to restart job" in text and text.count("\nrule track:") == 3, text
     assert records(archive)[long]["state"] == "done" and records(archive)[long]["images"] == LONG and records(archive)[short]["state"] == "done"
-    assert not list((archive / "results").rglob("*.partial")) and not list((archive / "results" / "images").glob(".*"))
+    assert not list((archive / "results").rglob("*.partial")) and not list((archive / "private" / "scratch").iterdir())
 
 
 def test_after_the_machine_died_only_what_was_under_way_is_run_again(tmp_path, clips):
@@ -159,7 +174,7 @@ def test_after_the_machine_died_only_what_was_under_way_is_run_again(tmp_path, c
     archive = plan(tmp_path, [("short", clips / "b" / "other.avi", ROI), ("long", clip, ROI)])
     short, long = ids(archive)["short"], ids(archive)["long"]
     run(archive, f"results/records/{short}.json")
-    process = snakemake(archive, start_new_session=True)
+    process = snakemake(archive)
     wait_for(lambda: processes(["track_bag", str(clip)]))
     assert f"{long}: running: on " in call("archive_status", archive)
     os.killpg(process.pid, signal.SIGKILL)
@@ -171,16 +186,17 @@ def test_after_the_machine_died_only_what_was_under_way_is_run_again(tmp_path, c
     run(archive, "--unlock")
     text = run(archive)
     assert text.count("\nrule track:") == 1 and records(archive)[long]["images"] == LONG
+    assert not list((archive / "private" / "scratch").iterdir()), "nor is anything left of what was killed"
     assert times(archive)[f"{short}.json"] == before[f"{short}.json"]
 
 
 @pytest.fixture
 def small_disk(tmp_path):
-    """A file system of 1 MB, and what makes it larger."""
+    """A file system of 640 KB, and what makes it larger."""
     folder = tmp_path / "disk"
     folder.mkdir()
     libc = ctypes.CDLL(None, use_errno=True)
-    if libc.mount(b"tmpfs", os.fsencode(folder), b"tmpfs", 0, b"size=1m") != 0:
+    if libc.mount(b"tmpfs", os.fsencode(folder), b"tmpfs", 0, b"size=640k") != 0:
         pytest.skip(f"no file system can be mounted here: {os.strerror(ctypes.get_errno())}")
     yield folder, lambda: libc.mount(b"tmpfs", os.fsencode(folder), b"tmpfs", 32, b"size=100m")  # MS_REMOUNT
     libc.umount2(os.fsencode(folder), 2)
@@ -188,7 +204,7 @@ def small_disk(tmp_path):
 
 def test_a_full_disk_leaves_no_half_result(small_disk, tmp_path, clips):
     folder, enlarge = small_disk
-    clip = write_clip(tmp_path / "long.avi", 4 * LONG)  # its table needs more than the disk has
+    clip = write_clip(tmp_path / "long.avi", 2 * LONG)  # its table needs more than the disk has
     archive = plan(folder, [("short", clips / "b" / "other.avi", ROI), ("long", clip, ROI)])
     short, long = ids(archive)["short"], ids(archive)["long"]
     text = run(archive, "--restart-times", "0", "--cores", "1", status=1)
@@ -199,4 +215,4 @@ def test_a_full_disk_leaves_no_half_result(small_disk, tmp_path, clips):
     before = times(archive)
     assert enlarge() == 0
     run(archive)
-    assert records(archive)[long]["images"] == 4 * LONG and times(archive)[f"{short}.json"] == before[f"{short}.json"]
+    assert records(archive)[long]["images"] == 2 * LONG and times(archive)[f"{short}.json"] == before[f"{short}.json"]
