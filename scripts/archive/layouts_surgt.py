@@ -7,6 +7,7 @@
                                    after rectification, or null
   config.yaml of SurgT_benchmarking, in a folder above: anchors, and the lengths that EAO is over
 """
+import hashlib
 import pathlib
 
 import numpy as np
@@ -57,10 +58,11 @@ def starts_of(part, folder, target, table, size):
 
 
 def write_camera(manifest, folder, size):
-    """Files beside the manifest by which the tracker rectifies the left view, as columns of a line."""
+    """Files beside the manifest by which the tracker rectifies the left view, as columns of a line. Samples of one calibration share a file."""
+    text = yaml.safe_dump(sample.calibration(folder, size), default_flow_style=None)
     place = pathlib.Path(f"{manifest}.cameras").resolve()
-    camera, params = place / f"{folder.parent.name}-{folder.name}.yaml", place / "rectify.yaml"
-    files.write_text(camera, yaml.safe_dump(sample.calibration(folder, size), default_flow_style=None))
+    camera, params = place / f"{hashlib.sha256(text.encode()).hexdigest()[:12]}.yaml", place / "rectify.yaml"
+    files.write_text(camera, text)
     files.write_text(params, "rectify: true\n")
     return {"camera_info": str(camera), "params": str(params)}
 

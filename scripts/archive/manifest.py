@@ -140,6 +140,8 @@ def check_recording(row, cells, facts, problems):
     width, height, length = int(facts["width"]), int(facts["height"]), recordings.seconds(facts)
     crop = crop_of(row, problems)
     if crop:
+        if pathlib.Path(row["file"]).suffix.lower() in recordings.BAGS:
+            problems.add(row["line"], f"crop is '{row['crop']}', expected none of a bag")
         if crop[0] + crop[2] > width or crop[1] + crop[3] > height:
             problems.add(row["line"], f"crop {row['crop']} lies outside of the image, which has {width} x {height} px")
         width, height = crop[2:]
