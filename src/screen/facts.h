@@ -22,7 +22,8 @@ constexpr double kNever = -1.0;
 struct TrackerFacts {
   bool connected = false;
   double heard_at = kNever;
-  std::string state;  // of TrackerState
+  double result_at = kNever;  // of its newest result: one comes for each image
+  std::string state;          // of TrackerState
   std::string reason;
   std::string view;
   int width = 0;  // px, of the images; 0: not known

@@ -10,12 +10,6 @@ namespace {
 
 constexpr double kPatience = 2.5;  // periods of a recording: one picture may be late, or repeat
 
-// s, above which a picture is not live.
-double oldestOf(const PlaybackFacts& playback) {
-  const bool slow = playback.connected && std::isfinite(playback.period);
-  return slow ? std::max(kOldest, kPatience * playback.period) : kOldest;
-}
-
 std::string seconds(double value) {
   char text[32];
   std::snprintf(text, sizeof(text), value < 9.95 ? "%.1f s" : "%.0f s", std::min(value, 1e6));
@@ -23,6 +17,11 @@ std::string seconds(double value) {
 }
 
 }  // namespace
+
+double oldestLive(const PlaybackFacts& playback) {
+  const bool slow = playback.connected && std::isfinite(playback.period);
+  return slow ? std::max(kOldest, kPatience * playback.period) : kOldest;
+}
 
 PictureWords pictureWords(const Picture& picture, double now, const PlaybackFacts& playback) {
   if (picture.image.isNull() || picture.arrived_at < 0.0)
@@ -32,7 +31,7 @@ PictureWords pictureWords(const Picture& picture, double now, const PlaybackFact
   // The player is paused on purpose, which the bar below shows.
   if (state == "HOLDING" || state == "PAUSED") return {true, "", ""};
   const double age = now - picture.arrived_at + std::max(0.0, picture.age_at_arrival);
-  const double oldest = oldestOf(playback);
+  const double oldest = oldestLive(playback);
   if (!(age <= oldest)) return {false, "NOT LIVE", "This picture is " + seconds(age) + " old."};
   const double still = picture.arrived_at - picture.changed_at;
   if (!(still <= oldest)) return {false, "STANDS STILL", "The same picture comes again for " + seconds(still) + "."};

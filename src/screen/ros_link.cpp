@@ -173,6 +173,7 @@ void RosLink::look(Connection& connection) {
   const double now = steadyNow();
   keeper_.change([&](Facts& facts) {
     setConnected(facts.tracker, tracker, now);
+    if (facts.tracker.heard_at < 0.0) facts.tracker.result_at = kNever;
     setConnected(facts.controller, controller, now);
     setConnected(facts.robot, robot, now);
     facts.dead_man_wanted = dead_man;
