@@ -7,23 +7,22 @@
 #include <stdexcept>
 
 #include "closed_loop/noise.h"
+#include "closed_loop/simulated_picture.h"
 #include "laparoscope_servo/scope/geometry.h"
 #include "laparoscope_servo/scope/insertion_point.h"
-#include "laparoscope_servo/servo/tip_error.h"
-#include "laparoscope_servo/servo/view_region.h"
 
 namespace laparoscope_servo::closed_loop {
 
 namespace {
 
-constexpr double kStep = 0.001;         // s, of the integration
-constexpr double kEnoughInView = 0.25;  // share of the reference image, as AnchoredMotion needs it
+constexpr double kStep = 0.001;  // s, of the integration
 
-Eigen::Matrix3d pictureOf(const PictureConfig& config) {
-  Eigen::Vector3d mirror = Eigen::Vector3d::Ones();
-  if (config.mirror == "left_right") mirror.x() = -1.0;
-  if (config.mirror == "up_down") mirror.y() = -1.0;
-  return geometry::so3Exp({0.0, 0.0, config.roll}) * mirror.asDiagonal();
+servo::Task taskOf(const std::string& name) {
+  if (name == "STABILISE") return servo::Task::kStabilise;
+  if (name == "CENTRE_TIP") return servo::Task::kCentreTip;
+  if (name == "FOLLOW") return servo::Task::kFollow;
+  if (name == "POINTS") return servo::Task::kPoints;
+  return servo::Task::kHoldView;
 }
 
 class Loop {
@@ -31,35 +30,22 @@ class Loop {
   Loop(const ControllerSetup& controller, const SimulationConfig& config, unsigned seed)
       : config_(config),
         shaft_R_camera_(scope::obliqueOptics(config.optics_angle, config.optics_roll).transpose()),
-        centre_tip_(controller.control.centre_tip),
+        picture_(config, controller.control, shaft_R_camera_.transpose()),
         controller_(controller.control),
         actuator_(config.robot),
         patient_(config.patient, {0.0, 0.0, config.tissue_distance}),
         noise_(seed),
         insertion_point_(shaft_R_camera_.transpose() * Eigen::Vector3d(0.0, 0.0, -config.depth)),
         body_(startPose(), insertion_point_, config.scope_length, config.wrist),
-        picture_(pictureOf(config.picture)),
         signs_(config.signs[0], config.signs[1], config.signs[2], config.signs[3]) {
-    if (config.task == "STABILISE") controller_.select(servo::Task::kStabilise);
-    if (config.task == "CENTRE_TIP") controller_.select(servo::Task::kCentreTip);
+    controller_.select(taskOf(config.task));
   }
 
-  bool seesRoi(double time) const { return nearestToBorder(cornersAt(time, config_.roi)) >= 0.0; }
+  bool seesRoi(double time) const { return picture_.nearestToBorder(trueHomography(time)) >= 0.0; }
 
   void expose(double time) {
-    servo::TaskErrorInput input;
-    input.problem.clear();
-    input.valid = false;
-    const double covered = crossing(time);
-    const double noise = config_.corner_noise * (1.0 + covered * (config_.crossing.noise - 1.0));
-    input.visible_fraction = 1.0 - covered * config_.crossing.cover;
-    input.corner_error = noise;
-    if (controller_.task() == servo::Task::kCentreTip) {
-      exposeTip(time, noise, input);
-    } else {
-      exposeRegion(time, noise, input);
-    }
-    images_.emplace_back(time, input);
+    images_.emplace_back(time,
+                         picture_.expose(controller_.task(), time, trueHomography(time), believedDepth(), noise_));
   }
 
   SimulationSample control(double time) {
@@ -70,9 +56,7 @@ class Loop {
       latest_ = images_.front();
       images_.pop_front();
     }
-    servo::TaskErrorInput& seen = controller_.task() == servo::Task::kStabilise   ? input.view
-                                  : controller_.task() == servo::Task::kCentreTip ? input.tip
-                                                                                  : input.task_error;
+    servo::TaskErrorInput& seen = input.seenBy(controller_.task());
     seen = latest_.second;
     seen.image_time = latest_.first;
     seen.age = seen.image_age = std::max(0.0, time - latest_.first);
@@ -101,7 +85,7 @@ class Loop {
   // The midpoint rule: d1 changes while the scope is pushed in.
   void move(double time) {
     body_.moveInsertionPoint(insertion_point_ + patient_.trocarOffset(time));
-    if (time >= config_.picture.frozen_from && !frozen_) frozen_ = trueHomography(time);
+    if (time >= config_.picture.frozen_from && !picture_.isFrozen()) picture_.freeze(trueHomography(time));
     const scope::Velocity executed = scope::Velocity::fromVector(actuator_.velocity(time).cwiseProduct(signs_));
     moved_ += kStep * executed.vector();
     sim::ScopeBody halfway = body_;
@@ -110,25 +94,6 @@ class Loop {
   }
 
  private:
-  void exposeTip(double time, double noise, servo::TaskErrorInput& input) {
-    const Eigen::Matrix3d g = geometry::pixelsFromNormalised(seenHomography(time), config_.camera);
-    const Eigen::Vector2d tip = geometry::apply(g, config_.roi.centre()) + noise_.draw(noise);
-    input.valid = tip.x() >= 0.0 && tip.y() >= 0.0 && tip.x() <= config_.width - 1.0 && tip.y() <= config_.height - 1.0;
-    input.error = servo::tipError((config_.camera.inverseMatrix() * tip.homogeneous()).head<2>(), centre_tip_);
-  }
-
-  void exposeRegion(double time, double noise, servo::TaskErrorInput& input) {
-    const bool whole = controller_.task() == servo::Task::kStabilise;
-    const geometry::Rectangle region = whole ? servo::viewRegion(config_.width, config_.height) : config_.roi;
-    geometry::Quadrilateral seen = cornersAt(time, region);
-    if (whole ? referenceInView(time) >= kEnoughInView : nearestToBorder(seen) >= 0.0) {
-      for (Eigen::Vector2d& corner : seen) corner += noise_.draw(noise);
-      const Eigen::Matrix3d g = geometry::fromCorners(region.corners(), seen);
-      input.error = servo::taskError(geometry::normalisedFromPixels(g, config_.camera), region, config_.camera);
-      input.valid = true;
-    }
-  }
-
   // The tip in the frame of the assumed insertion point, which is wrong by the factor along the shaft at the reference;
   // z points out of the body.
   Eigen::Isometry3d measuredPose() {
@@ -165,49 +130,6 @@ class Loop {
                                config_.tissue_distance * normal.z());
   }
 
-  // The homography in the picture, with the configured faults of the picture.
-  Eigen::Matrix3d seenHomography(double time) const {
-    return picture_ * (frozen_ ? *frozen_ : trueHomography(time)) * picture_.transpose();
-  }
-
-  geometry::Quadrilateral cornersAt(double time, const geometry::Rectangle& region) const {
-    return geometry::apply(geometry::pixelsFromNormalised(seenHomography(time), config_.camera), region.corners());
-  }
-
-  // Share of the reference image that is in view.
-  double referenceInView(double time) const {
-    constexpr int kAlong = 10;
-    const Eigen::Matrix3d g = geometry::pixelsFromNormalised(seenHomography(time), config_.camera);
-    int seen = 0;
-    for (int k = 0; k < kAlong * kAlong; ++k) {
-      const Eigen::Vector3d p = g * Eigen::Vector3d((k % kAlong + 0.5) / kAlong * config_.width,
-                                                    (k / kAlong + 0.5) / kAlong * config_.height, 1.0);
-      const bool inside = p.z() > 0.0 && p.x() >= 0.0 && p.y() >= 0.0 && p.x() <= config_.width * p.z() &&
-                          p.y() <= config_.height * p.z();
-      seen += inside ? 1 : 0;
-    }
-    return static_cast<double>(seen) / (kAlong * kAlong);
-  }
-
-  // 0 to 1: progress of an instrument over the region.
-  double crossing(double time) const {
-    const CrossingConfig& c = config_.crossing;
-    if (!(c.period > 0.0)) return 0.0;
-    const double since = std::fmod(time, c.period) - 0.5 * c.period;  // not at the start
-    return since < 0.0 || since > c.duration ? 0.0 : std::sin(M_PI * since / c.duration);
-  }
-
-  // Distance [px] of the corner nearest to the image's border from it; negative if a corner is outside, or if the
-  // region is not visible.
-  double nearestToBorder(const geometry::Quadrilateral& corners) const {
-    if (!geometry::isConvex(corners)) return -1.0;
-    double nearest = std::numeric_limits<double>::infinity();
-    for (const Eigen::Vector2d& p : corners) {
-      nearest = std::min({nearest, p.x(), p.y(), config_.width - 1.0 - p.x(), config_.height - 1.0 - p.y()});
-    }
-    return nearest;
-  }
-
   double believedDepth() const { return config_.believed_depth_factor * body_.depth(); }
 
   geometry::Vector6d endEffectorTwist(const scope::Velocity& velocity, double believed_depth) const {
@@ -223,12 +145,13 @@ class Loop {
     s.evidence = figures.evidence;
     s.unconfirmed = figures.unconfirmed;
     s.leash = figures.leash;
-    const Eigen::Matrix3d h = seenHomography(time);
+    const Eigen::Matrix3d tissue = trueHomography(time);
+    const Eigen::Matrix3d h = picture_.seen(tissue);
     const Eigen::Vector2d centre =
         geometry::apply(geometry::pixelsFromNormalised(h, config_.camera), config_.roi.centre());
     s.u = centre.x();
     s.v = centre.y();
-    s.worst_corner = nearestToBorder(cornersAt(time, config_.roi));
+    s.worst_corner = picture_.nearestToBorder(tissue);
     try {
       const servo::TaskError error = servo::taskError(h, config_.roi, config_.camera);
       s.log_depth = error.log_depth;
@@ -249,7 +172,7 @@ class Loop {
 
   SimulationConfig config_;
   Eigen::Matrix3d shaft_R_camera_;
-  servo::CentreTipConfig centre_tip_;
+  SimulatedPicture picture_;
   servo::Controller controller_;
   sim::ScopeActuator actuator_;
   sim::Patient patient_;
@@ -261,9 +184,7 @@ class Loop {
   std::deque<std::pair<double, servo::TaskErrorInput>> images_;
   std::pair<double, servo::TaskErrorInput> latest_{0.0, servo::TaskErrorInput()};
   bool engaged_once_ = false;
-  Eigen::Matrix3d picture_;  // takes the correct picture to the one shown, normalised coordinates
   Eigen::Vector4d signs_;
-  std::optional<Eigen::Matrix3d> frozen_;            // homography of a frozen picture
   Eigen::Vector4d moved_ = Eigen::Vector4d::Zero();  // displacement of the scope
 };
 

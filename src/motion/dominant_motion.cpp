@@ -40,4 +40,8 @@ cv::Size DominantMotion::cellSize() const {
   return sequence_->support().cellSize();
 }
 
+cv::Point DominantMotion::supportOrigin() const {
+  return sequence_->supportOrigin();
+}
+
 }  // namespace laparoscope_servo::motion

@@ -149,10 +149,12 @@ cv::Mat MotionFeatureTracker::mask() const {
   cv::Mat1b mask = cv::Mat1b::zeros(size_);
   const cv::Mat1b& support = anchored_ ? anchored_->support() : motion_.support();
   const cv::Size cell = anchored_ ? anchored_->cellSize() : motion_.cellSize();
+  const cv::Point origin = anchored_ ? cv::Point() : motion_.supportOrigin();
   for (int j = 0; j < support.rows; ++j) {
     for (int i = 0; i < support.cols; ++i) {
       if (support(j, i) != 0) continue;
-      const cv::Rect box = cv::Rect(i * cell.width, j * cell.height, cell.width, cell.height) & cv::Rect({}, size_);
+      const cv::Rect whole(origin.x + i * cell.width, origin.y + j * cell.height, cell.width, cell.height);
+      const cv::Rect box = whole & cv::Rect({}, size_);
       if (!box.empty()) mask(box).setTo(255);
     }
   }

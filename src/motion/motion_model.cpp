@@ -53,6 +53,18 @@ double errorAtCorners(const geometry::Quadrilateral& corners, const Eigen::Vecto
   return worst;
 }
 
+// Eq. (8) with p + by in place of p.
+Eigen::Matrix<double, 8, 8> fieldAbout(const Eigen::Vector2d& by) {
+  const double x = by.x(), y = by.y();
+  Eigen::Matrix<double, 8, 8> t = Eigen::Matrix<double, 8, 8>::Identity();
+  t.topRows<2>() = fieldJacobian(by);
+  t(2, 6) = 2.0 * x;
+  t(2, 7) = t(4, 6) = y;
+  t(3, 7) = t(5, 6) = x;
+  t(5, 7) = 2.0 * y;
+  return t;
+}
+
 // geometry::sl3Hat(x) moves (u, v) by (x1 + x3 v + (x5 - x6) u - x7 u^2 - x8 u v,
 //                                      x2 + x4 u - (x5 + 2 x6) v - x7 u v - x8 v^2).
 Eigen::Matrix<double, 8, 8> fieldFromSl3(double unit) {

@@ -44,6 +44,21 @@ void check(const geometry::Rectangle& region, const cv::Mat& image) {
   throw std::invalid_argument(text.str());
 }
 
+cv::Mat cut(const cv::Mat& image, const cv::Rect& box) {
+  return image.empty() ? image : image(box);
+}
+
+// Takes pixels of the box to those of the image.
+Eigen::Matrix3d imageFromBox(const cv::Rect& box) {
+  Eigen::Matrix3d m = Eigen::Matrix3d::Identity();
+  m.topRightCorner<2, 1>() << box.x, box.y;
+  return m;
+}
+
+Eigen::Vector2d middleOf(const cv::Rect& box) {
+  return {box.x + 0.5 * (box.width - 1), box.y + 0.5 * (box.height - 1)};
+}
+
 }  // namespace
 
 MotionSequence::MotionSequence(const MotionConfig& config)
@@ -53,7 +68,8 @@ MotionSequence::MotionSequence(const MotionConfig& config)
 
 void MotionSequence::reset(Reason reason) {
   sequence_.end();
-  has_region_ = believed_ = false;
+  window_.reset();
+  believed_ = false;
   velocity_.setZero();
   estimator_.forget();
   keeper_.reset(reason);
@@ -63,10 +79,14 @@ void MotionSequence::reset(Reason reason) {
 
 void MotionSequence::start(const cv::Mat& image, double stamp, const std::optional<geometry::Rectangle>& region,
                            const cv::Mat& mask, Reason reason) {
-  last_.take(image, mask, config_);
+  if (!region) last_.take(image, mask, config_);
   reset(reason);
   sequence_.begin(image, stamp);
-  has_region_ = region.has_value();
+  box_ = cv::Rect({}, image.size());
+  if (region) {
+    window_.emplace(*region, image.size());
+    keep(image, mask);
+  }
   region_ =
       region.value_or(geometry::Rectangle{0.0, 0.0, static_cast<double>(image.cols), static_cast<double>(image.rows)})
           .corners();
@@ -80,6 +100,27 @@ const MotionResult& MotionSequence::begin(const cv::Mat& image, double stamp,
   if (region) check(*region, image);
   start(image, stamp, region, mask, Reason::kFirstImage);
   return result_;
+}
+
+void MotionSequence::keep(const cv::Mat& image, const cv::Mat& mask) {
+  image.copyTo(picture_);
+  if (mask.empty()) {
+    mask_.release();
+  } else {
+    mask.copyTo(mask_);
+  }
+}
+
+// Of both images what lies about the region.
+void MotionSequence::take(const cv::Mat& image, const cv::Mat& mask) {
+  if (!window_) {
+    current_.take(image, mask, config_);
+    return;
+  }
+  box_ = window_->about(region_);
+  last_.take(cut(picture_, box_), cut(mask_, box_), config_);
+  current_.take(cut(image, box_), cut(mask, box_), config_);
+  keep(image, mask);
 }
 
 Eigen::Matrix3d MotionSequence::predicted(double interval) const {
@@ -97,13 +138,18 @@ Reason MotionSequence::estimate(const std::optional<Eigen::Matrix3d>& motion) {
   if (given) starts_.push_back(*motion / std::cbrt(motion->determinant()));
   starts_.push_back(predicted(result_.interval));
   starts_.push_back(Eigen::Matrix3d::Identity());
+  const Eigen::Matrix3d expected = starts_.front(), image_from_box = imageFromBox(box_);
+  const Eigen::Matrix3d box_from_image = image_from_box.inverse();
+  for (Eigen::Matrix3d& g : starts_) g = box_from_image * g * image_from_box;
   estimator_.setReference(last_);
-  const MotionEstimate& found = estimator_.estimate(last_, current_, starts_, region_, !has_region_);
+  const MotionEstimate& found =
+      estimator_.estimate(last_, current_, starts_, geometry::apply(box_from_image, region_), !window_);
   believed_ = found.why == Reason::kNone;
-  covariance_ = found.covariance;
-  result_.g = believed_ ? found.at.g : starts_.front();
+  const Eigen::Matrix<double, 8, 8> to_image = fieldAbout(result_.field.centre - middleOf(box_));
+  covariance_ = to_image * found.covariance * to_image.transpose();
+  result_.g = believed_ ? image_from_box * found.at.g * box_from_image : expected;
   result_.field = fieldOf(result_.g, result_.field.centre);
-  result_.covariance = found.covariance;
+  result_.covariance = covariance_;
   result_.gain = found.at.gain;
   result_.offset = found.at.offset;
   result_.sigma = found.at.sigma;
@@ -127,7 +173,7 @@ const MotionResult& MotionSequence::track(const cv::Mat& image, double stamp,
     start(image, stamp, std::nullopt, mask, anew);
     return result_;
   }
-  current_.take(image, mask, config_);
+  take(image, mask);
   const Eigen::Vector2d centre = result_.field.centre;
   result_ = MotionResult();
   result_.field.centre = centre;
@@ -138,7 +184,7 @@ const MotionResult& MotionSequence::track(const cv::Mat& image, double stamp,
   keeper_.step(why, stamp);
   result_.state = keeper_.state();
   result_.reason = keeper_.reason();
-  if (has_region_) region_ = geometry::apply(result_.g, region_);
+  if (window_) region_ = geometry::apply(result_.g, region_);
   result_.region = region_;
   if (result_.state != State::kTracking) {
     result_.expected_error = kInfinite;

@@ -210,6 +210,10 @@ void describe(Table& table, ControllerConfig& c) {
               [&] { describe(table, c.stabilise); });
   table.group("centre_tip", "the task CENTRE_TIP, which brings an instrument's tip back to a zone of the image",
               [&] { describe(table, c.centre_tip); });
+  table.group("follow", "the task FOLLOW, which keeps a moving object in its place in the image by pan and tilt",
+              [&] { describe(table, c.follow); });
+  table.group("points", "the task POINTS, which brings points of texture to their desired places",
+              [&] { describe(table, c.points); });
   table.group("safety", "what the scope has to be sure of before it moves", [&] { describe(table, c.safety); });
 }
 

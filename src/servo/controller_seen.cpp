@@ -1,5 +1,6 @@
 // What the controller sees by its present task, what is wrong with it, and what watches it.
 #include <cmath>
+#include <utility>
 
 #include "servo/controller_implementation.h"
 
@@ -14,10 +15,29 @@ constexpr double kShows = 0.1;
 
 }  // namespace
 
-// What the present task goes by; in MANUAL nothing is.
+const TaskErrorInput& ControllerInput::seenBy(Task task) const {
+  switch (task) {
+    case Task::kStabilise:
+      return view;
+    case Task::kCentreTip:
+      return tip;
+    case Task::kFollow:
+      return object;
+    case Task::kPoints:
+      return points;
+    case Task::kHoldView:
+    case Task::kManual:
+      break;
+  }
+  return task_error;
+}
+
+TaskErrorInput& ControllerInput::seenBy(Task task) {
+  return const_cast<TaskErrorInput&>(std::as_const(*this).seenBy(task));
+}
+
 const TaskErrorInput& Controller::Implementation::seen(const ControllerInput& input) const {
-  if (task_ == Task::kStabilise) return input.view;
-  return task_ == Task::kCentreTip ? input.tip : input.task_error;
+  return input.seenBy(task_);
 }
 
 std::string Controller::Implementation::problemOf(const TaskErrorInput& seen) const {
@@ -32,6 +52,10 @@ std::string Controller::Implementation::problemOf(const TaskErrorInput& seen) co
     if (!(std::hypot(seen.error.x - c.x, seen.error.y - c.y) <= c.leave))
       return "the tip leaves: it is further from the zone's middle than centre_tip/leave";
   }
+  if (task_ == Task::kFollow && !(seen.corner_error <= config_.follow.max_error))
+    return "where the object is, is not known well enough: its expected error is above follow/max_error";
+  if (task_ == Task::kPoints && !(seen.corner_error <= config_.points.max_error))
+    return "where the points are, is not known well enough: their expected error is above points/max_error";
   if (repeats_.repeats())
     return "the picture repeats: the task error stays the same to the last digit while the scope moves";
   return "";

@@ -26,11 +26,28 @@ ServoUse centringTip(const ControllerConfig& config) {
   return use;
 }
 
+// A place has neither depth nor orientation.
+ServoUse following() {
+  ServoUse use;
+  use.spin = SpinMode::kReleased;
+  use.insertion = false;
+  return use;
+}
+
+// The paper's law is one of a plane's homography, which points have none of.
+ServoUse bringingPoints(const ControllerConfig& config) {
+  ServoUse use;
+  use.spin = config.spin;
+  return use;
+}
+
 }  // namespace
 
 ServoUse servoUse(Task task, const ControllerConfig& config) {
   if (task == Task::kStabilise) return stabilising(config);
   if (task == Task::kCentreTip) return centringTip(config);
+  if (task == Task::kFollow) return following();
+  if (task == Task::kPoints) return bringingPoints(config);
   ServoUse use;
   use.law = config.law;
   use.spin = config.spin;

@@ -3,7 +3,8 @@
 //
 // The camera measures the exact homography of the plane, with noise on the ROI's corners; in STABILISE on those of
 // servo::viewRegion(), as long as enough of the reference image is in view for AnchoredMotion; in CENTRE_TIP
-// the ROI's centre is an instrument's tip, which a hand moves as the patient's tissue moves. The robot executes the
+// the ROI's centre is an instrument's tip, which a hand moves as the patient's tissue moves, and in FOLLOW the middle
+// of an object; in POINTS there are 36 points in the ROI, of which a share may be astray. The robot executes the
 // commands after a delay and with a dead zone, as the end-effector's velocity of eq. (12). Tissue and insertion point
 // may move, the optics may be oblique, and the controller's depths and delay may be wrong. Deterministic: the same
 // configuration and seed give the same numbers. World frame: the camera's at the reference pose.
@@ -37,10 +38,11 @@ struct CrossingConfig {
 };
 
 struct SimulationConfig {
-  std::string task = "HOLD_VIEW";                              // "STABILISE", "CENTRE_TIP"
+  std::string task = "HOLD_VIEW";                              // "STABILISE", "CENTRE_TIP", "FOLLOW", "POINTS"
   double frame_rate = 25.0;                                    // Hz, of the camera
   double image_delay = 0.0;                                    // s, from the exposure to the task error
   double corner_noise = 0.3;                                   // px, standard deviation of each corner coordinate
+  double points_astray = 0.0;                                  // share of the points of POINTS that do not move
   double width = 640.0;                                        // px, of the image
   double height = 480.0;                                       // px
   geometry::PinholeCamera camera{400.0, 400.0, 319.5, 239.5};  // px

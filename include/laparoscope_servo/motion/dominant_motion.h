@@ -66,10 +66,12 @@ class DominantMotion {
   void reset();
 
   const MotionResult& result() const;  // of the last call
-  // Which parts of the last image but one follow the motion, a pixel for each of cellSize() px of it: 255 follows, 0
-  // something else moves there or covers it, 128 shows nothing. Empty before there are two images.
+  // Which parts of the last image but one follow the motion, a pixel for each of cellSize() px of it, from
+  // supportOrigin() on, which is (0, 0) without a region: 255 follows, 0 something else moves there or covers it, 128
+  // shows nothing. Empty before there are two images.
   const cv::Mat1b& support() const;
   cv::Size cellSize() const;
+  cv::Point supportOrigin() const;
 
  private:
   std::unique_ptr<MotionSequence> sequence_;

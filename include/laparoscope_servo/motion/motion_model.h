@@ -41,6 +41,9 @@ Eigen::Matrix<double, 2, 8> fieldJacobian(const Eigen::Vector2d& p);
 double errorAtCorners(const geometry::Quadrilateral& corners, const Eigen::Vector2d& centre,
                       const Eigen::Matrix<double, 8, 8>& covariance);
 
+// From a to the parameters of the same field about another centre, which lies `by` px from theirs: a' = T a.
+Eigen::Matrix<double, 8, 8> fieldAbout(const Eigen::Vector2d& by);
+
 // Where pixels are after a unit of time, determinant 1.
 Eigen::Matrix3d homographyOf(const MotionField& field);
 // The field whose flow that is. Not finite where the homography has no principal logarithm (see geometry::sl3Log).

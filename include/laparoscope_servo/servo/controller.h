@@ -43,13 +43,19 @@ struct ControllerInput {
   std::string clock_jump;     // description of a jump of another clock since the last step; empty: none
   std::string ended;          // what has ended the engagement since the last step; empty: nothing
   TaskErrorInput task_error;  // of HOLD_VIEW: of the region of interest
-  TaskErrorInput tip;         // of CENTRE_TIP: see tipError()
+  TaskErrorInput tip;         // of CENTRE_TIP: see placeError()
   TaskErrorInput view;        // of STABILISE: of viewRegion(), from the anchor image to this one
+  TaskErrorInput object;      // of FOLLOW: see placeError()
+  TaskErrorInput points;      // of POINTS: see points_error.h
   ManualInput manual;         // unusable input stops the scope at once
   DepthInput depth;
   RobotReport robot_report;
   RobotFacts robot;       // used if safety/robot_required
   DeadManFacts dead_man;  // used if safety/dead_man_required
+
+  // What `task` goes by; in MANUAL nothing is.
+  const TaskErrorInput& seenBy(Task task) const;
+  TaskErrorInput& seenBy(Task task);
 };
 
 using ControllerState = SafetyState;

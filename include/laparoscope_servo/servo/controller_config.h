@@ -49,6 +49,8 @@ struct ControllerConfig {
   HorizonConfig horizon;
   StabiliseConfig stabilise;
   CentreTipConfig centre_tip;
+  FollowConfig follow;
+  PointsConfig points;
   EffectConfig effect;
   LeashConfig leash;
   SafetyConfig safety;

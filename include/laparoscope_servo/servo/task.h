@@ -8,8 +8,11 @@ enum class Task {
   kManual,     // a person, by four velocities; images are not used
   kStabilise,  // the control law, which keeps the whole view where it was in the anchor image
   kCentreTip,  // the control law, which brings an instrument's tip back where it leaves a zone of the image
+  kFollow,     // the control law, which keeps a moving object in the middle by its own dominant motion
+  kPoints,     // the control law on points of texture, which brings each of them to its desired place
 };
 
-constexpr Task kTasks[] = {Task::kHoldView, Task::kManual, Task::kStabilise, Task::kCentreTip};
+constexpr Task kTasks[] = {Task::kHoldView,  Task::kManual, Task::kStabilise,
+                           Task::kCentreTip, Task::kFollow, Task::kPoints};
 
 }  // namespace laparoscope_servo::servo

@@ -26,8 +26,24 @@ struct CentreTipConfig {
   double max_error = 4.0;  // px, expected error of the tip, beyond which the scope stands
 };
 
+// The task FOLLOW.
+struct FollowConfig {
+  double x = 0.0;          // where the object is kept in the image, normalised: px over the focal length
+  double y = 0.0;          // second coordinate
+  double max_error = 8.0;  // px, expected error of the object's place since it was selected, beyond which it stands
+};
+
+// The task POINTS.
+struct PointsConfig {
+  int min_points = 4;       // that have to agree; with two the motion is determined, and no wrong one shows
+  double min_noise = 5e-4;  // normalised, standard deviation of a point's place: the robust scale is no less
+  double max_error = 2.0;   // px, expected error of the points' common place, beyond which the scope stands
+};
+
 // Adds the rows of all parameters, with range and meaning.
 void describe(parameters::Table& table, StabiliseConfig& config);
 void describe(parameters::Table& table, CentreTipConfig& config);
+void describe(parameters::Table& table, FollowConfig& config);
+void describe(parameters::Table& table, PointsConfig& config);
 
 }  // namespace laparoscope_servo::servo

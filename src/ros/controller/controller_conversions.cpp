@@ -85,6 +85,10 @@ std::string taskName(servo::Task task) {
       return ControllerState::STABILISE;
     case servo::Task::kCentreTip:
       return ControllerState::CENTRE_TIP;
+    case servo::Task::kFollow:
+      return ControllerState::FOLLOW;
+    case servo::Task::kPoints:
+      return ControllerState::POINTS;
   }
   return ControllerState::HOLD_VIEW;
 }

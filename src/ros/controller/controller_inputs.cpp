@@ -50,6 +50,8 @@ ControllerInputs::ControllerInputs(ros::NodeHandle& node, ros::NodeHandle& priva
                     config.control.safety.max_clock_difference),
       instrument_input_(resolved(node, config.owners.instrument), "instruments", "owners/instrument",
                         config.control.safety.max_clock_difference),
+      points_input_(resolved(node, config.owners.points), "points", "owners/points",
+                    config.control.safety.max_clock_difference),
       camera_info_input_(resolved(node, config.owners.camera_info), "camera infos", "owners/camera_info",
                          config.control.safety.max_clock_difference),
       operating_state_input_(resolved(node, config.owners.operating_state), "operating states",
@@ -61,6 +63,8 @@ ControllerInputs::ControllerInputs(ros::NodeHandle& node, ros::NodeHandle& priva
       dead_man_input_(resolved(node, config.owners.dead_man), "words of the dead-man switch", "owners/dead_man",
                       config.control.safety.max_clock_difference),
       camera_(config.rectified_images),
+      object_place_(config.control.follow),
+      points_error_(config.control.points, config.control.features.desired_depth),
       tip_input_(config.control.centre_tip),
       dead_man_(config.control.safety.max_dead_man_age) {
   // tcpNoDelay: a message must not wait for a full packet.
@@ -69,6 +73,7 @@ ControllerInputs::ControllerInputs(ros::NodeHandle& node, ros::NodeHandle& priva
   task_error_input_.subscriber = node.subscribe("task_error", kQueue, &Self::onTaskError, this, at_once);
   motion_input_.subscriber = node.subscribe("motion_features", kQueue, &Self::onMotion, this, at_once);
   instrument_input_.subscriber = node.subscribe("instrument_features", kQueue, &Self::onInstrument, this, at_once);
+  points_input_.subscriber = node.subscribe("points_features", kQueue, &Self::onPoints, this, at_once);
   camera_info_input_.subscriber = node.subscribe("camera_info", kQueue, &Self::onCameraInfo, this, at_once);
   manual_input_.subscriber = private_node.subscribe("manual", kQueue, &Self::onManual, this, at_once);
   if (config_.control.safety.robot_required) {
@@ -100,6 +105,9 @@ void ControllerInputs::forgetStamps() {
   motion_input_.stamps.clear();
   tip_.forget();
   instrument_input_.stamps.clear();
+  object_.forget();
+  points_.forget();
+  points_input_.stamps.clear();
 }
 
 void ControllerInputs::end(const std::string& why) {
@@ -205,6 +213,8 @@ void ControllerInputs::fill(servo::ControllerInput& input, double steady_now) co
   input.task_error = agedOf(task_error_input_, task_error_, steady_now);
   input.view = agedOf(motion_input_, view_, steady_now);
   input.tip = agedOf(instrument_input_, tip_, steady_now);
+  input.object = agedOf(motion_input_, object_, steady_now);
+  input.points = agedOf(points_input_, points_, steady_now);
   input.robot_report = robot_report_;
   input.robot_report.age = steady_now - robot_report_arrival_;
 }
@@ -226,11 +236,11 @@ void ControllerInputs::taken() {
 }
 
 void ControllerInputs::describe(diagnostic_updater::DiagnosticStatusWrapper& status) {
-  for (Input* input : {&task_error_input_, &motion_input_, &instrument_input_, &camera_info_input_,
+  for (Input* input : {&task_error_input_, &motion_input_, &instrument_input_, &points_input_, &camera_info_input_,
                        &operating_state_input_, &measured_velocity_input_, &manual_input_, &dead_man_input_}) {
     if (input->subscriber) describe(*input, status);
   }
-  for (const Input* input : {&task_error_input_, &motion_input_, &instrument_input_}) {
+  for (const Input* input : {&task_error_input_, &motion_input_, &instrument_input_, &points_input_}) {
     const StampGate& stamps = input->stamps;
     status.add(input->owner.what() + ": stamps late", stamps.late());
     status.add(input->owner.what() + ": stamps repeated", stamps.repeated());

@@ -27,6 +27,8 @@
 #include "ros/common/stamp_watch.h"
 #include "ros/controller/controller_parameters.h"
 #include "ros/controller/feature_camera.h"
+#include "ros/controller/object_place.h"
+#include "ros/controller/points_input.h"
 #include "ros/controller/tip_input.h"
 
 namespace laparoscope_servo {
@@ -38,6 +40,7 @@ class ControllerInputs {
     std::function<void(const std::string& sender)> stop;  // called when a node stops the arm
     // Rotation from a frame's axes to the shaft's; empty: unknown.
     std::function<std::optional<Eigen::Quaterniond>(const std::string& frame)> shaft_from;
+    std::function<const servo::DepthInput&()> depth;  // of the last step
   };
 
   // Subscribes.
@@ -98,6 +101,7 @@ class ControllerInputs {
   static servo::TaskErrorInput agedOf(const Input& input, const Picture& picture, double steady_now);
   void onTaskError(const ros::MessageEvent<TaskError const>& event);
   void onMotion(const ros::MessageEvent<TrackedFeatures const>& event);
+  void onPoints(const ros::MessageEvent<TrackedFeatures const>& event);
   void onInstrument(const ros::MessageEvent<TrackedFeatures const>& event);
   void onCameraInfo(const ros::MessageEvent<sensor_msgs::CameraInfo const>& event);
   void onOperatingState(const ros::MessageEvent<OperatingState const>& event);
@@ -118,6 +122,7 @@ class ControllerInputs {
   Input task_error_input_;
   Input motion_input_;
   Input instrument_input_;
+  Input points_input_;
   Input camera_info_input_;
   Input operating_state_input_;
   Input measured_velocity_input_;
@@ -131,7 +136,13 @@ class ControllerInputs {
                  "stamps of the motion of the view jumped back"}};
   Picture tip_{{"tip of an instrument", "no tip of an instrument was received", "tip of an instrument has no stamp",
                 "stamps of the tip of an instrument jumped back"}};
+  Picture object_{{"motion of the object", "no motion of the object was received", "motion of the object has no stamp",
+                   "stamps of the motion of the object jumped back"}};
+  Picture points_{{"points of the view", "no points of the view were received", "points of the view have no stamp",
+                   "stamps of the points of the view jumped back"}};
   FeatureCamera camera_;
+  ObjectPlace object_place_;
+  PointsInput points_error_;
   TipInput tip_input_;
   servo::RobotFacts robot_;
   ros::Time robot_stamp_;

@@ -27,6 +27,10 @@ const char* doing(servo::Task task) {
       return "keeps the view";
     case servo::Task::kCentreTip:
       return "keeps the tip in its zone";
+    case servo::Task::kFollow:
+      return "follows the object";
+    case servo::Task::kPoints:
+      return "brings the points to their places";
   }
   return "";
 }
@@ -41,7 +45,8 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
       last_now_(ros::Time::now()),
       inputs_(node, private_node, config,
               {[this] { checkTime(); }, [this](const std::string& sender) { onStop(sender); },
-               [this](const std::string& frame) { return scope_pose_.shaftFrom(frame); }}),
+               [this](const std::string& frame) { return scope_pose_.shaftFrom(frame); },
+               [this]() -> const servo::DepthInput& { return last_input_.depth; }}),
       diagnostics_(node, private_node),
       command_publisher_(node.advertise<ScopeVelocity>("servo_command", 1)),
       state_publisher_(private_node.advertise<ControllerState>("state", 1, true)),
@@ -188,9 +193,7 @@ void ControllerNode::report(diagnostic_updater::DiagnosticStatusWrapper& status)
   const std::string problem = controller_.problem(last_input_);
   stops_.describe(steadyNow(), status);
   status.add("ready to move", problem.empty() ? "yes" : "no: " + problem);
-  const servo::TaskErrorInput& seen = last_output_.task == servo::Task::kStabilise   ? last_input_.view
-                                      : last_output_.task == servo::Task::kCentreTip ? last_input_.tip
-                                                                                     : last_input_.task_error;
+  const servo::TaskErrorInput& seen = last_input_.seenBy(last_output_.task);
   status.add("age of the task error [s]", seen.age);
   status.add("age of its image [s]", seen.image_age);
   status.add("visible fraction", seen.visible_fraction);

@@ -13,7 +13,8 @@ void describe(Table& table, ControllerNodeConfig& c) {
   table.number("rate", c.rate, {10, 200}, "Hz", "of the commands");
   table.number("diagnostic_period", c.diagnostic_period, {0.1, 60}, "s", "between two messages on /diagnostics");
   table.flag("rectified_images", c.rectified_images,
-             "the images of motion and instruments are rectified: P of camera_info applies to them, otherwise K and D");
+             "the images of motion, instruments and points are rectified: P of camera_info applies to them, otherwise "
+             "K and D");
   describeFramePrefix(table, c.frame_prefix);
   table.group("frames", "names in tf", [&] {
     describeFrame(table, "insertion_point", c.insertion_point, "of the insertion point, O_A");
@@ -28,11 +29,14 @@ void describe(Table& table, ControllerNodeConfig& c) {
                 describeOwner(table, "task_error", c.owners.task_error,
                               "a tracker in a nodelet manager has the manager's name");
                 describeOwner(table, "operating_state", c.owners.operating_state, "also of measured_cv");
-                describeOwner(table, "motion", c.owners.motion,
-                              "of the view's motion since an image; in a nodelet manager it has the manager's name");
+                describeOwner(
+                    table, "motion", c.owners.motion,
+                    "of the motion of the view or of an object; in a nodelet manager it has the manager's name");
                 describeOwner(table, "instrument", c.owners.instrument,
                               "of the tip; in a nodelet manager it has the manager's name");
-                describeOwner(table, "camera_info", c.owners.camera_info, "of the camera of both");
+                describeOwner(table, "points", c.owners.points,
+                              "of the points; in a nodelet manager it has the manager's name");
+                describeOwner(table, "camera_info", c.owners.camera_info, "of the camera of all of these");
                 describeOwner(table, "manual", c.owners.manual, "of ~manual");
                 describeOwner(table, "dead_man", c.owners.dead_man,
                               "whose true is accepted; false is accepted from every node");

@@ -18,6 +18,7 @@ struct InputOwners {
   std::string operating_state = "aesop";  // also owns measured_cv
   std::string motion = "motion";
   std::string instrument = "instrument";
+  std::string points = "points";
   std::string camera_info;
   std::string manual;
   std::string dead_man;

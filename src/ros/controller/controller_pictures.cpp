@@ -37,9 +37,20 @@ void ControllerInputs::onTaskError(const ros::MessageEvent<TaskError const>& eve
     keep(task_error_, fromMessage(*event.getConstMessage()));
 }
 
+// The motion of the view, or of an object in it: one node tells both, by what was selected.
 void ControllerInputs::onMotion(const ros::MessageEvent<TrackedFeatures const>& event) {
-  if (takes(motion_input_, view_, event, task_ == servo::Task::kStabilise))
-    keep(view_, viewInput(*event.getConstMessage(), camera_));
+  const TrackedFeatures& message = *event.getConstMessage();
+  Picture& picture = task_ == servo::Task::kFollow ? object_ : view_;
+  Picture& other = task_ == servo::Task::kFollow ? view_ : object_;
+  if (!takes(motion_input_, picture, event, task_ == servo::Task::kStabilise || task_ == servo::Task::kFollow)) return;
+  other.watch.arrived(message.header.stamp, steadyNow());
+  keep(view_, viewInput(message, camera_));
+  keep(object_, object_place_.from(message, camera_));
+}
+
+void ControllerInputs::onPoints(const ros::MessageEvent<TrackedFeatures const>& event) {
+  if (takes(points_input_, points_, event, task_ == servo::Task::kPoints))
+    keep(points_, points_error_.from(*event.getConstMessage(), camera_, calls_.depth()));
 }
 
 // Another instrument is chosen only while nothing moves by this one.
@@ -53,7 +64,8 @@ void ControllerInputs::onInstrument(const ros::MessageEvent<TrackedFeatures cons
 // Without a check of its stamp: a calibration does not grow old. With another one, what was measured by the last one
 // does not go on.
 void ControllerInputs::onCameraInfo(const ros::MessageEvent<sensor_msgs::CameraInfo const>& event) {
-  const bool matters = engaged_ && (task_ == servo::Task::kStabilise || task_ == servo::Task::kCentreTip);
+  const bool needs_none = task_ == servo::Task::kHoldView || task_ == servo::Task::kManual;
+  const bool matters = engaged_ && !needs_none;
   if (!counts(camera_info_input_, event, matters)) return;
   if (camera_.take(*event.getConstMessage()) && matters) end("camera_info has another calibration");
 }

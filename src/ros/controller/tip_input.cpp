@@ -4,7 +4,7 @@
 #include <limits>
 #include <optional>
 
-#include "laparoscope_servo/servo/tip_error.h"
+#include "laparoscope_servo/servo/place_error.h"
 
 namespace laparoscope_servo {
 
@@ -67,7 +67,7 @@ servo::TaskErrorInput TipInput::from(const TrackedFeatures& message, const Featu
     input.problem = "the tip is outside of what the lens shows, or not finite";
     return input;
   }
-  input.error = servo::tipError(*place, config_);
+  input.error = servo::placeError(*place, {config_.x, config_.y});
   input.valid = true;
   input.visible_fraction = tip->share;
   input.corner_error = tip->expected_error;

@@ -87,7 +87,8 @@ void describeDisturbances(Table& table, SimulationConfig& c) {
 }  // namespace
 
 void describe(Table& table, SimulationConfig& c) {
-  table.choice("task", c.task, {"HOLD_VIEW", "STABILISE", "CENTRE_TIP"}, "which the controller does");
+  table.choice("task", c.task, {"HOLD_VIEW", "STABILISE", "CENTRE_TIP", "FOLLOW", "POINTS"},
+               "which the controller does");
   table.number("duration", c.duration, {0.1, 36000}, "s", "of simulated time, where --duration is not given");
   table.number("rest_from", c.rest_from, {0, 0.999}, "share",
                "of the duration after which figures of rest are computed, if --rest-after is not given");
@@ -95,6 +96,8 @@ void describe(Table& table, SimulationConfig& c) {
   table.number("image_delay", c.image_delay, {0, 1}, "s", "from the exposure to the task error");
   table.number("corner_noise", c.corner_noise, {0, 20}, "px",
                "standard deviation of each coordinate of the region's corners");
+  table.number("points_astray", c.points_astray, {0, 1}, "share",
+               "of the points of POINTS, that stand still in the image, as those on an instrument or on the lens");
   describeImage(table, c);
   table.group("tissue", "a plane", [&] {
     table.number("distance", c.tissue_distance, {0.005, 1}, "m", "Z*, along the reference camera's axis");

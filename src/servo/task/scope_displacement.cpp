@@ -15,6 +15,15 @@ namespace {
 constexpr int kMaxSteps = 20;
 constexpr double kConverged = 1e-12;  // rad and m, the last step: 4 digits above a double's rounding
 
+// The rotation vector [rad], in the shaft's axes.
+Eigen::Vector3d rotationOf(const Eigen::Vector4d& displacement) {
+  return scope::angularVelocity(scope::Velocity::fromVector(displacement));
+}
+
+Eigen::Vector3d alongShaft(const Eigen::Vector4d& displacement) {
+  return {0.0, 0.0, displacement[3]};
+}
+
 // Change of the image direction of `d` at the normalised image point of `p`.
 double turnOf(const Eigen::Vector3d& d, const Eigen::Vector3d& p, double angle) {
   const Eigen::Vector2d m = p.head<2>() / p.z();
@@ -24,16 +33,27 @@ double turnOf(const Eigen::Vector3d& d, const Eigen::Vector3d& p, double angle) 
 
 }  // namespace
 
+Eigen::Vector3d movedPoint(const Eigen::Vector3d& point, const Eigen::Vector4d& displacement,
+                           const scope::Geometry& scope) {
+  const Eigen::Vector3d lever(0.0, 0.0, scope.d2);
+  const Eigen::Vector3d before = scope.camera_R_shaft.transpose() * point;
+  return scope.camera_R_shaft *
+         (geometry::so3Exp(-rotationOf(displacement)) * (before + lever) - lever - alongShaft(displacement));
+}
+
+Eigen::Vector4d composed(const Eigen::Vector4d& first, const Eigen::Vector4d& second) {
+  const Eigen::Vector3d total =
+      geometry::so3Log(geometry::so3Exp(rotationOf(first)) * geometry::so3Exp(rotationOf(second)));
+  return {total.y(), total.x(), total.z(), first[3] + second[3]};
+}
+
 TaskError moved(const TaskError& error, const Eigen::Vector4d& displacement, const scope::Geometry& scope,
                 double desired_depth) {
   const double depth = depthOf(error, desired_depth);
   const Eigen::Matrix3d& camera_R_shaft = scope.camera_R_shaft;
-  const Eigen::Vector3d rotation = scope::angularVelocity(scope::Velocity::fromVector(displacement));
+  const Eigen::Vector3d rotation = rotationOf(displacement);
   const Eigen::Matrix3d now_R_before = geometry::so3Exp(-rotation);  // rotation of the shaft
-  const Eigen::Vector3d before = camera_R_shaft.transpose() * Eigen::Vector3d(depth * error.x, depth * error.y, depth);
-  const Eigen::Vector3d lever(0.0, 0.0, scope.d2);
-  const Eigen::Vector3d now = now_R_before * (before + lever) - lever - Eigen::Vector3d(0.0, 0.0, displacement[3]);
-  const Eigen::Vector3d seen = camera_R_shaft * now;
+  const Eigen::Vector3d seen = movedPoint({depth * error.x, depth * error.y, depth}, displacement, scope);
 
   TaskError result = error;
   if (!(seen.z() > 0.0)) {
@@ -69,10 +89,7 @@ Eigen::Vector4d displacementToTarget(const TaskError& error, const scope::Geomet
                               std::remainder(there.alpha - there.desired_alpha, 2.0 * M_PI));
     const Eigen::Vector4d change = -(j.inverse() * off);
     if (!change.allFinite()) break;
-    const Eigen::Vector3d rotation = scope::angularVelocity(scope::Velocity::fromVector(displacement));
-    const Eigen::Vector3d further = scope::angularVelocity(scope::Velocity::fromVector(change));
-    const Eigen::Vector3d total = geometry::so3Log(geometry::so3Exp(rotation) * geometry::so3Exp(further));
-    displacement << total.y(), total.x(), total.z(), displacement[3] + change[3];
+    displacement = composed(displacement, change);
     if (change.norm() < kConverged) return displacement;
   }
   return Eigen::Vector4d::Constant(std::numeric_limits<double>::quiet_NaN());

@@ -9,6 +9,13 @@
 
 namespace laparoscope_servo::servo {
 
+// The place [m] of a point of the tissue, in the camera's frame, after the scope has moved by `displacement`.
+Eigen::Vector3d movedPoint(const Eigen::Vector3d& point, const Eigen::Vector4d& displacement,
+                           const scope::Geometry& scope);
+
+// One displacement, and then the other one.
+Eigen::Vector4d composed(const Eigen::Vector4d& first, const Eigen::Vector4d& second);
+
 // The task error after the scope has moved by `displacement`, or the target by its opposite. Exact for the ROI's
 // centre, at the depth of the features; the orientation is that of an ROI that faces the camera; e_w is correct to
 // first order in the rotation. `desired_depth` Z* [m]. Not finite if the centre ends up behind the camera.

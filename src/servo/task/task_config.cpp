@@ -30,4 +30,19 @@ void describe(parameters::Table& table, CentreTipConfig& c) {
   table.number("max_error", c.max_error, {0.1, 100}, "px", "expected error of the tip, beyond which the scope stands");
 }
 
+void describe(parameters::Table& table, FollowConfig& c) {
+  table.number("x", c.x, {-2, 2}, "px over the focal length", "where the object is kept, right of the principal point");
+  table.number("y", c.y, {-2, 2}, "px over the focal length", "where the object is kept, below the principal point");
+  table.number("max_error", c.max_error, {0.1, 100}, "px",
+               "expected error of the object's place, which grows from its selection on; beyond it the scope stands");
+}
+
+void describe(parameters::Table& table, PointsConfig& c) {
+  table.number("min_points", c.min_points, {3, 500}, "points", "that have to agree for the scope to move");
+  table.number("min_noise", c.min_noise, {1e-5, 0.1}, "px over the focal length",
+               "standard deviation of a point's place: points that agree to it are not told apart");
+  table.number("max_error", c.max_error, {0.1, 100}, "px",
+               "expected error of where the points are together, beyond which the scope stands");
+}
+
 }  // namespace laparoscope_servo::servo

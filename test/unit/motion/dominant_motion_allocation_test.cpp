@@ -37,5 +37,26 @@ TEST(DominantMotionAllocation, thereIsNone) {
   }
 }
 
+TEST(DominantMotionAllocation, thereIsNoneWithARegion) {
+#ifndef COUNTS_ALLOCATIONS
+  GTEST_SKIP() << "allocations can be counted with glibc's own allocator only";
+#endif
+  const MotionField field = test::usualMotion();
+  DominantMotion motion;
+  for (int k = 0; k < 10; ++k) {
+    const cv::Mat image = test::movingTissue(k, field);
+    if (k == 0) {
+      motion.begin(image, 0.0, geometry::Rectangle{60.0, 70.0, 100.0, 80.0});
+      continue;
+    }
+    allocations = 0;
+    counting = k > 2;
+    const State state = motion.track(image, 0.04 * k).state;
+    counting = false;
+    EXPECT_EQ(state, State::kTracking) << "image " << k;
+    EXPECT_EQ(allocations, 0) << "image " << k;
+  }
+}
+
 }  // namespace
 }  // namespace laparoscope_servo::motion

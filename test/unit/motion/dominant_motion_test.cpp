@@ -166,6 +166,34 @@ TEST(DominantMotion, ARegionGoesAlongWithItsMotion) {
   }
 }
 
+// The least region, of 3 % of the image, in each model and on an image that is halved otherwise.
+TEST(DominantMotion, ASmallRegionIsSeenByItsOwnPixels) {
+  for (const Model model : {Model::kConstant, Model::kAffine, Model::kQuadratic}) {
+    MotionConfig config;
+    config.model = model;
+    config.max_pixels = 40000;
+    DominantMotion motion(config);
+    const MotionField field = usualMotion();
+    const Eigen::Vector2d step(-4.0, 2.0);
+    for (int k = 0; k < 20; ++k) {
+      cv::Mat image = movingTissue(k, field);
+      test::cover(image, k, cv::Rect(180, 60, 52, 52), step);
+      if (k == 0) {
+        motion.begin(image, 0.0, geometry::Rectangle{182.0, 62.0, 48.0, 48.0});
+        continue;
+      }
+      const MotionResult& result = motion.track(image, kPeriod * k);
+      ASSERT_EQ(result.state, State::kTracking)
+          << k << ", model " << static_cast<int>(model) << ": " << reasonText(result.reason);
+      for (const Eigen::Vector2d& corner : result.region)
+        EXPECT_LT((result.field.at(corner) - step).norm(), 0.2 + 5.0 * result.expected_error) << k;
+      Eigen::Vector2d middle = Eigen::Vector2d::Zero();
+      for (const Eigen::Vector2d& corner : result.region) middle += 0.25 * corner;
+      EXPECT_LT((middle - Eigen::Vector2d(205.5, 85.5) - k * step).norm(), 1.0) << k;
+    }
+  }
+}
+
 TEST(DominantMotion, ARegionThatLeavesTheImageIsOutside) {
   MotionConfig config;
   config.model = Model::kConstant;

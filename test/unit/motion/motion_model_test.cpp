@@ -178,6 +178,18 @@ TEST(MotionModel, TheErrorAtCornersIsThatOfTheWorstOne) {
   EXPECT_EQ(errorAtCorners(corners, centre, Eigen::Matrix<double, 8, 8>::Zero()), 0.0);
 }
 
+TEST(MotionModel, AboutAnotherCentreItIsTheSameField) {
+  MotionField field;
+  field.centre = Eigen::Vector2d(40.0, 30.0);
+  field.a << 3.0, -2.0, 0.012, 0.008, -0.010, 0.006, 2.5e-5, -2e-5;
+  MotionField moved;
+  moved.centre = Eigen::Vector2d(320.0, 240.0);
+  moved.a = fieldAbout(moved.centre - field.centre) * field.a;
+  for (const Eigen::Vector2d& pixel :
+       {Eigen::Vector2d(0.0, 0.0), Eigen::Vector2d(100.0, 7.0), Eigen::Vector2d(639.0, 479.0)})
+    EXPECT_LT((field.at(pixel) - moved.at(pixel)).norm(), 1e-12) << pixel.transpose();
+}
+
 // The largest of four numbers, one of which is none, is none.
 TEST(MotionModel, anErrorThatIsNotFiniteIsNotTakenForASmallOne) {
   const geometry::Quadrilateral corners = geometry::Rectangle{10.0, 20.0, 100.0, 80.0}.corners();

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "controller_input.h"
-#include "laparoscope_servo/servo/tip_error.h"
+#include "laparoscope_servo/servo/place_error.h"
 
 namespace laparoscope_servo::servo {
 namespace {
@@ -27,7 +27,7 @@ class Centring {
     input.tip.image_time = -0.05;
     EXPECT_EQ(controller.engage(input), "");
   }
-  void seeAt(const Eigen::Vector2d& tip) { input.tip.error = tipError(tip, CentreTipConfig()); }
+  void seeAt(const Eigen::Vector2d& tip) { input.tip.error = placeError(tip, {0.0, 0.0}); }
   ControllerOutput step() {
     time += 0.02;
     input.time = time;

@@ -9,7 +9,7 @@
 #include <iostream>
 #include <string>
 
-#include "laparoscope_servo/servo/tip_error.h"
+#include "laparoscope_servo/servo/place_error.h"
 #include "support/simulated_cart.h"
 
 namespace laparoscope_servo::servo {
@@ -50,7 +50,7 @@ Picture turned(double rate, double most) {  // degrees a second
 // What the region's tracker sees is the input of each task: the region is the view, its centre the tip.
 void giveEachTask(ControllerInput& input, double) {
   input.view = input.tip = input.task_error;
-  input.tip.error = tipError({input.task_error.error.x, input.task_error.error.y}, CentreTipConfig());
+  input.tip.error = placeError({input.task_error.error.x, input.task_error.error.y}, {0.0, 0.0});
 }
 
 struct Case {

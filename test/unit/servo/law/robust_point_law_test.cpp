@@ -1,4 +1,4 @@
-#include "servo/law/robust_point_law.h"
+#include "laparoscope_servo/servo/robust_point_law.h"
 
 #include <gtest/gtest.h>
 
