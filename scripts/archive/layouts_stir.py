@@ -3,6 +3,9 @@
   COLLECTION/left/seq00/frames/0ms-4000ms-visible.mp4
   COLLECTION/left/seq00/segmentation/icgstartseg.png, icgendseg.png    each point a spot that is not black; which is which is not known
 """
+import functools
+import os
+
 import cv2
 import numpy as np
 
@@ -31,7 +34,12 @@ def case(recording, folder):
 
 def points(path, size=None):
     """Centres of the spots as STIRLoader has them: whole px, of the rectangles around them."""
-    picture = cv2.imread(str(path), cv2.IMREAD_COLOR)
+    return read_points(str(path), os.stat(path).st_mtime_ns if os.path.isfile(path) else 0, size)
+
+
+@functools.lru_cache(maxsize=4)  # a clip's lines, one after the other, have one picture
+def read_points(path, _modified, size):
+    picture = cv2.imread(path, cv2.IMREAD_COLOR)
     if picture is None:
         raise truth.BadTruth([f"{path} cannot be read, expected a picture"])
     problems = []

@@ -86,19 +86,19 @@ def table_of(path):
 
 def configuration(folder):
     """config.yaml of SurgT_benchmarking and the part of it that is about this sample; empty ones where there is none."""
-    for above in list(folder.parents)[:LEVELS]:
-        path = above / "config.yaml"
-        if path.is_file():
-            config = read_yaml(path)
-            for part in config.values() if isinstance(config, dict) else ():
-                if isinstance(part, dict) and part.get("subdir") == folder.parents[1].name:
-                    return config, part
+    for path in (above / "config.yaml" for above in list(folder.parents)[:LEVELS]):
+        config = read_yaml(path) if path.is_file() else None
+        if isinstance(config, dict) and "is_to_rectify" in config:
+            parts = [part for part in config.values() if isinstance(part, dict)]
+            return config, next((part for part in parts if part.get("subdir") == folder.parents[1].name), {})
     return {}, {}
 
 
 def calibration(folder, size):
     """Of the left view, as ROS has it: the rectification that SurgT's boxes are in."""
     path = folder / "calibration.yaml"
+    if not path.is_file():
+        raise truth.BadTruth([f"{path} does not exist, expected a calibration as OpenCV writes it"])
     shapes, found = {"M1": (3, 3), "D1": None, "M2": (3, 3), "D2": None, "R": (3, 3), "T": None}, {}
     try:
         storage = cv2.FileStorage(str(path), cv2.FILE_STORAGE_READ)

@@ -55,10 +55,10 @@ def surgt_truth(images, hidden=(), difficult=()):
     return {image: [image not in hidden, image in difficult, None if image in hidden else [box_at(image), box_at(image)]] for image in range(images)}
 
 
-def write_surgt(folder, images=60, hidden=range(20, 25), difficult=range(30, 33), stack="vertical"):
-    """Returns the video. The right view shows something else."""
+def write_surgt(folder, images=60, hidden=range(20, 25), difficult=range(30, 33), stack="vertical", left=None):
+    """Returns the video. `left`: what its left view shows after rectification; the right view shows something else."""
     join = np.vstack if stack == "vertical" else np.hstack
-    video = write_video(folder / "video.avi", (join(both) for both in zip(as_the_lens_sees(views(images)), views(images, seed=7))))
+    video = write_video(folder / "video.avi", (join(both) for both in zip(as_the_lens_sees(left or views(images)), views(images, seed=7))))
     info = {"name_video": "video.avi", "video_stack": stack, "resolution": {"width": SIZE[0], "height": SIZE[1]}, "name_ground_truth": ["gt_rectified_0.yaml"]}
     (folder / "info.yaml").write_text(yaml.safe_dump(info), encoding="utf-8")
     (folder / "gt_rectified_0.yaml").write_text(yaml.dump(surgt_truth(images, hidden, difficult)), encoding="utf-8")

@@ -101,6 +101,23 @@ def test_pages_and_records_have_them(tracked):
     assert shared and not any(name in path.read_text() for path in shared for name in ("case_1", "seq00", "V01_1", "gt_rectified"))
 
 
+def test_a_failure_and_the_start_at_the_next_anchor(tmp_path):
+    """From image 30 on there is other tissue where the target is said to be: the tracker that began with the first image tells no box any more."""
+    other = list(views(60, seed=9))[30:]
+    write_surgt(tmp_path / "set" / "case_1" / "1", hidden=(), difficult=(), left=[*views(30), *other])
+    call("archive_manifest", "propose", tmp_path / "set", tmp_path / "m.csv")
+    archive = tmp_path / "archive"
+    call("archive_manifest", "plan", tmp_path / "m.csv", archive)
+    run(archive)
+    lines = {row["benchmark"].split()[2]: row["id"] for row in files.read_table(archive / "private" / "key.csv")}
+    records = {anchor: files.read_json(archive / "results" / "records" / f"{identity}.json") for anchor, identity in lines.items()}
+    first, second = records["anchor=0"]["benchmark"], records["anchor=50"]["benchmark"]
+    assert first["right"] == 29 and first["seen"] == 59 and first["failed"] == 40  # the eleventh image of 30 to 40
+    assert first["sequence"][29:] == [0.0] * 30 and second["failed"] is None and second["right"] == second["seen"] == 9
+    of_all = values(archive)["SurgT", "", ""]
+    assert of_all["robustness"] == pytest.approx(38 / 68) and of_all["accuracy"] > 0.97 and (of_all["starts"], of_all["failures"]) == (2, 1)
+
+
 def test_a_line_that_the_tracker_refuses_counts_as_lost(tmp_path):
     black = write_video(tmp_path / "V01" / "V01_1.avi", [np.zeros((160, 200, 3), np.uint8)] * 41)
     write_pot(tmp_path / "other")
@@ -135,7 +152,7 @@ def test_everything_that_is_wrong_is_told_at_once(tmp_path):
     (tmp_path / "pot" / "annotation" / "V01_1_flag.txt").write_text("0\n1\n", encoding="utf-8")
     said = call("archive_manifest", "propose", tmp_path, tmp_path / "m.csv", status=1)
     for words in ("video_stack is diagonal, expected vertical or horizontal", "resolution height is None, expected px", "name_ground_truth is [], expected a list",
-                  "gt_rectified_0.yaml is of 12 images, the recording has 10, expected as many", "3/calibration.yaml", "icgendseg.png cannot be read",
+                  "gt_rectified_0.yaml is of 12 images, the recording has 10, expected as many", "3/calibration.yaml does not exist", "icgendseg.png cannot be read",
                   "icgstartseg.png has 100 x 80 px, the recording 200 x 160", "V01_1_flag.txt is of 2 images, V01_1_gt_points.txt of 9"):
         assert words in said, (words, said)
     assert [row["case"] for row in files.read_table(tmp_path / "m.csv")] == ["v/case_1/1"], "what is whole is proposed"

@@ -44,6 +44,19 @@ TEST_F(DescribeRecording, SaysWhyARegionWouldBeRefused) {
   EXPECT_EQ(describe("--roi 50,40,50").status, 1);
 }
 
+TEST_F(DescribeRecording, KnowsNothingButThePartThatIsCropped) {
+  const auto told = describe("--crop 20,10,100,80");
+  ASSERT_EQ(told.status, 0) << told.text;
+  EXPECT_NE(told.text.find("\"width\": 100"), std::string::npos) << told.text;
+  EXPECT_NE(told.text.find("\"height\": 80"), std::string::npos) << told.text;
+  const auto outside = describe("--crop 100,0,100,80");
+  EXPECT_EQ(outside.status, 1);
+  EXPECT_NE(outside.text.find("the image has 160x120 px, expected at least 200x80"), std::string::npos) << outside.text;
+  const auto half = describe("--crop 1.5,0,10,10");
+  EXPECT_NE(half.status, 0);
+  EXPECT_NE(half.text.find("crop '1.5,0,10,10', expected whole px"), std::string::npos) << half.text;
+}
+
 TEST_F(DescribeRecording, AsksForNoRegionWhereThereIsNoTexture) {
   for (int k = 0; k < 4; ++k)
     cv::imwrite(images_.file(std::to_string(k) + ".png"), cv::Mat(120, 160, CV_8UC3, cv::Scalar(40, 60, 120)));
