@@ -14,10 +14,10 @@ const std::vector<TaskWords>& taskWords() {
        "the node motion and a calibrated camera.", "The scope holds the whole view."},
       {"CENTRE_TIP", "Centre tip", "the scope turns to a tip that is held still away from the middle.",
        "the node instrument and a calibrated camera.", "The scope keeps the tip near the middle."},
-      {"FOLLOW", "Follow object", "the scope turns to keep the object that was selected in the middle.",
-       "the node motion with a region and a calibrated camera.", "The scope follows the object."},
-      {"POINTS", "Bring points", "the scope brings the points to the places that were selected for them.",
-       "the node points with desired places and a calibrated camera.", "The scope brings the points to their places."}};
+      {"FOLLOW", "Follow object", "the scope turns to keep the selected object in the middle.",
+       "the node motion and a calibrated camera.", "The scope follows the object."},
+      {"POINTS", "Bring points", "the scope brings the selected points to their places.",
+       "the node points and a calibrated camera.", "The scope brings the points to their places."}};
   return all;
 }
 

@@ -59,6 +59,38 @@ inline TrackedFeatures tipAt(double u, double v, const std::string& number = "1"
   return message;
 }
 
+// An object of 60 x 40 px whose middle is at (u, v) px; `selected`: s, the stamp of its selection.
+inline TrackedFeatures objectAt(double u, double v, double selected = 3.0) {
+  TrackedFeatures message = viewOff(0.0, 0.0);
+  message.width = 640;
+  message.height = 480;
+  message.selection_stamp = ros::Time(selected);
+  message.features.resize(1);
+  message.features[0].id = "swab";
+  message.features[0].outline = {u - 30, v - 20, u + 30, v - 20, u + 30, v + 20, u - 30, v + 20, u - 30, v - 20};
+  return message;
+}
+
+// Twelve points that are all seen (u, v) px from where they shall be.
+inline TrackedFeatures pointsOff(double u, double v) {
+  TrackedFeatures message;
+  message.state = TrackedFeatures::TRACKING;
+  message.width = 640;
+  message.height = 480;
+  message.selection_stamp = ros::Time(3);
+  for (int k = 0; k < 12; ++k) {
+    TrackedFeature& point = message.features.emplace_back();
+    point.id = "organ " + std::to_string(k + 1);
+    point.kind = TrackedFeature::POINT;
+    point.state = TrackedFeatures::TRACKING;
+    point.share = 1.0;
+    point.expected_error = 0.1;
+    point.desired = {200.0 + 60.0 * (k % 4), 180.0 + 60.0 * (k / 4)};
+    point.parameters = {point.desired[0] + u, point.desired[1] + v};
+  }
+  return message;
+}
+
 class MotionFeed {
  public:
   explicit MotionFeed(const std::string& topic = "/motion_features")
@@ -85,7 +117,11 @@ class MotionFeed {
         words.message.header.stamp = ros::Time::now() + ros::Duration(words.stamp_offset);
         if (words.without_stamp) words.message.header.stamp = ros::Time();
         // No two pictures are the same.
-        if (!words.message.features.empty()) words.message.features[0].parameters[0] += 1e-9 * k;
+        if (!words.message.features.empty()) {
+          TrackedFeature& first = words.message.features[0];
+          first.parameters[0] += 1e-9 * k;
+          if (!first.outline.empty()) first.outline[0] += 1e-9 * k;
+        }
         motion_.publish(words.message);
       }
       if (words.camera_info && k % 3 == 0) {

@@ -1,6 +1,7 @@
 // What stops the arm, one fault after the other on the whole cart: each in the situations that its line names, see
-// fault_table.cpp. CART_FAULTS=all tries all situations, CART_FAULT_PAIRS=N as many random pairs, from CART_FAULT_SEED
-// on; CART_TIME_LIMIT=S gives it more than 900 s. It prints what happened, for doc/what_stops_the_arm.md.
+// fault_table.cpp; where the scope goes by features, in cart_feature_faults.test. CART_FAULTS=all tries all situations,
+// CART_FAULT_PAIRS=N as many random pairs, from CART_FAULT_SEED on; CART_TIME_LIMIT=S gives it more than 900 s. It
+// prints what happened, for doc/what_stops_the_arm.md.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,13 +30,23 @@ struct Case {
 std::vector<Case> cases() {
   const bool all = std::getenv("CART_FAULTS") != nullptr;
   std::vector<Case> result;
-  for (const FaultRow& row : faultTable()) {
-    for (const Situation situation : {Situation::kServo, Situation::kHold, Situation::kManual}) {
-      const unsigned wanted = row.usually | (all ? row.otherwise : 0U);
-      if ((wanted & static_cast<unsigned>(situation)) != 0) result.push_back({&row, situation});
+  const auto add = [&](const std::vector<Situation>& situations) {
+    for (const FaultRow& row : faultTable()) {
+      for (const Situation situation : situations) {
+        const unsigned wanted = row.usually | (all ? row.otherwise : 0U);
+        if ((wanted & static_cast<unsigned>(situation)) != 0) result.push_back({&row, situation});
+      }
     }
-  }
+  };
+  // One tracker after the other.
+  add({Situation::kServo, Situation::kHold, Situation::kManual});
+  add({Situation::kFollow});
+  add({Situation::kPoints});
   return result;
+}
+
+bool isServo(Situation situation) {
+  return situation != Situation::kHold && situation != Situation::kManual;
 }
 
 bool isOneOf(const std::string& words, const std::string& state) {
@@ -143,11 +154,10 @@ TEST_P(CartFaults, LeaveTheArmWhereItIsOrToItsTask) {
   cart.mark();
   trial.begin();
   Reaction reaction = cart.watch(seconds(row), seconds(row) > kWatched ? kLongCalm : kCalm);
-  if (row.outcome == Outcome::kGoesOn && situation == Situation::kServo) awaitServo(cart, reaction);
+  if (row.outcome == Outcome::kGoesOn && isServo(situation)) awaitServo(cart, reaction);
   print(row.name, situation, reaction);
   if (!row.bounded && goesOn(row, situation, reaction)) return;
-  EXPECT_FALSE(row.outcome == Outcome::kGoesOn && situation == Situation::kServo)
-      << reaction.nearer << " degrees nearer";
+  EXPECT_FALSE(row.outcome == Outcome::kGoesOn && isServo(situation)) << reaction.nearer << " degrees nearer";
   EXPECT_LT(reaction.stood, std::max(kWatched, seconds(row)) - kCalm) << "it goes on";
   EXPECT_LE(reaction.travel.degrees, row.degrees);
   EXPECT_LE(reaction.travel.millimetres, row.millimetres);

@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <limits>
 
-#include "laparoscope_servo/SelectRoi.h"
 #include "laparoscope_servo/SelectTask.h"
 #include "laparoscope_servo/geometry/se3.h"
 #include "laparoscope_servo/sim/arm.h"
@@ -16,10 +14,6 @@
 namespace laparoscope_servo::test {
 
 namespace {
-
-constexpr int kRoiX = 260, kRoiY = 180, kRoiSide = 120;  // px
-constexpr double kPan = 0.16;                            // rad, from where the region is seen in its place
-constexpr double kHand = 0.4;                            // s, that a hand takes
 
 XmlRpc::XmlRpcValue config(const std::string& name) {
   return parametersFromYaml(std::string(LAPAROSCOPE_SERVO_CONFIG) + "/" + name);
@@ -35,6 +29,10 @@ const char* name(Situation situation) {
       return "HOLD";
     case Situation::kManual:
       return "MANUAL";
+    case Situation::kFollow:
+      return "FOLLOW";
+    case Situation::kPoints:
+      return "POINTS";
   }
   return "";
 }
@@ -45,6 +43,9 @@ FaultCart::FaultCart() {
   camera_parameters["control"] = bench.file("control");
   ros::param::set("/simulated_camera", camera_parameters);
   ros::param::set("/tracker", config("tracker.yaml"));
+  for (const FeatureTask* task : {&kFollowTask, &kPointsTask}) {
+    ros::param::set(std::string("/") + task->node, config(std::string(task->node) + ".yaml"));
+  }
   ros::param::set("/controller", config("controller.yaml"));
   ros::param::set("/controller/safety/robot_required", true);
   ros::param::set("/controller/safety/dead_man_required", true);
@@ -58,6 +59,10 @@ FaultCart::FaultCart() {
   subscribers_ = {
       node_.subscribe<ControllerState>("controller/state", 10, [this](const auto& message) { state_ = *message; }),
       node_.subscribe<Homography>("tracker/homography", 10, [this](const auto& message) { homography_ = *message; })};
+  for (const FeatureTask* task : {&kFollowTask, &kPointsTask}) {
+    subscribers_.push_back(node_.subscribe<TrackedFeatures>(std::string(task->node) + "/features", 10,
+                                                            [this](const auto& message) { features_ = *message; }));
+  }
   startCamera();
   startTracker();
   startController();
@@ -68,7 +73,11 @@ void FaultCart::startCamera() {
 }
 
 void FaultCart::startTracker() {
-  tracker = std::make_unique<ChildProcess>(TRACKER, trackerArguments());
+  if (by_features_ == nullptr) {
+    tracker = std::make_unique<ChildProcess>(TRACKER, trackerArguments());
+  } else {
+    tracker = std::make_unique<ChildProcess>(NODELET, by_features_->arguments());
+  }
 }
 
 void FaultCart::startController() {
@@ -80,8 +89,12 @@ std::vector<std::string> FaultCart::trackerArguments() {
 }
 
 std::vector<std::string> FaultCart::controllerArguments() {
-  return {"__name:=controller", "task_error:=tracker/task_error", "operating_state:=aesop/operating_state",
-          "measured_cv:=aesop/measured_cv"};
+  return {"__name:=controller",
+          "task_error:=tracker/task_error",
+          "operating_state:=aesop/operating_state",
+          "measured_cv:=aesop/measured_cv",
+          "motion_features:=motion/features",
+          "points_features:=points/features"};
 }
 
 std::string FaultCart::waitFor(const char* what, const std::function<bool()>& condition, double seconds) {
@@ -109,17 +122,6 @@ std::string FaultCart::robot(const std::string& service) {
   return call.response.success ? "" : call.response.message;
 }
 
-double FaultCart::offset() const {
-  if (!homography_ || homography_->state != Homography::TRACKING) return std::numeric_limits<double>::infinity();
-  double x = 0.0, y = 0.0;
-  for (std::size_t k = 0; k < 4; ++k) {
-    x += homography_->corners[2 * k] / 4.0;
-    y += homography_->corners[2 * k + 1] / 4.0;
-  }
-  const double middle = (kRoiSide - 1) / 2.0;
-  return std::hypot(x - kRoiX - middle, y - kRoiY - middle);
-}
-
 // On a machine that is too busy for it, the emulator may fall silent or pictures come late, and the cart stops as it
 // has to: then the steps are taken again.
 std::string FaultCart::bringTo(Situation situation) {
@@ -134,6 +136,7 @@ std::string FaultCart::bringTo(Situation situation) {
 }
 
 std::string FaultCart::tryToBringTo(Situation situation) {
+  use(situation);
   for (const auto step : {&FaultCart::stand, &FaultCart::see}) {
     const std::string problem = (this->*step)();
     if (!problem.empty()) return problem;
@@ -166,45 +169,11 @@ std::string FaultCart::stand() {
   return problem;
 }
 
-// The region in its place first, where it is not tracked; then the scope a little to the side of it.
-std::string FaultCart::see() {
-  hand(home_);
-  // Within a second when it was never lost, later where it has to be found again.
-  homography_.reset();
-  if (!bench.waitFor([this] { return offset() < 10.0; }, 1.5)) {
-    if (!ros::service::waitForService("tracker/select_roi", 10000)) return "the tracker does not start";
-    SelectRoi select;
-    select.request.roi.x_offset = kRoiX;
-    select.request.roi.y_offset = kRoiY;
-    select.request.roi.width = select.request.roi.height = kRoiSide;
-    const auto selected = [&] {
-      return test_support::callWithin("tracker/select_roi", select) && select.response.success;
-    };
-    if (!bench.waitFor(selected, 20.0)) return "no region: " + select.response.message;
-  }
-  const std::string problem = waitFor("the region in its place", [this] { return offset() < 5.0; });
-  if (!problem.empty()) return problem;
-  bench.truth().hand({kPan, 0.02, 0.0, 0.0}, kHand);
-  bench.waitFor([this] { return !bench.truth().motion().moving; });
-  return waitFor("the region beside its place", [this] { return std::isfinite(offset()) && offset() > 50.0; });
-}
-
-// By a hand about the trocar, to where the scope was with these joints.
-void FaultCart::hand(const aesop::JointVector& goal) {
-  const aesop::JointVector now = bench.truth().state().q;
-  if ((now - goal).cwiseAbs().maxCoeff() < 1e-4) return;
-  const Eigen::Vector3d trocar = sim::ArmConfig().insertion_point;
-  const Eigen::Isometry3d from = kinematics_.optical(now), to = kinematics_.optical(goal);
-  const Eigen::Vector3d turn = geometry::so3Log(from.linear().transpose() * to.linear());
-  const double deeper = (to.translation() - trocar).norm() - (from.translation() - trocar).norm();
-  bench.truth().hand({turn.y(), turn.x(), turn.z(), deeper}, kHand);
-  bench.waitFor([this] { return !bench.truth().motion().moving; });
-}
-
 std::string FaultCart::go(Situation situation) {
   const bool manual = situation == Situation::kManual;
   SelectTask task;
   task.request.task = manual ? ControllerState::MANUAL : ControllerState::HOLD_VIEW;
+  if (by_features_ != nullptr) task.request.task = by_features_->task;
   if (!test_support::callWithin("controller/select_task", task)) return "controller/select_task does not answer";
   if (!task.response.success) return task.response.message;
   // A line that is up may be lost once more on a busy machine.

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "feature_task.h"
 #include "image_relay.h"
 #include "laparoscope_servo/ControllerState.h"
 #include "laparoscope_servo/Homography.h"
@@ -17,7 +18,8 @@
 
 namespace laparoscope_servo::test {
 
-enum class Situation : unsigned { kServo = 1, kHold = 2, kManual = 4 };
+// SERVO by the region of interest; HOLD; MANUAL; SERVO by an object, by points.
+enum class Situation : unsigned { kServo = 1, kHold = 2, kManual = 4, kFollow = 8, kPoints = 16 };
 
 constexpr double kStick = 0.08;  // rad/s, of pan, in MANUAL
 
@@ -55,11 +57,11 @@ class FaultCart {
   bool stateIs(const std::string& state) const { return state_ && state_->state == state; }
   const std::string& state() const { return state_ ? state_->state : none_; }
   const std::string& reason() const { return state_ ? state_->reason : none_; }
-  // px, of the region from where it has to be; infinite when it is not tracked.
+  // px, of what is tracked from where it has to be; infinite when it is not tracked.
   double offset() const;
 
   void startCamera();
-  void startTracker();
+  void startTracker();  // the one that the situation goes by
   void startController();
   static std::vector<std::string> trackerArguments();
   static std::vector<std::string> controllerArguments();
@@ -73,7 +75,9 @@ class FaultCart {
  private:
   std::string tryToBringTo(Situation situation);
   std::string stand();
+  void use(Situation situation);
   std::string see();
+  std::string select();
   std::string go(Situation situation);
   void hand(const aesop::JointVector& goal);
   // Why `condition` has not come true; empty when it has.
@@ -89,6 +93,8 @@ class FaultCart {
   ros::NodeHandle node_;
   std::optional<ControllerState> state_;
   std::optional<Homography> homography_;
+  const FeatureTask* by_features_ = nullptr;  // null: by the region of interest
+  std::optional<TrackedFeatures> features_;
   std::vector<ros::Subscriber> subscribers_;
 };
 

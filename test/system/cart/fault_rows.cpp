@@ -39,6 +39,11 @@ FaultRow stranger(const std::string& name, unsigned usually, unsigned otherwise,
   return row;
 }
 
+FaultRow alsoByFeatures(FaultRow row) {
+  row.usually |= kFeatures;
+  return row;
+}
+
 FaultRow watched(FaultRow row, double seconds) {
   row.watched = seconds;
   return row;

@@ -16,6 +16,7 @@
 #include "laparoscope_servo/OperatingState.h"
 #include "laparoscope_servo/ScopeVelocity.h"
 #include "laparoscope_servo/TaskError.h"
+#include "laparoscope_servo/TrackedFeatures.h"
 
 namespace laparoscope_servo::test {
 
@@ -40,6 +41,46 @@ TaskError elsewhere() {
   error.visible_fraction = 1.0;
   error.corner_error = 0.1;
   return error;
+}
+
+TrackedFeatures seenFeatures() {
+  TrackedFeatures features;
+  features.header.stamp = ros::Time::now();
+  features.selection_stamp = ros::Time(1.0);
+  features.state = TrackedFeatures::TRACKING;
+  features.width = 640;
+  features.height = 480;
+  return features;
+}
+
+// An object far to the right.
+TrackedFeatures objectElsewhere() {
+  TrackedFeatures features = seenFeatures();
+  TrackedFeature& object = features.features.emplace_back();
+  object.id = "object";
+  object.kind = TrackedFeature::MOTION;
+  object.state = TrackedFeatures::TRACKING;
+  object.share = 1.0;
+  object.expected_error = 0.05;
+  object.parameters = {0.0, 0.0};
+  object.outline = {500.0, 200.0, 580.0, 200.0, 580.0, 280.0, 500.0, 280.0, 500.0, 200.0};
+  return features;
+}
+
+// Points that are all 100 px to the right of their places.
+TrackedFeatures pointsElsewhere() {
+  TrackedFeatures features = seenFeatures();
+  for (int k = 0; k < 12; ++k) {
+    TrackedFeature& point = features.features.emplace_back();
+    point.id = "tissue " + std::to_string(k + 1);
+    point.kind = TrackedFeature::POINT;
+    point.state = TrackedFeatures::TRACKING;
+    point.share = 1.0;
+    point.expected_error = 0.1;
+    point.desired = {200.0 + 60.0 * (k % 4), 150.0 + 60.0 * (k / 4)};
+    point.parameters = {point.desired[0] + 100.0, point.desired[1]};
+  }
+  return features;
 }
 
 OperatingState enabled() {
@@ -139,6 +180,8 @@ int runStranger(int argc, char** argv) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const std::map<std::string, std::function<int()>> words{
       {"elsewhere", [&] { return publish<TaskError>(topic, rate, elsewhere, ready); }},
+      {"object_elsewhere", [&] { return publish<TrackedFeatures>(topic, rate, objectElsewhere, ready); }},
+      {"points_elsewhere", [&] { return publish<TrackedFeatures>(topic, rate, pointsElsewhere, ready); }},
       {"enabled", [&] { return publish<OperatingState>(topic, rate, enabled, ready); }},
       {"velocity",
        [&] {
