@@ -110,6 +110,8 @@ class Tracker:
     def __init__(self, arguments):
         self.sequences = arguments.sequence
         self.regions = footage.read_regions(footage.REGIONS, arguments.data) if arguments.data else []
+        if arguments.film:
+            self.regions = [region for region in self.regions if region.film.stem in arguments.film]
         self.limit = arguments.limit
         self.usual = None
         if not self.sequences and not self.regions:
@@ -251,6 +253,7 @@ def main():
     parser.add_argument("--part", choices=list(FOLDER), required=True)
     parser.add_argument("--sequence", action="append", default=[], help="folder with frames/, truth.csv, scene.json; may be repeated")
     parser.add_argument("--data", type=pathlib.Path, help="folder of the films of regions.csv")
+    parser.add_argument("--film", action="append", help="only the regions of this film, without its ending; may be repeated")
     parser.add_argument("--limit", type=int, default=40, help="images of each film")
     parser.add_argument("--only", action="append", help="name of a constant; may be repeated")
     parser.add_argument("--under", action="append", help="of the part: a folder or a file, as align or align/quality.cpp; may be repeated, in this order")

@@ -33,8 +33,8 @@ Matrix8d deformationCovariance(const std::vector<BlockShift>& shifts, double med
 // Tissue deforms where it is covered, too: as long as too few shifts tell by how much, it counts as deformed as it was.
 class DeformationMemory {
  public:
-  // `covariance`: by deformationCovariance, of so many confident shifts. With fewer than kDeformationShifts it is replaced
-  // by that of the last image that had as many; zero before there was one.
+  // `covariance`: by deformationCovariance, of so many confident shifts. With fewer than kDeformationShifts it is
+  // replaced by that of the last image that had as many; zero before there was one.
   void complete(int confident, Matrix8d& covariance);
 
  private:
