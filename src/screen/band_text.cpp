@@ -67,8 +67,8 @@ std::string besideRecorded(const Facts& facts) {
   return text;
 }
 
-// No camera has failed where a recording does not play, or plays more slowly than the tracker waits for an image. Empty
-// while it plays, and without one.
+// No camera has failed where a recording does not play, cannot be read, or plays more slowly than the tracker waits for
+// an image. Empty while it plays, and without one.
 BandText standingRecording(const PlaybackFacts& playback) {
   if (!playback.connected) return {};
   if (playback.state == "ENDED")
@@ -82,6 +82,11 @@ BandText standingRecording(const PlaybackFacts& playback) {
   if (playback.state == "PLAYING" && playback.period > kTrackerPatience)
     return {"PLAYS", "The recording plays slowly: one picture in " + seconds(playback.period) + ".", "Wait.", "",
             Level::kResting};
+  if (playback.state == "FAILED") {
+    BandText failed{"UNREADABLE", "", "", "", Level::kBad};
+    explainTo(failed, Speaker::kPlayer, playback.reason);
+    return failed;
+  }
   if (playback.state == "WAITING") return {"WAITING", "The recording has not begun yet.", "Wait.", "", Level::kResting};
   return {};
 }
@@ -130,7 +135,7 @@ BandText trackerBand(const Facts& facts, double now) {
   band.level = Level::kBad;
   if (tracker.state == "NO_IMAGE" && tracker.reason.find("image refused: ") == std::string::npos) {
     BandText recording = standingRecording(facts.playback);
-    recording.detail = tracker.reason;
+    if (recording.detail.empty()) recording.detail = tracker.reason;
     if (!recording.word.empty()) return recording;
   }
   if (tracker.state == "IDLE") band.level = Level::kResting;

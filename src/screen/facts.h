@@ -116,6 +116,7 @@ struct Frozen {
 struct PlaybackFacts {
   bool connected = false;
   std::string state;      // of PlaybackState
+  std::string reason;     // why it is FAILED
   double position = 0.0;  // s
   double duration = 0.0;  // s; 0: not known
   double period = 0.0;    // s from one picture to the next; 0: not known

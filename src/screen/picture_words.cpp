@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "ros/reasons/reason_table.h"
+
 namespace laparoscope_servo::screen {
 
 namespace {
@@ -24,6 +26,10 @@ double oldestLive(const PlaybackFacts& playback) {
 }
 
 PictureWords pictureWords(const Picture& picture, double now, const PlaybackFacts& playback) {
+  if (playback.connected && playback.state == "FAILED") {
+    const ReasonRow* row = explain(Speaker::kPlayer, playback.reason);
+    return {false, "UNREADABLE", row != nullptr ? row->sentence : playback.reason};
+  }
   if (picture.image.isNull() || picture.arrived_at < 0.0)
     return {false, "NO PICTURE", "The tracker has sent none yet."};
   const std::string state = playback.connected ? playback.state : "";

@@ -143,6 +143,7 @@ std::unique_ptr<RosLink::Connection> RosLink::connect() {
   made->playback = listen<PlaybackState>(node, "player/state", 5, [this](const PlaybackState& message) {
     keeper_.change([&](Facts& facts) {
       facts.playback.state = message.state;
+      facts.playback.reason = message.reason;
       facts.playback.position = message.position;
       facts.playback.duration = message.duration;
       facts.playback.period = message.period;

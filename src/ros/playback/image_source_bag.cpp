@@ -4,6 +4,7 @@
 #include <sensor_msgs/CompressedImage.h>
 
 #include <boost/make_shared.hpp>
+#include <fstream>
 #include <memory>
 #include <opencv2/imgcodecs.hpp>
 #include <utility>
@@ -39,6 +40,24 @@ void decode(const sensor_msgs::CompressedImage& message, SourceImage& image) {
   }
 }
 
+// Throws SourceError for what no repair makes a bag of.
+void checkBeginning(const std::string& path) {
+  const std::string expected = "#ROSBAG V2.0";
+  std::string begin(expected.size(), '\0');
+  std::ifstream file(path, std::ios::binary);
+  file.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  if (file.gcount() == 0) throw SourceError("'" + path + "' is empty, expected a bag");
+  if (begin != expected) {
+    throw SourceError("'" + path + "' is no bag of format 2.0, whatever its name says: it does not begin with '" +
+                      expected + "'");
+  }
+}
+
+SourceError brokenOff(const std::string& path, const rosbag::BagException& error) {
+  return SourceError("bag '" + path + "' breaks off: it was cut, or the recorder was killed (" + error.what() +
+                     "); 'rosbag reindex' makes what is there readable");
+}
+
 class BagSource : public ImageSource {
  public:
   BagSource(const std::vector<std::string>& paths, const SourceOptions& options)
@@ -48,7 +67,7 @@ class BagSource : public ImageSource {
     try {
       open(options);
     } catch (const rosbag::BagException& error) {
-      throw damaged(error);
+      throw brokenOff(name_, error);
     }
   }
 
@@ -74,20 +93,13 @@ class BagSource : public ImageSource {
   }
 
  private:
-  SourceError damaged(const rosbag::BagException& error) const {
-    return SourceError("'" + name_ + "' is no bag, or a damaged one (" + error.what() +
-                       "); 'rosbag reindex' may repair it");
-  }
-
   void openBag(const std::string& path) {
+    checkBeginning(path);
     auto bag = std::make_unique<rosbag::Bag>();
     try {
       bag->open(path, rosbag::bagmode::Read);
-    } catch (const rosbag::BagUnindexedException&) {
-      throw SourceError("bag '" + path + "' has no index, it was not closed: 'rosbag reindex' may repair it");
-    } catch (const rosbag::BagException& error) {
-      throw SourceError("'" + path + "' is no bag, or a damaged one (" + error.what() +
-                        "); 'rosbag reindex' may repair it");
+    } catch (const rosbag::BagException& error) {  // among them BagUnindexedException, of one that was not closed
+      throw brokenOff(path, error);
     }
     bags_.push_back(std::move(bag));
   }

@@ -220,6 +220,24 @@ TEST(BandText, AStateDoesNotOutliveItsNode) {
   EXPECT_EQ(robotBand(all, kNow).level, Level::kBad);
 }
 
+TEST(BandText, ARecordingThatCannotBeReadSaysWhyAndWhatToDo) {
+  Facts all = facts();
+  all.tracker.state = "NO_IMAGE";
+  all.tracker.reason = "no image has come yet";
+  all.playback.connected = true;
+  all.playback.state = "FAILED";
+  all.playback.reason = "bag 'a.bag' breaks off: it was cut, or the recorder was killed (Error reading from file)";
+  EXPECT_EQ(trackerBand(all, kNow).word, "UNREADABLE");
+  EXPECT_EQ(trackerBand(all, kNow).level, Level::kBad);
+  EXPECT_EQ(trackerBand(all, kNow).sentence, "The bag breaks off: it was cut, or the recorder was killed.");
+  EXPECT_NE(trackerBand(all, kNow).cure.find("rosbag reindex"), std::string::npos);
+  EXPECT_EQ(trackerBand(all, kNow).detail, all.playback.reason);
+  all.tracker.state = "TRACKING";
+  all.tracker.result_at = kNow - 0.5;
+  all.playback.reason = "bag 'a.bag' is damaged behind image 7 (Error); 'rosbag reindex' may repair it";
+  EXPECT_EQ(trackerBand(all, kNow).sentence, "The bag is damaged here.");
+}
+
 // A tracker that was killed keeps its connection for roscpp, and its state was latched.
 TEST(BandText, WhatIsSaidOfPicturesIsAsOldAsTheyAre) {
   Facts all = facts();

@@ -146,7 +146,21 @@ TEST_F(ImageSourceBagTest, TruncatedBagsAreErrorsThatNameTheRepair) {
     std::filesystem::resize_file(part, static_cast<std::uintmax_t>(share * static_cast<double>(size)));
     const std::string error = errorOf(part);
     EXPECT_TRUE(mentions(error, "part.bag")) << share << ": " << error;
+    EXPECT_TRUE(mentions(error, "breaks off")) << share << ": " << error;
     EXPECT_TRUE(mentions(error, "reindex")) << share << ": " << error;
+  }
+}
+
+TEST_F(ImageSourceBagTest, WhatNoRepairMakesABagOfIsSaidToBeNone) {
+  std::ofstream(folder_.file("empty.bag")).close();
+  EXPECT_TRUE(mentions(errorOf(folder_.file("empty.bag")), "empty.bag' is empty"));
+  std::ofstream(folder_.file("text.bag")) << "This is a text of some length.";
+  std::ofstream(folder_.file("short.bag")) << "#RO";
+  std::ofstream(folder_.file("old.bag")) << "#ROSBAG V1.2\nof long ago";
+  for (const char* name : {"text.bag", "short.bag", "old.bag"}) {
+    const std::string error = errorOf(folder_.file(name));
+    EXPECT_TRUE(mentions(error, "is no bag of format 2.0")) << error;
+    EXPECT_FALSE(mentions(error, "reindex")) << error;
   }
 }
 
