@@ -3,8 +3,10 @@
 
   bench/archive.py --data FOLDER [--runs 5] [--sizes 256x256,1920x1080] [--lines 20000]
 
-The film of --data is resized by ffmpeg (the package) in a temporary folder, and its region with it. The workspace has to be sourced. Prints
-  a row per size: processor ms an image of decoding, of what remains (conversion, tracking, table), of both; images a second of one core; MB
+The film of --data is resized by ffmpeg (the package) in a temporary folder, and its region with it; for a region that is lost, all but its first
+second is replaced by another film. The workspace has to be sourced. Prints
+  a row per size: processor ms an image of decoding, of what remains (conversion, tracking, table), of both; images a second of one core; MB; and of
+               both while the region is lost
   two cores    at the first and the last size: by how much two processes on two cores do more than one on one, by wall time and by processor time. The first is what counts, and
                says something on a machine that does nothing else; the second leaves out what others took
   workflow     processor s that a line takes beside its track_bag, and s of wall time, one line after the other
@@ -25,6 +27,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "scripts"))
 from archive import files, manifest, plan, programs  # noqa: E402: what is beside this folder has to be found first
 
+OTHER = "scope_withdrawn.mp4"
 FILM, SIZE, ROI = "cholecystectomy_moving_camera.mp4", (1280, 720), (580, 180, 220, 340)
 SIZES = "256x256,640x512,1280x720,1920x1080"
 LENGTH, PERIOD = 10.0, 0.04  # s, of the film
@@ -45,11 +48,19 @@ def run(command):
     return usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024, time.monotonic() - begin
 
 
-def resized(film, width, height, folder):
+def resized(data, width, height, folder):
+    """The film, and the one in which the region is lost; the region."""
     clip = folder / f"{width}x{height}.mp4"
-    run(["ffmpeg", "-v", "error", "-i", film, "-vf", f"scale={width}:{height}:flags=lanczos", "-c:v", "libx264", "-crf", "18", "-pix_fmt", "yuv420p", clip])
+    scale, encode = f"scale={width}:{height}:flags=lanczos", ["-c:v", "libx264", "-crf", "18", "-pix_fmt", "yuv420p"]
+    run(["ffmpeg", "-v", "error", "-i", data / FILM, "-vf", scale, *encode, clip])
+    joined = f"[0]trim=end=1,{scale},setsar=1[a];[1]trim=start=10:end=19,setpts=PTS-STARTPTS,{scale},setsar=1[b];[a][b]concat"
+    run(["ffmpeg", "-v", "error", "-i", data / FILM, "-i", data / OTHER, "-filter_complex", joined, *encode, lost_in(clip)])
     x, y, w, h = (round(v * s) for v, s in zip(ROI, (width / SIZE[0], height / SIZE[1]) * 2))
     return clip, f"{x},{y},{w},{h}"
+
+
+def lost_in(clip):
+    return clip.with_name(f"lost_{clip.name}")
 
 
 def track(clip, roi, table, *options):
@@ -75,8 +86,12 @@ def size_row(clip, roi, folder, runs):
     whole = [run(track(clip, roi, table)) for _ in range(runs)]
     images = round(LENGTH / PERIOD)
     decoding, total = (1e3 * (value - begun) / (images - 3) for value in (skipped, statistics.median(cpu for cpu, *_ in whole)))
+    second = round(1 / PERIOD)
+    first = statistics.median(run(track(lost_in(clip), roi, table, "--end", "1"))[0] for _ in range(runs))
+    lost = 1e3 * (statistics.median(run(track(lost_in(clip), roi, table))[0] for _ in range(runs)) - first) / (images - second)
+    states = [row["state"] for row in files.read_table(table)][second:]
     print(f"{clip.stem:>10}: decoding {decoding:.2f} ms, the rest {total - decoding:.2f} ms, both {total:.2f} ms an image: {1e3 / total:.0f} images/s; "
-          f"{max(mb for _, mb, _ in whole):.0f} MB", flush=True)
+          f"{max(mb for _, mb, _ in whole):.0f} MB; while it is lost (TRACKING in {states.count('1')} of {len(states)} images) {lost:.2f} ms", flush=True)
 
 
 def two_cores(clip, roi, folder, runs):
@@ -133,14 +148,14 @@ def dry_run(lines, folder):
 
 def main():
     p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    p.add_argument("--data", type=pathlib.Path, required=True, help=f"folder with {FILM}")
+    p.add_argument("--data", type=pathlib.Path, required=True, help=f"folder with {FILM} and {OTHER}")
     p.add_argument("--runs", type=int, default=5)
     p.add_argument("--sizes", default=SIZES)
     p.add_argument("--lines", type=int, default=20000)
     a = p.parse_args()
     folder = pathlib.Path(tempfile.mkdtemp(prefix="archive_"))
     try:
-        clips = [resized(a.data / FILM, *(int(v) for v in size.split("x")), folder) for size in a.sizes.split(",")]
+        clips = [resized(a.data, *(int(v) for v in size.split("x")), folder) for size in a.sizes.split(",")]
         for clip, roi in clips:
             size_row(clip, roi, folder, a.runs)
         for clip, roi in (clips[0], clips[-1]):

@@ -87,3 +87,12 @@ def join_all(tables, roi):
         whole, joint = join(whole, Rows(table.header, table.lines[1:]), roi)
         joints.append(joint)
     return whole, joints
+
+
+def cuts(joints):
+    """What is to be said of the cuts, a text for each reason."""
+    times = {}
+    for joint in joints:
+        if "cut" in joint:
+            times.setdefault(joint["cut"], []).append(f"{joint['time']:.1f}")
+    return [f"cut at {', '.join(places)} s: {reason}" for reason, places in times.items()]

@@ -70,7 +70,7 @@ def marked(path, identity):
     try:
         yield
     finally:
-        path.unlink()
+        path.unlink(missing_ok=True)  # of a second process of this line
 
 
 def track_table(job, table, log, *options):

@@ -104,7 +104,7 @@ class Line:
         roi = [float(part) for part in self.job["roi"].split(",")]
         rows, joints = pieces.join_all([pieces.Rows.read(self.piece_file(number, "csv")) for number in range(len(parts))], roi)
         table.write_bytes(b"".join([rows.header, *rows.lines]))
-        record["reasons"] += [f"cut at {joint['time']:.1f} s: {joint['cut']}" for joint in joints if "cut" in joint]
+        record["reasons"] += pieces.cuts(joints)
         return {**record, **summary.of_joints(joints)}
 
     def judged(self, record, table):

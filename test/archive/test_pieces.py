@@ -61,6 +61,11 @@ def test_a_recording_that_breaks_off_leaves_later_pieces_empty():
     assert frames_of(whole) == list(range(20)) and all("cut" in joint for joint in joints)
 
 
+def test_cuts_for_the_same_reason_are_one_text():
+    joints = [{"time": 1.0, "cut": "no"}, {"time": 2.0, "apart": 0.1, "allowed": 1.0}, {"time": 3.04, "cut": "no"}, {"time": 4.0, "cut": "far"}]
+    assert pieces.cuts(joints) == ["cut at 1.0, 3.0 s: no", "cut at 4.0 s: far"]
+
+
 def test_an_image_that_one_piece_left_out_is_no_joint():
     before, after = table([k for k in range(20) if k != 19]), table([k for k in range(10, 30) if k != 18])
     whole, joint = pieces.join(before, after, BOX)

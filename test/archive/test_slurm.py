@@ -99,6 +99,17 @@ class Slurm:
     def queued(self):
         return len(self.ask("squeue", "-h", "-t", "PENDING,RUNNING").splitlines())
 
+    def begins(self):
+        end = time.monotonic() + 60
+        for name, ready in (("munged", (self.folder / "munge.socket").exists), ("slurmctld", lambda: True), ("slurmd", lambda: "idle" in self.node_state())):
+            self.start(name)
+            while not ready():
+                ended = [name for name, process in self.running.items() if process.poll() is not None]
+                if ended or time.monotonic() > end:
+                    said = [line for path in sorted(self.folder.glob("*.log")) for line in path.read_text(errors="replace").splitlines()[-1:]]
+                    pytest.skip(f"Slurm cannot be started here: {', '.join(ended) + ' ended' if ended else 'no node comes'}; {'; '.join(said)}")
+                time.sleep(0.5)
+
     def ends(self):
         self.ask("scancel", "--user", "root")  # jobs of a test that failed
         for name in ("slurmd", "slurmctld", "munged"):
@@ -121,14 +132,7 @@ def slurm():
     before = os.environ.get("SLURM_CONF")
     os.environ["SLURM_CONF"] = str(cluster.config)
     try:
-        for name in ("munged", "slurmctld", "slurmd"):
-            cluster.start(name)
-        end = time.monotonic() + 60
-        while "idle" not in cluster.node_state():
-            if time.monotonic() > end:
-                said = [path.read_text(errors="replace").strip().splitlines()[-1:] for path in sorted(folder.glob("*.log"))]
-                pytest.skip(f"Slurm cannot be started here: {cluster.node_state()}, {said}")
-            time.sleep(0.5)
+        cluster.begins()
         yield cluster
     finally:
         cluster.ends()
