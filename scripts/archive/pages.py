@@ -1,8 +1,5 @@
 """Pages of an archive: one for each case with its lines, and the index, sorted by what deserves a look."""
-import gzip
 import pathlib
-import shutil
-import tempfile
 
 import jinja2
 import markupsafe
@@ -12,7 +9,7 @@ from . import files
 COLOURS = {"IDLE": "#90a4ae", "TRACKING": "#2e7d32", "SEARCHING": "#ef8f00", "LOST": "#c62828"}  # as in session/drawing.py
 BAND_WIDTH, BAND_HEIGHT = 400, 14  # px
 TABLE = ("id", "case", "state", "images", "seconds", "tracking_images", "tracking_share", "covered", "lost", "found", "lost_at_end", "longest_lost",
-         "visible", "corner_error", "corner_error_99", "ms", "ms_99", "cpu_seconds", "peak_mb", "sha256", "reasons")
+         "joints", "joint_px", "cuts", "visible", "corner_error", "corner_error_99", "ms", "ms_99", "cpu_seconds", "peak_mb", "sha256", "reasons")
 BENCHMARKS = ("benchmark", "case", "id", "metric", "value")
 
 
@@ -28,9 +25,9 @@ def band(record):
 
 
 def urgency(record):
-    """Sorts by what deserves a look: failed, damaged, lost until the end, then by the share that was not tracked."""
+    """Sorts by what deserves a look: failed, damaged, cut, lost until the end, then by the share that was not tracked."""
     order = ("failed", "damaged", "done").index(record["state"])
-    return order, not record.get("lost_at_end", False), record.get("tracking_share", 0.0), record["id"]
+    return order, -record.get("cuts", 0), not record.get("lost_at_end", False), record.get("tracking_share", 0.0), record["id"]
 
 
 def benchmark_groups(records):
@@ -67,24 +64,17 @@ def shown(record, archive):
     return {**record, "band": band(record), "picture": (archive / "results" / "thumbnails" / f"{record['id']}.jpg").is_file()}
 
 
-def line_page(archive, record):
-    """The page that session_report makes of the line's table."""
+def write_line(archive, identity, table):
+    """The page that session_report makes of a table of track_bag."""
     from session.facts import Session, read_csv  # matplotlib behind it takes a second to load, which the index does without
     from session.page import Page
     session = Session()
-    with tempfile.TemporaryDirectory() as folder:
-        table = pathlib.Path(folder) / "images.csv"
-        with gzip.open(archive / "results" / "images" / f"{record['id']}.csv.gz", "rb") as packed, open(table, "wb") as file:
-            shutil.copyfileobj(packed, file)
-        read_csv(session, table, lambda stamp: None)
-    session.sources = [(f"images/{record['id']}.csv.gz", "")]
-    files.write_text(archive / "results" / "lines" / f"{record['id']}.html", Page(session, record["id"]).html())
+    read_csv(session, table, lambda stamp: None)
+    session.sources = [(f"images/{identity}.csv.gz", "")]
+    files.write_text(archive / "results" / "lines" / f"{identity}.html", Page(session, identity).html())
 
 
 def write_case(archive, case, records):
-    for record in records:
-        if record["state"] != "failed":
-            line_page(archive, record)
     page = environment().get_template("case.html").render(case=case, records=[shown(r, archive) for r in records], benchmarks=benchmark_groups(records))
     files.write_text(archive / "results" / "cases" / f"{case}.html", page)
 

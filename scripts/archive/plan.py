@@ -9,9 +9,9 @@ import os
 import pathlib
 import secrets
 
-from . import files, manifest, recordings
+from . import files, manifest, pieces, recordings
 
-PLAN = ("id", "case", "width", "height", "seconds", "images")
+PLAN = ("id", "case", "width", "height", "seconds", "images", "pieces")
 KEY = ("id", "case_id", *manifest.COLUMNS, "line")
 SAME_LINE = ("case", "file", "start", "end", "benchmark")  # of a line whose region was corrected
 
@@ -68,16 +68,19 @@ def span(row):
     return seconds, round(seconds * rate)
 
 
-def job(row, identity, case_id):
-    """All that tracking depends on."""
+def job(row, identity, case_id, cut):
+    """All that tracking depends on; `cut`: see write."""
     wanted = {name: row[name] for name in manifest.COLUMNS if name != "case"}
     wanted.update(id=identity, case_id=case_id, bytes=row["facts"]["bytes"], modified=row["facts"]["modified"],
                   params_sha256=digest(row["params"]), camera_info_sha256=digest(row["camera_info"]), truth_sha256=digest(row["truth"]))
-    return wanted
+    # What is published is of a tracker that nobody has started in between.
+    parts = [] if row["benchmark"] else pieces.spans(row["start"], row["end"], span(row)[0], *cut)
+    return {**wanted, "pieces": parts} if parts else wanted
 
 
-def write(rows, archive):
-    """Writes plan, key and jobs of a manifest without problems. Returns (lines, new or changed ones, results without a line)."""
+def write(rows, archive, cut=(0.0, 0.0)):
+    """Writes plan, key and jobs of a manifest without problems. `cut`: the longest piece of a recording and how long two of them overlap, in s;
+    0: no recording is cut. Returns (lines, new or changed ones, results without a line)."""
     archive = pathlib.Path(archive)
     private = archive / "private"
     private.mkdir(parents=True, exist_ok=True)
@@ -96,18 +99,18 @@ def write(rows, archive):
     before = os.umask(0o077)
     try:
         files.write_table(key_file, KEY, key.values())
-        changed = sum(files.write_if_changed(private / "jobs" / f"{identity}.json", job(row, identity, case_id))
-                      for row, identity, case_id in zip(rows, ids, case_ids))
+        jobs = [job(row, identity, case_id, cut) for row, identity, case_id in zip(rows, ids, case_ids)]
+        changed = sum(files.write_if_changed(private / "jobs" / f"{wanted['id']}.json", wanted) for wanted in jobs)
     finally:
         os.umask(before)
     left_out = [path for path in (private / "jobs").glob("*.json") if path.stem not in present]
     for path in left_out:
         path.unlink()
     table = []
-    for row, identity, case_id in zip(rows, ids, case_ids):
+    for row, wanted in zip(rows, jobs):
         seconds, images = span(row)
-        table.append({"id": identity, "case": case_id, "width": row["facts"]["width"], "height": row["facts"]["height"],
-                      "seconds": f"{seconds:.2f}", "images": images})
+        table.append({"id": wanted["id"], "case": wanted["case_id"], "width": row["facts"]["width"], "height": row["facts"]["height"],
+                      "seconds": f"{seconds:.2f}", "images": images, "pieces": len(wanted.get("pieces", [None]))})
     files.write_table(archive / "plan.csv", PLAN, table)
     return len(rows), changed, len(left_out)
 

@@ -1,4 +1,5 @@
 """Where an archive stands: each line of its plan is in one of five states, and the counts add up to the lines."""
+import contextlib
 import os
 import pathlib
 import socket
@@ -34,17 +35,35 @@ def is_running(marker, log):
     return log.is_file() and time.time() - log.stat().st_mtime < ALIVE
 
 
-def state_of(archive, identity):
+def begun(private):
+    """By lines, the markers of what was begun and has not ended: of the line itself, or of its pieces."""
+    found = {}
+    for path in (private / "running").glob("*.json"):
+        found.setdefault(path.name.partition(".")[0], []).append(path)
+    return found
+
+
+def where_it_runs(markers, private):
+    """Of a line's markers; empty: it runs nowhere."""
+    places = []
+    for marker in markers:
+        with contextlib.suppress(FileNotFoundError):  # it has ended meanwhile
+            if is_running(marker, private / "logs" / f"{marker.stem}.log"):
+                where = files.read_json(marker)
+                piece = f"piece {marker.stem.partition('.')[2]} " if "." in marker.stem else ""
+                places.append(f"{piece}on {where['host']}" + (f", Slurm job {where['slurm_job']}" if where["slurm_job"] else ""))
+    return "; ".join(sorted(places))
+
+
+def state_of(archive, identity, markers):
     """State and reason of a line."""
     private = archive / "private"
-    record, marker = archive / "results" / "records" / f"{identity}.json", private / "running" / f"{identity}.json"
-    try:
-        if is_running(marker, private / "logs" / f"{identity}.log"):
-            where = files.read_json(marker)
-            return "running", f"on {where['host']}" + (f", Slurm job {where['slurm_job']}" if where["slurm_job"] else "")
+    record = archive / "results" / "records" / f"{identity}.json"
+    where = where_it_runs(markers, private)
+    if where:
+        return "running", where
+    if any(marker.is_file() for marker in markers):
         return "interrupted", "ended without a result (killed, or its machine was lost); it runs again with the next start"
-    except FileNotFoundError:
-        pass
     try:
         told = files.read_json(record)
     except FileNotFoundError:
@@ -58,7 +77,8 @@ def state_of(archive, identity):
 def of(archive):
     """(id, state, reason) of every line."""
     archive = pathlib.Path(archive)
-    return [(row["id"], *state_of(archive, row["id"])) for row in plan.read(archive)]
+    markers = begun(archive / "private")
+    return [(row["id"], *state_of(archive, row["id"], markers.get(row["id"], []))) for row in plan.read(archive)]
 
 
 def forget(archive, identities):

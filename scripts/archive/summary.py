@@ -46,5 +46,11 @@ def summarise(table):
     }
 
 
+def of_joints(joints):
+    """Of a line that was tracked in pieces."""
+    return {"joints": len(joints), "cuts": sum("cut" in joint for joint in joints),
+            "joint_px": max((joint["apart"] for joint in joints if "cut" not in joint), default=None)}
+
+
 def milli(seconds):
     return None if seconds is None else round(1e3 * seconds, 3)

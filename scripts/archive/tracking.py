@@ -1,75 +1,22 @@
-"""One line of a manifest: tracked, its table kept, and a record of what came of it.
+"""One line of a manifest: tracked, its table and its page kept, and a record of what came of it.
 
 A recording that cannot be tracked is a result, too, since it would end in the same way again: the record has the reason. What
 another machine or another day would do otherwise (killed, out of memory, disk full) is none: TrackingEnded is raised, nothing
-is kept, and Snakemake runs the line again.
+is kept, and Snakemake runs the line, or its piece, again.
 """
 import contextlib
 import gzip
 import hashlib
 import os
 import pathlib
-import re
-import resource
 import shutil
-import signal
-import socket
 import subprocess
 
-from . import files, programs, summary
+from . import files, pages, pieces, programs, running, summary
+from .running import TrackingEnded
 
 DROPPED = "processing_time"  # of the table: it differs from run to run, all else does not
-MOST_REASONS = 5
-PROGRESS = re.compile(r"^image \d+( of \d+)?, [\d.]+ images/s")
-
-
-class TrackingEnded(Exception):
-    """Tracking ended for a reason that is not the recording's."""
-
-
-class Stopped(Exception):
-    """A signal asked this process to end."""
-
-
-def forbid_names(text, job):
-    """The text without the paths and names of the line's files, which may be a patient's."""
-    words = {}
-    for column in ("truth", "params", "camera_info", "file"):
-        for path in {job[column], os.path.realpath(job[column])} if job.get(column) else ():
-            word = "RECORDING" if column == "file" else column.upper()
-            words.update({os.path.dirname(path): "FOLDER", path: word, os.path.basename(path): word, pathlib.Path(path).stem: word})
-    for name in sorted(words, key=len, reverse=True):
-        if len(name) > 1:
-            text = text.replace(name, words[name])
-    return text
-
-
-def said(log, job):
-    """What track_bag had to say, without its progress."""
-    lines = pathlib.Path(log).read_text(encoding="utf-8", errors="replace").splitlines()
-    return [forbid_names(line, job).replace("track_bag: ", "") for line in lines if line and not PROGRESS.match(line)]
-
-
-def run(command, log):
-    """Exit status (negative: by a signal) and what the process used. A signal to this process goes on to it."""
-    with open(log, "wb") as output:
-        process = subprocess.Popen(command, stdout=output, stderr=output, stdin=subprocess.DEVNULL)
-
-        def stop(number, _frame):
-            process.send_signal(number)
-            raise Stopped(signal.Signals(number).name)
-
-        before = {number: signal.signal(number, stop) for number in (signal.SIGTERM, signal.SIGINT)}
-        try:
-            process.wait()
-        except Stopped as name:
-            process.wait()
-            raise TrackingEnded(f"ended by {name}") from None
-        finally:
-            for number, handler in before.items():
-                signal.signal(number, handler)
-    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return process.returncode, {"cpu_seconds": round(usage.ru_utime + usage.ru_stime, 2), "peak_mb": round(usage.ru_maxrss / 1024)}
+STATES = ("done", "damaged", "failed")  # from the best to the worst
 
 
 def compress(source, target, identity):
@@ -82,16 +29,6 @@ def compress(source, target, identity):
                 cells = line.split(b",", dropped + 1)  # what lies behind may have commas in quotes
                 packed.write(b",".join([b"id" if number == 0 else identity.encode(), *cells[:dropped], *cells[dropped + 1:]]))
     return hashlib.sha256(pathlib.Path(target).read_bytes()).hexdigest()
-
-
-@contextlib.contextmanager
-def marked(path, identity):
-    """While this goes on, a file says where: for archive_status."""
-    files.write_json(path, {"id": identity, "host": socket.gethostname(), "process": os.getpid(), "slurm_job": os.environ.get("SLURM_JOB_ID", "")})
-    try:
-        yield
-    finally:
-        path.unlink()
 
 
 def thumbnail(job, target):
@@ -107,60 +44,98 @@ def thumbnail(job, target):
             partial.unlink()
 
 
-def track(job, archive):
-    """Writes images/ID.csv.gz, thumbnails/ID.jpg and then records/ID.json below results/. Returns the record."""
-    archive, identity = pathlib.Path(archive), job["id"]
-    results, private = archive / "results", archive / "private"
-    for folder in (results / "images", results / "thumbnails", private / "logs", private / "running"):
-        folder.mkdir(parents=True, exist_ok=True)
-    record_file = results / "records" / f"{identity}.json"
-    with contextlib.suppress(FileNotFoundError):
-        record_file.unlink()
-    for left in (private / "scratch").glob(f"{identity}.*"):  # of a process that was killed, or that another machine may still run: it fails then
-        shutil.rmtree(left, ignore_errors=True)
-    scratch = private / "scratch" / f"{identity}.{os.getpid()}"
-    scratch.mkdir(parents=True)
-    try:
-        with marked(private / "running" / f"{identity}.json", identity):
-            record = track_in(scratch, job, results, private / "logs" / f"{identity}.log")
+class Line:
+    """A line of an archive, and where its files are."""
+
+    def __init__(self, job, archive):
+        archive = pathlib.Path(archive)
+        self.job, self.identity, self.archive = job, job["id"], archive
+        self.results, self.private = archive / "results", archive / "private"
+        for folder in (self.results / "images", self.results / "thumbnails", self.private / "logs", self.private / "running", self.private / "pieces"):
+            folder.mkdir(parents=True, exist_ok=True)
+
+    @contextlib.contextmanager
+    def work(self, name):
+        """A folder for the line or one of its pieces, that goes away; while it is there, a file says where the work goes on."""
+        for left in (self.private / "scratch").glob(f"{name}.[0-9]*p"):  # of what was killed, or goes on on a machine that counts as lost: it fails then
+            shutil.rmtree(left, ignore_errors=True)
+        scratch = self.private / "scratch" / f"{name}.{os.getpid()}p"
+        scratch.mkdir(parents=True)
+        try:
+            with running.marked(self.private / "running" / f"{name}.json", self.identity):
+                yield scratch
+        except OSError as error:
+            raise TrackingEnded(str(error)) from error
+        finally:
+            shutil.rmtree(scratch, ignore_errors=True)
+
+    def piece_file(self, number, kind):
+        return self.private / "pieces" / f"{self.identity}.{number}.{kind}"
+
+    def track_piece(self, number):
+        """Writes table and record of a piece below private/pieces/."""
+        name = f"{self.identity}.{number}"
+        table, record_file = self.piece_file(number, "csv"), self.piece_file(number, "json")
+        record_file.unlink(missing_ok=True)
+        with self.work(name) as scratch:
+            span = self.job["pieces"][number]
+            options = [f"--resume={span['resume']}"] if span["resume"] else []
+            record = running.track_table({**self.job, "end": span["end"]}, scratch / "images.csv", self.private / "logs" / f"{name}.log", *options)
+            with contextlib.suppress(FileNotFoundError):  # of a piece that failed
+                os.replace(scratch / "images.csv", table)
+            files.write_json(record_file, {**record, "job": self.job})
+
+    def piece(self, number):
+        """The record of a piece, which is tracked now if it was not yet, or for another plan."""
+        with contextlib.suppress(FileNotFoundError):
+            record = files.read_json(self.piece_file(number, "json"))
+            if record["job"] == self.job:
+                return record
+        self.track_piece(number)
+        return files.read_json(self.piece_file(number, "json"))
+
+    def joined(self, parts, table):
+        """Joins the pieces' tables, and their records to one."""
+        reasons = list(dict.fromkeys(reason for part in parts for reason in part["reasons"]))
+        record = {"state": max((part["state"] for part in parts), key=STATES.index), "reasons": reasons[:running.MOST_REASONS],
+                  "cpu_seconds": round(sum(part["cpu_seconds"] for part in parts), 2), "peak_mb": max(part["peak_mb"] for part in parts)}
+        if record["state"] == "failed":
+            return record
+        roi = [float(part) for part in self.job["roi"].split(",")]
+        rows, joints = pieces.join_all([pieces.Rows.read(self.piece_file(number, "csv")) for number in range(len(parts))], roi)
+        table.write_bytes(b"".join([rows.header, *rows.lines]))
+        record["reasons"] += pieces.cuts(joints)
+        return {**record, **summary.of_joints(joints)}
+
+    def judged(self, record, table):
+        """The record, with what the line's truth says of the table, or of nothing where the line has failed. Without a truth that can be used
+        it has failed."""
+        if not self.job.get("benchmark"):
+            return record
+        from . import layouts, truth  # OpenCV behind them takes a while to load, which lines without truth do without
+        try:
+            return {**record, "benchmark": layouts.load(self.job).score(truth.Tracked.read(table) if record["state"] != "failed" else None)}
+        except truth.BadTruth as error:
+            reasons = [running.forbid_names(text, self.job) for text in error.problems[:running.MOST_REASONS]]
+            return {**{name: record[name] for name in ("id", "case", "cpu_seconds", "peak_mb")}, "state": "failed", "reasons": reasons}
+
+    def track(self):
+        """Writes images/ID.csv.gz, thumbnails/ID.jpg, lines/ID.html and then records/ID.json below results/. Returns the record."""
+        record_file = self.results / "records" / f"{self.identity}.json"
+        record_file.unlink(missing_ok=True)
+        parts = [self.piece(number) for number in range(len(self.job.get("pieces", [])))]
+        with self.work(self.identity) as scratch:
+            table = scratch / "images.csv"
+            record = self.joined(parts, table) if parts else running.track_table(self.job, table, self.private / "logs" / f"{self.identity}.log")
+            record.update(id=self.identity, case=self.job["case_id"])
+            if record["state"] != "failed":
+                record.update(summary.summarise(table))
+                pages.write_line(self.archive, self.identity, table)
+                record["sha256"] = compress(table, self.results / "images" / f"{self.identity}.csv.gz", self.identity)
+                thumbnail(self.job, self.results / "thumbnails" / f"{self.identity}.jpg")
+            record = self.judged(record, table)
             files.write_json(record_file, record)
-    except OSError as error:
-        raise TrackingEnded(str(error)) from error
-    finally:
-        shutil.rmtree(scratch, ignore_errors=True)
-    return record
-
-
-def judged(record, job, table):
-    """The record, with what the line's truth says of the table, None when there is none. Without a truth that can be used it has failed."""
-    if not job.get("benchmark"):
+        for number in range(len(parts)):
+            for kind in ("csv", "json"):
+                self.piece_file(number, kind).unlink(missing_ok=True)
         return record
-    from . import layouts, truth  # OpenCV behind them takes a while to load, which lines without truth do without
-    try:
-        record["benchmark"] = layouts.load(job).score(truth.Tracked.read(table) if table else None)
-    except truth.BadTruth as error:
-        reasons = [forbid_names(text, job) for text in error.problems[:MOST_REASONS]]
-        return {**{name: record[name] for name in ("id", "case", "cpu_seconds", "peak_mb")}, "state": "failed", "reasons": reasons}
-    return record
-
-
-def track_in(scratch, job, results, log):
-    table = scratch / "images.csv"
-    command = [programs.program("track_bag"), job["file"], "--tracker", job["tracker"], "--roi", job["roi"], "--csv", str(table),
-               *programs.source_options(job)]
-    status, used = run(command, log)
-    words = said(log, job)
-    if status < 0 or status > 2:
-        raise TrackingEnded(f"track_bag ended by {signal.Signals(-status).name}" if status < 0 else f"track_bag ended with status {status}")
-    if any("cannot be written" in line for line in words):  # full disk, quota, storage that is gone
-        raise TrackingEnded(words[-1])
-    record = {"id": job["id"], "case": job["case_id"], "state": "done", "reasons": [], **used}
-    if not table.is_file():
-        return judged({**record, "state": "failed", "reasons": words[-MOST_REASONS:] or [f"track_bag ended with status {status}"]}, job, None)
-    if status != 0:
-        lost = [line for line in words if "is left out" in line or "could not be processed" in line or "damaged" in line]
-        record.update(state="damaged", reasons=lost[:MOST_REASONS - 1] + words[-1:])
-    record.update(summary.summarise(table))
-    record["sha256"] = compress(table, results / "images" / f"{job['id']}.csv.gz", job["id"])
-    thumbnail(job, results / "thumbnails" / f"{job['id']}.jpg")
-    return judged(record, job, table)

@@ -42,8 +42,10 @@ void writePicture(const FirstImage& first, const std::optional<geometry::Rectang
   cv::Mat picture = first.picture(kPictureSide).clone();
   if (roi) {
     const double scale = static_cast<double>(picture.cols) / first.size().width;
-    const cv::Scalar white = cv::Scalar::all(255);
-    cv::rectangle(picture, cv::Rect2d(scale * roi->x, scale * roi->y, scale * roi->width, scale * roi->height), white);
+    const cv::Rect box(cv::Rect2d(scale * roi->x, scale * roi->y, scale * roi->width, scale * roi->height));
+    // to be seen on bright and on dark tissue, also on a page that shows the picture a third as large
+    cv::rectangle(picture, box, cv::Scalar::all(0), 7);
+    cv::rectangle(picture, box, cv::Scalar::all(255), 3);
   }
   if (!cv::imwrite(name, picture)) throw std::runtime_error("'" + name + "' cannot be written");
 }

@@ -24,13 +24,15 @@ def texture(seed, width=200, height=160):
     return cv2.normalize(smooth, None, 20, 235, cv2.NORM_MINMAX).astype(np.uint8)
 
 
-def write_clip(path, images, seed=1):
-    """A video of a picture that moves by up to 6 px."""
+def write_clip(path, images, seed=1, other_from=None):
+    """A video of a picture that moves by up to 6 px; from an image on it is another picture."""
     path.parent.mkdir(parents=True, exist_ok=True)
     picture = texture(seed)
     writer = cv2.VideoWriter(str(path), cv2.VideoWriter_fourcc(*"MJPG"), 25.0, picture.shape[1::-1])
     assert writer.isOpened()
     for k in range(images):
+        if k == other_from:
+            picture = texture(seed + 100)
         shift = np.float32([[1, 0, 6 * np.sin(0.1 * k)], [0, 1, 4 * np.sin(0.07 * k)]])
         writer.write(cv2.warpAffine(picture, shift, picture.shape[1::-1], borderMode=cv2.BORDER_REFLECT))
     writer.release()
@@ -56,10 +58,10 @@ def call(name, *arguments, status=0):
     return text
 
 
-def plan(folder, rows, status=0):
+def plan(folder, rows, *options, status=0):
     """The archive of a manifest with these rows; of the same folder again, its plan is renewed."""
     manifest = write_manifest(folder / "manifest.csv", rows)
-    call("archive_manifest", "plan", manifest, folder / "archive", status=status)
+    call("archive_manifest", "plan", manifest, folder / "archive", *options, status=status)
     return folder / "archive"
 
 

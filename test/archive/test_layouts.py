@@ -56,6 +56,13 @@ def test_each_layout_is_recognised(proposed):
     assert "nothing is wrong" in call("archive_manifest", "check", manifest)
 
 
+def test_lines_with_truth_are_not_cut_into_pieces(proposed, tmp_path):
+    call("archive_manifest", "plan", proposed[1], tmp_path / "archive", "--pieces", "0.01", "--overlap", "0.2")
+    benchmarks = {row["id"]: row["benchmark"] for row in files.read_table(tmp_path / "archive" / "private" / "key.csv")}
+    cut = {(bool(benchmarks[row["id"]]), int(row["pieces"]) > 1) for row in files.read_table(tmp_path / "archive" / "plan.csv")}
+    assert cut == {(True, False), (False, True)}
+
+
 @pytest.fixture(scope="module")
 def tracked(proposed, tmp_path_factory):
     archive = tmp_path_factory.mktemp("tracked") / "archive"

@@ -37,6 +37,10 @@ void checkOptions(const SourceOptions& options) {
     throw SourceError("end = " + std::to_string(options.end) + " s, expected more than start, " +
                       std::to_string(options.start) + " s");
   }
+  if (options.resume != 0.0 && !(options.resume > options.start && options.resume < options.end)) {
+    throw SourceError("resume = " + std::to_string(options.resume) + " s, expected more than start, " +
+                      std::to_string(options.start) + " s, and less than end, " + std::to_string(options.end) + " s");
+  }
   if (!(options.folder_rate > 0.0) || !std::isfinite(options.folder_rate)) {
     throw SourceError("rate = " + std::to_string(options.folder_rate) + " Hz, expected more than 0");
   }

@@ -12,9 +12,15 @@ namespace laparoscope_servo {
 // Which images of an input are wanted, by SourceOptions. Times in s after the beginning of the input.
 class ImageSpan {
  public:
-  explicit ImageSpan(const SourceOptions& options) : start_(options.start), end_(options.end) {}
+  explicit ImageSpan(const SourceOptions& options)
+      : begin_(options.start), resume_(options.resume), end_(options.end) {}
 
-  bool isSkipped(double time) const { return isBefore(time, start_); }
+  // Called once for each image, in their order.
+  bool isSkipped(double time) {
+    if (isBefore(time, begin_)) return true;
+    begin_ = resume_;  // for all but the first that is wanted
+    return false;
+  }
   bool isBehind(double time) const { return !isBefore(time, end_); }
 
  private:
@@ -24,7 +30,8 @@ class ImageSpan {
     return time < bound - kTolerance;
   }
 
-  double start_;
+  double begin_;  // of what is wanted next
+  double resume_;
   double end_;
 };
 

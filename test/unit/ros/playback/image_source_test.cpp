@@ -81,6 +81,20 @@ TEST_F(ImageSourceTest, CropIsNoneOfABag) {
   EXPECT_NE(errorOf(folder_.file("a.bag"), options).find("expected a video or a folder of images"), std::string::npos);
 }
 
+TEST_F(ImageSourceTest, BehindTheFirstImageItResumesLater) {
+  for (int k = 0; k < 8; ++k) cv::imwrite(folder_.file(std::to_string(k) + ".png"), numbered(k));
+  SourceOptions options;
+  options.folder_rate = 10.0;
+  options.start = 0.1;
+  options.resume = 0.5;
+  options.end = 0.7;
+  const auto images = readAll(folder_.path(), options);
+  ASSERT_EQ(images.size(), 3u);
+  EXPECT_EQ(numberOf(images[0]), 1);
+  EXPECT_EQ(numberOf(images[1]), 5);
+  EXPECT_EQ(images[2].frame, 6u);
+}
+
 TEST_F(ImageSourceTest, FolderNamesAFileThatCannotBeReadAndGoesOn) {
   cv::imwrite(folder_.file("a.png"), numbered(0));
   writeFile("b.png", "this is no image");
@@ -190,6 +204,12 @@ TEST_F(ImageSourceTest, VideoHasStampsOfItsRate) {
   const auto middle = readAll(path, options);
   ASSERT_EQ(middle.size(), 2u);
   EXPECT_EQ(numberOf(middle[1]), 3);
+  options.start = 0.0;
+  options.resume = 0.15;
+  const auto resumed = readAll(path, options);
+  ASSERT_EQ(resumed.size(), 2u);
+  EXPECT_EQ(resumed[0].frame, 0u);
+  EXPECT_EQ(resumed[1].frame, 3u);
   // Frames are buffers of their own.
   EXPECT_NE(images[0].decoded.data, images[1].decoded.data);
 }
@@ -210,6 +230,11 @@ TEST_F(ImageSourceTest, RefusesOptionsThatMakeNoSense) {
   EXPECT_TRUE(mentions(errorOf(folder_.path(), options), "start"));
   options.start = options.end = 1.0;
   EXPECT_TRUE(mentions(errorOf(folder_.path(), options), "end"));
+  for (const double resume : {1.0, 2.0, -1.0, std::nan("")}) {
+    options.end = 2.0;
+    options.resume = resume;
+    EXPECT_TRUE(mentions(errorOf(folder_.path(), options), "resume")) << resume;
+  }
   options = {};
   options.folder_rate = 0.0;
   EXPECT_TRUE(mentions(errorOf(folder_.path(), options), "rate"));
