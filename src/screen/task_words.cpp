@@ -17,7 +17,9 @@ const std::vector<TaskWords>& taskWords() {
       {"FOLLOW", "Follow object", "the scope turns to keep the selected object in the middle.",
        "the node motion and a calibrated camera.", "The scope follows the object."},
       {"POINTS", "Bring points", "the scope brings the selected points to their places.",
-       "the node points and a calibrated camera.", "The scope brings the points to their places."}};
+       "the node points and a calibrated camera.", "The scope brings the points to their places."},
+      {"POSITION", "Bring back", "the scope brings the region back by its homography.",
+       "a tracked region and a calibrated camera.", "The scope brings the region back."}};
   return all;
 }
 

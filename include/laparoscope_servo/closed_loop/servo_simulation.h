@@ -4,10 +4,11 @@
 // The camera measures the exact homography of the plane, with noise on the ROI's corners; in STABILISE on those of
 // servo::viewRegion(), as long as enough of the reference image is in view for AnchoredMotion; in CENTRE_TIP
 // the ROI's centre is an instrument's tip, which a hand moves as the patient's tissue moves, and in FOLLOW the middle
-// of an object; in POINTS there are 36 points in the ROI, of which a share may be astray. The robot executes the
-// commands after a delay and with a dead zone, as the end-effector's velocity of eq. (12). Tissue and insertion point
-// may move, the optics may be oblique, and the controller's depths and delay may be wrong. Deterministic: the same
-// configuration and seed give the same numbers. World frame: the camera's at the reference pose.
+// of an object; in POINTS there are 36 points in the ROI, of which a share may be astray; POSITION goes by
+// that homography. The robot executes the commands after a delay and with a dead zone, as the end-effector's velocity
+// of eq. (12). Tissue and insertion point may move, the optics may be oblique, and the controller's depths and delay
+// may be wrong. Deterministic: the same configuration and seed give the same numbers. World frame: the camera's at the
+// reference pose.
 #pragma once
 
 #include <iosfwd>
@@ -38,13 +39,13 @@ struct CrossingConfig {
 };
 
 struct SimulationConfig {
-  std::string task = "HOLD_VIEW";                              // "STABILISE", "CENTRE_TIP", "FOLLOW", "POINTS"
-  double frame_rate = 25.0;                                    // Hz, of the camera
-  double image_delay = 0.0;                                    // s, from the exposure to the task error
-  double corner_noise = 0.3;                                   // px, standard deviation of each corner coordinate
-  double points_astray = 0.0;                                  // share of the points of POINTS that do not move
-  double width = 640.0;                                        // px, of the image
-  double height = 480.0;                                       // px
+  std::string task = "HOLD_VIEW";  // "STABILISE", "CENTRE_TIP", "FOLLOW", "POINTS", "POSITION"
+  double frame_rate = 25.0;        // Hz, of the camera
+  double image_delay = 0.0;        // s, from the exposure to the task error
+  double corner_noise = 0.3;       // px, standard deviation of each corner coordinate
+  double points_astray = 0.0;      // share of the points of POINTS that do not move
+  double width = 640.0;            // px, of the image
+  double height = 480.0;           // px
   geometry::PinholeCamera camera{400.0, 400.0, 319.5, 239.5};  // px
   geometry::Rectangle roi{270.0, 190.0, 100.0, 100.0};         // px, in the reference image
   double tissue_distance = 0.08;                               // m, Z*, from the reference camera to the plane

@@ -87,7 +87,7 @@ void describeDisturbances(Table& table, SimulationConfig& c) {
 }  // namespace
 
 void describe(Table& table, SimulationConfig& c) {
-  table.choice("task", c.task, {"HOLD_VIEW", "STABILISE", "CENTRE_TIP", "FOLLOW", "POINTS"},
+  table.choice("task", c.task, {"HOLD_VIEW", "STABILISE", "CENTRE_TIP", "FOLLOW", "POINTS", "POSITION"},
                "which the controller does");
   table.number("duration", c.duration, {0.1, 36000}, "s", "of simulated time, where --duration is not given");
   table.number("rest_from", c.rest_from, {0, 0.999}, "share",

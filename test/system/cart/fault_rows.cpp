@@ -39,8 +39,8 @@ FaultRow stranger(const std::string& name, unsigned usually, unsigned otherwise,
   return row;
 }
 
-FaultRow alsoByFeatures(FaultRow row) {
-  row.usually |= kFeatures;
+FaultRow alsoInOtherTasks(FaultRow row) {
+  row.usually |= kOtherTasks;
   return row;
 }
 
