@@ -12,7 +12,6 @@
 #include "bench/support/arguments.h"
 #include "bench/support/contestant.h"
 #include "bench/support/cpu_clock.h"
-#include "bench/support/field_metrics.h"
 #include "bench/support/sequence.h"
 #include "bench/support/statistics.h"
 #include "ros/common/json_writer.h"
@@ -27,8 +26,7 @@ struct Record {
   std::vector<double> claims;  // 1 or 0, likewise
   std::vector<double> ms;      // wall time of every frame of every pass, but for the reference and when it had stopped
   std::vector<double> cpu_ms;  // processor time likewise
-  PointScores points;          // of every frame of the first pass but the reference
-  std::vector<double> alignment;  // px, likewise
+  std::vector<double> g;  // row by row, of every frame of the first pass: what the field publishes is computed of it
 };
 
 struct Summary {
@@ -40,9 +38,6 @@ struct Summary {
   double ms_median = error_mean;
   double ms_p99 = error_mean;
   double cpu_ms_median = error_mean;
-  double alignment_median = error_mean;  // px, of all frames, as are these shares:
-  double precision_5 = error_mean;
-  double precision_15 = error_mean;
 };
 
 Summary summarise(const Record& record) {
@@ -61,9 +56,6 @@ Summary summarise(const Record& record) {
   s.ms_median = quantile(record.ms, 0.5);
   s.ms_p99 = quantile(record.ms, 0.99);
   s.cpu_ms_median = quantile(record.cpu_ms, 0.5);
-  s.alignment_median = quantile(record.alignment, 0.5);
-  s.precision_5 = precision(record.alignment, 5.0);
-  s.precision_15 = precision(record.alignment, 15.0);
   return s;
 }
 
@@ -76,15 +68,6 @@ bool selects(Contestant& contestant, const cv::Mat& image, const geometry::Recta
     std::cerr << contestant.name() << " refuses the ROI: " << error.what() << '\n';
     return false;
   }
-}
-
-// What the field measures of one image but the reference.
-void score(const Sequence& sequence, std::size_t frame, const cv::Size& image, const Verdict& verdict, Record& record) {
-  const std::vector<Eigen::Vector2d> points = regionPoints(sequence.roi());
-  const Eigen::Matrix3d& truth = sequence.truth().at(frame);
-  const std::vector<double> covered = sequence.areas().empty() ? std::vector<double>() : sequence.areas().at(frame);
-  record.points.add(distances(verdict.g, truth, points), visiblePoints(truth, points, covered, image), verdict.claims);
-  record.alignment.push_back(alignmentError(verdict.g, truth, sequence.roi()));
 }
 
 std::vector<Record> compare(Sequence& sequence, const std::vector<std::string>& names, int passes) {
@@ -120,7 +103,7 @@ std::vector<Record> compare(Sequence& sequence, const std::vector<std::string>& 
         if (pass > 0) continue;
         record.claims.push_back(verdict.claims ? 1.0 : 0.0);
         record.error.push_back(cornerError(verdict.g, sequence.truth().at(frame), sequence.roi()));
-        if (frame > 0) score(sequence, frame, image.size(), verdict, record);
+        for (int cell = 0; cell < 9; ++cell) record.g.push_back(verdict.g(cell / 3, cell % 3));
       }
       image.release();  // some keep it
     }
@@ -164,14 +147,9 @@ void write(JsonWriter& json, const Sequence& sequence, const std::vector<Record>
     json.value("ms_p99", s.ms_p99);
     json.value("cpu_ms_median", s.cpu_ms_median);
     json.value("time_ratio", s.cpu_ms_median / ours);
-    json.value("average_jaccard", record.points.averageJaccard());
-    json.value("average_accuracy", record.points.averageAccuracy());
-    json.value("average_claimed_accuracy", record.points.averageClaimedAccuracy());
-    json.value("alignment_median", s.alignment_median);
-    json.value("precision_5", s.precision_5);
-    json.value("precision_15", s.precision_15);
     json.values("error", record.error);
     json.values("claims", record.claims);
+    json.values("g", record.g);
     json.values("ms", record.ms);
     json.values("cpu_ms", record.cpu_ms);
     json.end();

@@ -1,6 +1,7 @@
 // The same region of the same film, shown at other rates and sizes: whether the tracker's states and places stay alike.
 // Between two images of the film, a rate that needs one gets it by dense flow; sizes are resampled. Each way of showing
 // is compared with the film as it is, at the times that both have, in px of the film.
+#include <algorithm>
 #include <boost/program_options.hpp>
 #include <cmath>
 #include <cstdio>
@@ -31,6 +32,7 @@ struct Place {
   bool tracking = false;
   Eigen::Matrix3d g;          // of the film's px
   double corner_error = 0.0;  // px of the film
+  std::string reason;
 };
 
 struct Track {
@@ -81,9 +83,19 @@ cv::Mat shown(const std::vector<cv::Mat>& film, double position, double size) {
   return result;
 }
 
-Track track(const std::vector<cv::Mat>& film, double film_rate, const geometry::Rectangle& roi,
-            const Showing& showing) {
-  tracking::RegionTracker tracker{tracking::TrackerConfig()};
+// Defaults of the showings other than the film as it is, times these.
+struct Factors {
+  double limits = 1.0;  // quality/max_corner_error and quality/max_centre_error
+  double budget = 1.0;  // search/budget
+};
+
+Track track(const std::vector<cv::Mat>& film, double film_rate, const geometry::Rectangle& roi, const Showing& showing,
+            const Factors& factors) {
+  tracking::TrackerConfig config;
+  config.quality.max_corner_error *= factors.limits;
+  config.quality.max_centre_error *= factors.limits;
+  config.search.budget *= factors.budget;
+  tracking::RegionTracker tracker{config};
   const Eigen::Matrix3d s = sizing(showing.size);
   Track result;
   for (int k = 0; k / showing.rate <= static_cast<double>(film.size()) - 1.0 + 1e-6; ++k) {
@@ -100,26 +112,42 @@ Track track(const std::vector<cv::Mat>& film, double film_rate, const geometry::
       result.first_loss = std::to_string(std::lround(position)) + ": " + found.reason;
     if (std::abs(position - std::round(position)) < 1e-6)
       result.at[static_cast<int>(std::lround(position))] = {tracking, s.inverse() * found.g * s,
-                                                            found.corner_error / showing.size};
+                                                            found.corner_error / showing.size, found.reason};
   }
   return result;
+}
+
+// The reason without its numbers.
+std::string wording(const std::string& reason) {
+  return reason.substr(0, reason.find_first_of("0123456789"));
+}
+
+// The reason that most of the counted images have, and how many.
+std::string mostOften(const std::map<std::string, int>& counts) {
+  const auto most =
+      std::max_element(counts.begin(), counts.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  return most == counts.end() ? "" : std::to_string(most->second) + ": " + most->first;
 }
 
 void compare(const Showing& showing, const Track& track, const Track& usual, const geometry::Rectangle& roi) {
   int common = 0, differ = 0;
   std::vector<double> apart, claims;
+  std::map<std::string, int> why;  // of images that are TRACKING in one of the two only
   for (const auto& [image, place] : track.at) {
     const auto other = usual.at.find(image);
     if (other == usual.at.end()) continue;
     ++common;
-    differ += place.tracking != other->second.tracking;
+    if (place.tracking != other->second.tracking) {
+      ++differ;
+      ++why[wording(place.tracking ? other->second.reason : place.reason)];
+    }
     if (!place.tracking || !other->second.tracking) continue;
     apart.push_back(geometry::cornerDistance(place.g, other->second.g, roi));
     claims.push_back(place.corner_error);
   }
-  std::printf("| %g | %g | %d | %.3f | %d of %d | %.2f | %.2f | %.2f | %s |\n", showing.rate, showing.size,
+  std::printf("| %g | %g | %d | %.3f | %d of %d | %.2f | %.2f | %.2f | %s | %s |\n", showing.rate, showing.size,
               track.images, static_cast<double>(track.tracking) / track.images, differ, common, quantile(apart, 0.5),
-              quantile(apart, 0.95), quantile(claims, 0.5), track.first_loss.c_str());
+              quantile(apart, 0.95), quantile(claims, 0.5), track.first_loss.c_str(), mostOften(why).c_str());
   std::fflush(stdout);
 }
 
@@ -127,15 +155,23 @@ int program(int argc, char** argv) {
   namespace po = boost::program_options;
   std::string name, roi;
   int from = 0, limit = 0;
-  double rate = 25.0;
+  double rate = 25.0, size = 0.0;
+  Factors factors;
   po::options_description options("A film at other rates and sizes. bench_shown [options] FILM");
-  options.add_options()("help", "this text")                                        //
-      ("film", po::value(&name), "video, or folder of images")                      //
-      ("roi", po::value(&roi), "x,y,w,h in its first image, or in that of --from")  //
-      ("from", po::value(&from)->default_value(0), "image, counted from 0")         //
-      ("limit", po::value(&limit)->default_value(150), "so many images, 0: all")    //
-      ("rate", po::value(&rate)->default_value(25.0), "images per second of the film");
-  const auto complete = [&] { return !name.empty() && !roi.empty() && from >= 0 && limit >= 0 && rate > 0.0; };
+  options.add_options()("help", "this text")                                                                    //
+      ("film", po::value(&name), "video, or folder of images")                                                  //
+      ("roi", po::value(&roi), "x,y,w,h in its first image, or in that of --from")                              //
+      ("from", po::value(&from)->default_value(0), "image, counted from 0")                                     //
+      ("limit", po::value(&limit)->default_value(150), "so many images, 0: all")                                //
+      ("rate", po::value(&rate)->default_value(25.0), "images per second of the film")                          //
+      ("size", po::value(&size)->default_value(size), "only this size beside the film's own, 0: all showings")  //
+      ("limits", po::value(&factors.limits)->default_value(1.0),
+       "quality/max_corner_error and max_centre_error times this, in all showings but the film as it is")  //
+      ("budget", po::value(&factors.budget)->default_value(1.0), "search/budget times this, likewise");
+  const auto complete = [&] {
+    return !name.empty() && !roi.empty() && from >= 0 && limit >= 0 && rate > 0.0 && size >= 0.0 &&
+           factors.limits > 0.0 && factors.budget > 0.0;
+  };
   if (const auto status = parse(argc, argv, options, "film", 1, complete)) return *status;
   const geometry::Rectangle region = parseRoi(roi);
   std::vector<cv::Mat> film;
@@ -147,16 +183,18 @@ int program(int argc, char** argv) {
   if (film.size() < 2) throw std::invalid_argument(name + " has too few images, expected two from --from on");
   std::printf(
       "| rate | size | images | TRACKING | states differ | apart, median [px] | 95 %% | claimed, median | first loss: "
-      "image, reason |\n");
-  std::printf("| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
+      "image, reason | most often, where states differ |\n");
+  std::printf("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
   Track usual;
   for (const Showing& showing : kShowings) {
+    const bool as_it_is = usual.images == 0;
+    if (!as_it_is && size > 0.0 && !(showing.size == size && showing.rate == 1.0)) continue;
     try {
-      const Track now = track(film, rate, region, showing);
-      if (usual.images == 0) usual = now;
+      const Track now = track(film, rate, region, showing, as_it_is ? Factors{} : factors);
+      if (as_it_is) usual = now;
       compare(showing, now, usual, region);
     } catch (const std::invalid_argument& refused) {
-      std::printf("| %g | %g | refused: %s | | | | | | |\n", showing.rate, showing.size, refused.what());
+      std::printf("| %g | %g | refused: %s | | | | | | | |\n", showing.rate, showing.size, refused.what());
     }
   }
   return 0;

@@ -1,17 +1,18 @@
 #!/usr/bin/python3
 """How flat the choice of a constant is: what becomes of tracker and controller when each is taken 0.7 and 1.4 times.
 
-Works in a copy of the tree, in which each `constexpr double|float|int k... = NUMBER;` of src/tracking and src/servo asks for its value
-when the program starts. So all variants but a few come of one build: a constant that has to be known when it is compiled (the size
-of an array) is built anew with another number. A count changes by at least one.
+Works in a copy of the tree, in which each `constexpr double|float|int k... = NUMBER;` of src/tracking and src/servo, and each number of a
+`constexpr TYPE k... = {NUMBERS};`, asks for its value when the program starts. So all variants but a few come of one build: a constant
+that has to be known when it is compiled (the size of an array) is built anew with another number. A count changes by at least one.
   tracker     bench_compare on the sequences that are given: images kept, lies, mean error of the worst corner; and bench_film on the regions of
               regions.csv, so many images of each: share that says TRACKING, images that say so in one of the two runs only, and
               how far the worst corner lies from where it is with the numbers as they are (95 %)
   controller  simulate_servo on scenarios, several seeds: settled [s], rest [px], runs held and stopped, and how far a wrong picture
               leads the scope [degrees]
 Prints a row of a table in Markdown for each constant: both results beside those of the numbers as they are. `=` stands for a result that is
-the same to the last digit. An example:
-  bench/sweep.py --work build/sweep --part tracker --sequence FOLDER --data FILMS [--only kFarOff]
+the same to the last digit, `fails` for a program that ends otherwise than with 0. With --csv the rows are kept in a file, and what stands
+there already is not measured again. An example:
+  bench/sweep.py --work build/sweep --part tracker --data FILMS --csv bench/swept_tracker.csv [--only kFarOff]
 """
 import argparse
 import csv
@@ -26,7 +27,8 @@ import sys
 
 import numpy as np
 
-import footage  # beside this file
+import footage  # beside this file, as the next one
+from constants import FOLDER, NUMBER, NUMBERS, numbers_of
 
 TREE = pathlib.Path(__file__).resolve().parent.parent
 COPIED = ["CMakeLists.txt", "package.xml", "nodelet_plugins.xml", "rviz_plugins.xml", "LICENSE", "cmake", "src", "include", "bench",
@@ -35,10 +37,11 @@ FACTORS = (0.7, 1.4)
 SCENARIOS = {  # name: seeds
     "small_start": 5, "large_starts": 20, "breathing_rate_searched": 3, "effect_pulling": 3}
 WRONG = {"effect_rolled_90": 10, "effect_mirrored": 10}
-FOLDER = {"tracker": "src/tracking", "controller": "src/servo"}
-NUMBER = re.compile(r"^( *)constexpr (double|float|int) (k\w+) =\s+([-+.0-9e]+)f?;", re.MULTILINE)
+KEY = ("file", "constant", "is", "times")
 VARIABLE = "LAPAROSCOPE_SERVO_SWEEP"  # of the environment: NAME=VALUE
-ASKED = f'''#include <cstdlib>
+ASKED = f'''#ifndef LAPAROSCOPE_SERVO_SWEPT
+#define LAPAROSCOPE_SERVO_SWEPT
+#include <cstdlib>
 #include <cstring>
 namespace laparoscope_servo {{
 [[maybe_unused]] static double sweptConstant(const char* name, double usual) {{
@@ -47,25 +50,31 @@ namespace laparoscope_servo {{
   return swept && std::strncmp(swept, name, length) == 0 && swept[length] == '=' ? std::atof(swept + length + 1) : usual;
 }}
 }}  // namespace laparoscope_servo
+#endif
 '''
 FIXED = re.compile(r"the value of ‘(?:\w+::|\(anonymous namespace\)::|\{anonymous\}::)*(k\w+)’ is not usable in a constant expression")
+ERROR = re.compile(r"^(/\S+):(\d+):\d+: error: ", re.MULTILINE)
 NEEDED = re.compile(r"‘(?:[\w{}() ]+::)*(k\w+)’ (?:was not initialized with a constant expression|is not)")
+
+
+class Failed(Exception):
+    """A program that ended otherwise than with 0."""
 
 
 def run(command, **options):
     done = subprocess.run([str(part) for part in command], capture_output=True, text=True, **options)
     if done.returncode:
-        sys.exit(f"{' '.join(map(str, command))}: exit {done.returncode}\n{done.stdout[-2000:]}{done.stderr[-2000:]}")
+        raise Failed(f"{' '.join(map(str, command))}: exit {done.returncode}\n{done.stdout[-2000:]}{done.stderr[-2000:]}")
     return done.stdout
 
 
 class Source:
     """A file of the copy, whose numbers ask for their values, but for those that have to be constants."""
 
-    def __init__(self, file, tree):
-        self.file, self.text = file, file.read_text()
-        self.name = str(file.relative_to(tree / "src"))
-        self.numbers = {m[3]: (m[2], m[4]) for m in NUMBER.finditer(self.text)}
+    def __init__(self, original, copy):
+        self.file, self.text = copy, original.read_text()
+        self.name = str(original.relative_to(TREE / "src"))
+        self.numbers = numbers_of(self.text)
         self.fixed = set()
 
     def label(self, constant):
@@ -77,16 +86,20 @@ class Source:
             if constant in self.fixed:
                 return m[0][:m.start(4) - m.start()] + value + m[0][m.end(4) - m.start():] if constant == changed else m[0]
             return f'{indent}static const {kind} {constant} = static_cast<{kind}>(sweptConstant("{self.label(constant)}", {number}));'
-        text = NUMBER.sub(asked, self.text)
+        def each_asked(m):
+            numbers = (f'sweptConstant("{self.label(f"{m[3]}[{k}]")}", {number.strip()})' for k, number in enumerate(m[4].split(",")))
+            return f"{m[1]}static const {m[2]} {m[3]} = {{{', '.join(numbers)}}};"
+        text = NUMBERS.sub(each_asked, NUMBER.sub(asked, self.text))
         first = text.index("\nnamespace ")  # behind what is included
         text = text[:first] + "\n" + ASKED + text[first:]
+        self.file.parent.mkdir(parents=True, exist_ok=True)
         if not self.file.exists() or self.file.read_text() != text:
             self.file.write_text(text)
 
 
 def other(kind, number, factor):
     if kind != "int":
-        return repr(float(number) * factor)
+        return repr(eval(number, {"__builtins__": {}}) * factor)  # an expression of numbers, by the pattern NUMBER
     value = int(number)
     return str(min(value - 1, round(value * factor)) if factor < 1 else max(value + 1, round(value * factor)))
 
@@ -97,6 +110,8 @@ class Tracker:
     def __init__(self, arguments):
         self.sequences = arguments.sequence
         self.regions = footage.read_regions(footage.REGIONS, arguments.data) if arguments.data else []
+        if arguments.film:
+            self.regions = [region for region in self.regions if region.film.stem in arguments.film]
         self.limit = arguments.limit
         self.usual = None
         if not self.sequences and not self.regions:
@@ -155,18 +170,23 @@ class Controller:
 
 class Build:
     def __init__(self, arguments, targets):
-        self.tree, self.folder = arguments.work.resolve() / "tree", arguments.work.resolve() / "build"
+        self.tree = (arguments.tree or arguments.work / "tree").resolve()
+        self.folder = (arguments.build or arguments.work / "build").resolve()
         self.jobs, self.targets = arguments.jobs, targets
+        files = [f for folder in FOLDER.values() for f in sorted((TREE / folder).rglob("*")) if f.suffix in (".h", ".cpp")]
+        self.sources = [s for s in (Source(f, self.tree / f.relative_to(TREE)) for f in files) if s.numbers]
+        swept = {s.file for s in self.sources}
         for name in COPIED:  # also over what an earlier sweep has written
             for file in [TREE / name] if (TREE / name).is_file() else TREE.joinpath(name).rglob("*"):
                 copy = self.tree / file.relative_to(TREE)
-                if file.is_file() and not (copy.exists() and copy.read_bytes() == file.read_bytes()):
+                if file.is_file() and copy not in swept and not (copy.exists() and copy.read_bytes() == file.read_bytes()):
                     copy.parent.mkdir(parents=True, exist_ok=True)
                     shutil.copy(file, copy)
-        run(["cmake", "-S", self.tree, "-B", self.folder, "-DLAPAROSCOPE_SERVO_BENCH=ON", "-DCATKIN_ENABLE_TESTING=OFF",
-             "-DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON", "-DPYTHON_EXECUTABLE=/usr/bin/python3", "-DPython3_EXECUTABLE=/usr/bin/python3"])
-        sources = [Source(f, self.tree) for folder in FOLDER.values() for f in sorted((self.tree / folder).rglob("*.cpp"))]
-        self.sources = [s for s in sources if s.numbers]
+        if not arguments.build:
+            for source in self.sources:
+                source.write()
+            run(["cmake", "-S", self.tree, "-B", self.folder, "-DLAPAROSCOPE_SERVO_BENCH=ON", "-DCATKIN_ENABLE_TESTING=OFF",
+                 "-DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON", "-DPYTHON_EXECUTABLE=/usr/bin/python3", "-DPython3_EXECUTABLE=/usr/bin/python3"])
 
     def make(self):
         """Whether it compiled, and what the compiler said."""
@@ -174,35 +194,79 @@ class Build:
                               env={**os.environ, "LC_ALL": "C.UTF-8"})
         return done.returncode == 0, done.stderr
 
+    @staticmethod
+    def named_where_it_fails(said):
+        """The constants on the lines that the compiler complains of: of another file, as the size of an array."""
+        lines = (pathlib.Path(file).read_text().splitlines()[int(line) - 1] for file, line in set(ERROR.findall(said)))
+        return {name for line in lines for name in re.findall(r"\bk\w+", line)}
+
     def ask(self):
         """Makes every number ask, until only those are fixed without which it does not compile."""
+        known = self.folder / "swept_fixed.txt"  # of an earlier sweep, which saves finding them by compiling
+        names = set(known.read_text().split()) if known.is_file() else set()
+        for source in self.sources:
+            source.fixed = {name for name in source.numbers if source.label(name) in names}
         while True:
             for source in self.sources:
                 source.write()
             compiled, said = self.make()
             if compiled:
+                known.write_text("\n".join(source.label(name) for source in self.sources for name in sorted(source.fixed)))
                 return
             names = set(FIXED.findall(said)) | set(NEEDED.findall(said))
             new = [(s, name) for s in self.sources for name in names & (set(s.numbers) - s.fixed) if f"{s.name}:" in said]
+            new = new or [(s, name) for s in self.sources for name in self.named_where_it_fails(said) & (set(s.numbers) - s.fixed)]
             if not new:
                 sys.exit(f"the copy does not compile:\n{said[-3000:]}")
             for source, name in new:
                 source.fixed.add(name)
 
 
+class Kept:
+    """The file of --csv: rows of (file, constant, is, times) with their results."""
+
+    def __init__(self, file):
+        self.file, self.rows = file, {}
+        if file and file.exists():
+            with file.open() as lines:
+                self.rows = {tuple(row[k] for k in KEY): row for row in csv.DictReader(lines)}
+
+    def has(self, key):
+        return key in self.rows
+
+    def add(self, key, result):
+        self.rows[key] = {**dict(zip(KEY, key)), **result}
+        if not self.file:
+            return
+        columns = [*KEY, *(name for name in result)]
+        with self.file.open("w") as lines:
+            writer = csv.DictWriter(lines, columns, lineterminator="\n", restval="")
+            writer.writeheader()
+            writer.writerows(self.rows.values())
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--work", type=pathlib.Path, required=True, help="folder for the copy of the tree and its build")
+    parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path("build/sweep"), help="folder for the copy of the tree and its build")
+    parser.add_argument("--tree", type=pathlib.Path, help="a copy of the tree that exists; its sources are written over")
+    parser.add_argument("--build", type=pathlib.Path, help="the build of that copy, with the bench; saves building all of it anew")
     parser.add_argument("--part", choices=list(FOLDER), required=True)
     parser.add_argument("--sequence", action="append", default=[], help="folder with frames/, truth.csv, scene.json; may be repeated")
     parser.add_argument("--data", type=pathlib.Path, help="folder of the films of regions.csv")
-    parser.add_argument("--limit", type=int, default=60, help="images of each film")
+    parser.add_argument("--film", action="append", help="only the regions of this film, without its ending; may be repeated")
+    parser.add_argument("--limit", type=int, default=40, help="images of each film")
     parser.add_argument("--only", action="append", help="name of a constant; may be repeated")
+    parser.add_argument("--under", action="append", help="of the part: a folder or a file, as align or align/quality.cpp; may be repeated, in this order")
+    parser.add_argument("--one-build", action="store_true", help="leaves out constants that have to be known when they are compiled")
+    parser.add_argument("--csv", type=pathlib.Path, help="file of rows; those that it has are not measured again")
     parser.add_argument("--jobs", default="2", help="of make")
     arguments = parser.parse_args()
+    if bool(arguments.tree) != bool(arguments.build):
+        parser.error("--tree and --build go together")
     part = {"tracker": Tracker, "controller": Controller}[arguments.part](arguments)
     build = Build(arguments, part.targets)
     build.ask()
+    kept = Kept(arguments.csv)
 
     def measured(swept=""):
         return part.measure(build.folder, build.tree, {**os.environ, VARIABLE: swept, "OMP_NUM_THREADS": "1"})
@@ -211,24 +275,32 @@ def main():
     print("| constant | is | times |", " | ".join(usual), "|")
     print("| --- | --- | --- |", " | ".join("---" for _ in usual), "|")
     print("| as it is | | |", " | ".join(map(str, usual.values())), "|", flush=True)
-    for source in build.sources:
-        if not source.name.startswith(FOLDER[arguments.part].removeprefix("src/")):
-            continue
+    kept.add(("", "as it is", "", ""), usual)
+    part_folder = FOLDER[arguments.part].removeprefix("src/") + "/"
+    wanted = [part_folder + under for under in arguments.under or [""]]
+    for source in [s for under in wanted for s in build.sources if s.name.startswith(under)]:
         for constant, (kind, number) in source.numbers.items():
-            if arguments.only and constant not in arguments.only:
+            if (arguments.only and constant not in arguments.only) or (arguments.one_build and constant in source.fixed):
                 continue
             for factor in FACTORS:
+                key = (source.name, constant, number, str(factor))
+                if kept.has(key):
+                    continue
                 value = other(kind, number, factor)
-                if constant in source.fixed:
-                    source.write(constant, value)
-                    compiled, _ = build.make()
-                    result = measured() if compiled else dict.fromkeys(usual, "does not compile")
-                    source.write()
-                else:
-                    result = measured(f"{source.label(constant)}={value}")
-                cells = ["=" if result[name] == usual[name] else str(result[name]) for name in usual]
-                print(f"| `{source.name}` {constant} | {number} | {factor} |", " | ".join(cells), "|", flush=True)
+                try:
+                    if constant in source.fixed:
+                        source.write(constant, value)
+                        compiled, _ = build.make()
+                        result = measured() if compiled else dict.fromkeys(usual, "does not compile")
+                    else:
+                        result = measured(f"{source.label(constant)}={value}")
+                except Failed:
+                    result = dict.fromkeys(usual, "fails")
+                cells = {name: "=" if result[name] == usual[name] else str(result[name]) for name in usual}
+                kept.add(key, cells)
+                print(f"| `{source.name}` {constant} | {number} | {factor} |", " | ".join(cells.values()), "|", flush=True)
             if constant in source.fixed:
+                source.write()
                 build.make()
 
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from .document import LOST, number
 from .measuring import Job
+from .published import Truth
 
 
 def jobs(a):
@@ -59,17 +60,17 @@ def write(report, a):
                 "is covered and it lies in the image; it is claimed when the tracker says that it tracks, which it says of all points at once. Average Jaccard (TAP-Vid): "
                 "points that are visible, claimed and near, over those that are visible and those wrongly claimed. Average accuracy (TAP-Vid, STIR): the share of visible points that "
                 "are near, whatever is claimed; and with those wrong that are not claimed. Both are means over what is near: 2, 4, 8, 16 and 32 px of the image. "
-                "Alignment error (POT): root mean square of the four corners, and the share of images in which it is under 5 and 15 px. The first image does not count.")
+                "Alignment error (POT): root mean square of the four corners, and the share of images in which it is up to 5 and 15 px. The first image does not count.")
     sequences = json.loads(jobs(a)[0].result.read_text())
     write_summary(report, sequences)
-    for sequence in sequences:
+    for sequence, folder in zip(sequences, a.sequences.values()):
+        truth = Truth(folder)
         report.text(f"### {sequence['sequence']}, {sequence['frames']:.0f} frames")
         report.table(["tracker", "error mean [px]", "p95 [px]", "kept", "lies", "given up", "median [ms]", "p99 [ms]", "p99 / median",
                       "time over ours"],
                      [[t["name"], number(t["error_mean"]), number(t["error_p95"]), f"{t['kept']:.0f}", f"{t['lies']:.0f}",
                        f"{t['silent']:.0f}", number(t["ms_median"]), number(t["ms_p99"]), number(ratio(t["ms_p99"], t["ms_median"]), 1),
                        number(t["time_ratio"], 2)] for t in sequence["trackers"]])
-        report.table(["tracker", "average Jaccard", "average accuracy", "the same, claimed", "alignment error, median [px]", "under 5 px", "under 15 px"],
-                     [[t["name"], number(t["average_jaccard"]), number(t["average_accuracy"]), number(t["average_claimed_accuracy"]),
-                       number(t["alignment_median"]), number(t["precision_5"]), number(t["precision_15"])] for t in sequence["trackers"]])
+        report.table(["tracker", "average Jaccard", "average accuracy", "the same, claimed", "alignment error, median [px]", "up to 5 px", "up to 15 px"],
+                     [[t["name"], *map(number, truth.judge(t).values())] for t in sequence["trackers"]])
         draw(report, sequence)

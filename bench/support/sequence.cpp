@@ -10,15 +10,13 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "bench/support/field_metrics.h"
-
 namespace laparoscope_servo::bench {
 
 namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t kAreas = kAreasAcross * kAreasAcross;
+constexpr std::size_t kAreas = 14 * 14;
 
 // The numbers of each line but the first, which names them; throws unless each has at least `expected`.
 std::vector<std::vector<double>> readTable(const std::string& file, std::size_t expected) {

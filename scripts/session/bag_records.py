@@ -5,6 +5,7 @@ import os
 import struct
 
 MAGIC = b"#ROSBAG V2.0\n"
+NO_BAG = "is no bag of format 2.0"
 OP_MESSAGE, OP_CHUNK, OP_CONNECTION = 2, 5, 7
 LARGEST_HEADER = 1 << 20  # bytes; a connection's has the message's definition in it
 BLOCK = 1 << 15  # bytes, read at once: the messages between two images
@@ -95,7 +96,7 @@ class Bag:
         with open(self.path, "rb") as file:
             source = FileBytes(file)
             if source.at(0, len(MAGIC)) != MAGIC:
-                self.problem = "is no bag of format 2.0"
+                self.problem = NO_BAG
                 return
             try:
                 yield from self._records(source, len(MAGIC), None)

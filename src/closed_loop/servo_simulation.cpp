@@ -23,6 +23,7 @@ servo::Task taskOf(const std::string& name) {
   if (name == "CENTRE_TIP") return servo::Task::kCentreTip;
   if (name == "FOLLOW") return servo::Task::kFollow;
   if (name == "POINTS") return servo::Task::kPoints;
+  if (name == "POSITION") return servo::Task::kPosition;
   if (name == "PARALLEL") return servo::Task::kParallel;
   return servo::Task::kHoldView;
 }

@@ -7,6 +7,7 @@
 
 #include "laparoscope_servo/geometry/se3.h"
 #include "laparoscope_servo/servo/place_error.h"
+#include "laparoscope_servo/servo/position_error.h"
 #include "laparoscope_servo/servo/view_region.h"
 
 namespace laparoscope_servo::closed_loop {
@@ -59,6 +60,9 @@ servo::TaskErrorInput SimulatedPicture::expose(servo::Task task, double time, co
       break;
     case servo::Task::kPoints:
       exposePoints(g, d2, input, noise);
+      break;
+    case servo::Task::kPosition:
+      exposePosition(g, d2, input, noise);
       break;
     case servo::Task::kParallel:
       exposeView(h, input, noise);
@@ -149,6 +153,16 @@ void SimulatedPicture::exposePoints(const Eigen::Matrix3d& g, double d2, servo::
   input.corner_error = config_.camera.fx * seen.stddev;
 }
 
+// The homography of a region by its corners, normalised. The whole view is compared with the anchor by what of it is in
+// the image; a region has to be in it.
+std::optional<Eigen::Matrix3d> SimulatedPicture::measured(const Eigen::Matrix3d& g, const geometry::Rectangle& region,
+                                                          bool whole, double sigma, Noise& noise) const {
+  geometry::Quadrilateral corners = geometry::apply(g, region.corners());
+  if (!(whole ? referenceInView(g) >= kEnoughInView : nearestToBorder(corners) >= 0.0)) return std::nullopt;
+  for (Eigen::Vector2d& corner : corners) corner += noise.draw(sigma);
+  return geometry::normalisedFromPixels(geometry::fromCorners(region.corners(), corners), config_.camera);
+}
+
 // As AnchoredMotion does it: by the reference image where enough of it is in view, otherwise from image to image.
 void SimulatedPicture::exposeView(const Eigen::Matrix3d& h, servo::TaskErrorInput& input, Noise& noise) {
   const geometry::Rectangle region = servo::viewRegion(config_.width, config_.height);
@@ -170,16 +184,23 @@ void SimulatedPicture::exposeView(const Eigen::Matrix3d& h, servo::TaskErrorInpu
   input.valid = true;
 }
 
-// The whole view is compared with the anchor by what of it is in the image; a region has to be in it.
 void SimulatedPicture::exposeRegion(const Eigen::Matrix3d& g, bool whole, servo::TaskErrorInput& input,
                                     Noise& noise) const {
   const geometry::Rectangle region = whole ? servo::viewRegion(config_.width, config_.height) : config_.roi;
-  geometry::Quadrilateral corners = geometry::apply(g, region.corners());
-  if (!(whole ? referenceInView(g) >= kEnoughInView : nearestToBorder(corners) >= 0.0)) return;
-  for (Eigen::Vector2d& corner : corners) corner += noise.draw(input.corner_error);
-  const Eigen::Matrix3d noisy = geometry::fromCorners(region.corners(), corners);
-  input.error = servo::taskError(geometry::normalisedFromPixels(noisy, config_.camera), region, config_.camera);
+  const std::optional<Eigen::Matrix3d> h = measured(g, region, whole, input.corner_error, noise);
+  if (!h) return;
+  input.error = servo::taskError(*h, region, config_.camera);
   input.valid = true;
+}
+
+void SimulatedPicture::exposePosition(const Eigen::Matrix3d& g, double d2, servo::TaskErrorInput& input,
+                                      Noise& noise) const {
+  const std::optional<Eigen::Matrix3d> h = measured(g, config_.roi, false, input.corner_error, noise);
+  if (!h) return;
+  const servo::PositionSeen seen = servo::positionError(*h, normalised(config_.roi.centre()).homogeneous(),
+                                                        {camera_R_shaft_, d2}, control_.features.desired_depth);
+  input.valid = seen.is_known;
+  input.error = seen.error;
 }
 
 }  // namespace laparoscope_servo::closed_loop

@@ -43,7 +43,10 @@ class SimulatedPicture {
   void exposePlace(const Eigen::Matrix3d& g, const Eigen::Vector2d& desired, servo::TaskErrorInput& input,
                    Noise& noise) const;
   void exposePoints(const Eigen::Matrix3d& g, double d2, servo::TaskErrorInput& input, Noise& noise);
+  std::optional<Eigen::Matrix3d> measured(const Eigen::Matrix3d& g, const geometry::Rectangle& region, bool whole,
+                                          double sigma, Noise& noise) const;
   void exposeRegion(const Eigen::Matrix3d& g, bool whole, servo::TaskErrorInput& input, Noise& noise) const;
+  void exposePosition(const Eigen::Matrix3d& g, double d2, servo::TaskErrorInput& input, Noise& noise) const;
 
   SimulationConfig config_;
   servo::ControllerConfig control_;

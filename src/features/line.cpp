@@ -47,6 +47,7 @@ Eigen::Vector2d Line::direction() const {
 // length.
 void Line::sites(double spacing, int most, std::vector<Site>& result) const {
   result.clear();
+  if (!std::isfinite(begin_) || !std::isfinite(end_)) return;  // before the casts
   const double half = 0.5 * (end_ - begin_), middle = 0.5 * (begin_ + end_);
   const int stride = std::max(1, static_cast<int>(std::ceil((end_ - begin_) / spacing / most)));
   const int lowest = -(kSlots / 2 - 1), highest = kSlots / 2 - 1;

@@ -29,11 +29,12 @@ cv::Mat1b reducedGrey(const cv::Mat& image, const cv::Rect& area, int level) {
 
 }  // namespace
 
-// By the direction modulo 180 degrees.
+// By the direction modulo 180 degrees. Any bin for one that is not finite: nothing lies at its place.
 int EdgeField::bin(const Eigen::Vector2d& normal) {
   double angle = std::atan2(normal.y(), normal.x());
   if (angle < 0.0) angle += M_PI;
-  return static_cast<int>(angle / M_PI * kBins) % kBins;
+  const double at = angle / M_PI * kBins;
+  return at < kBins ? static_cast<int>(at) : 0;
 }
 
 Eigen::Vector2d EdgeField::toField(const Eigen::Vector2d& pixel) const {

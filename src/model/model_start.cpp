@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "model/pose_search.h"
+
 namespace laparoscope_servo::model {
 
 namespace {
@@ -27,7 +29,9 @@ StartResult ModelStart::find(const cv::Mat& image, Outline& outline, features::E
   StartResult result;
   result.report.reason = features::Reason::kNotSeen;
   const PoseRange range{config_.start_rotation * M_PI / 180.0, config_.start_shift};
-  const std::vector<PoseCandidate> candidates = search_.find(image, outline, range, config_.edges.min_contrast, kTried);
+  // Its fields are as large as the model in the image, 30 MB at 1920x1080: they end with the start.
+  PoseSearch search;
+  const std::vector<PoseCandidate> candidates = search.find(image, outline, range, config_.edges.min_contrast, kTried);
   Outline best = outline;
   Occluders occluders(outline.model());
   for (const PoseCandidate& candidate : candidates) {

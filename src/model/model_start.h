@@ -7,7 +7,6 @@
 #include "laparoscope_servo/features/edge_fit.h"
 #include "laparoscope_servo/model/model_config.h"
 #include "model/outline.h"
-#include "model/pose_search.h"
 
 namespace laparoscope_servo::model {
 
@@ -26,7 +25,6 @@ class ModelStart {
 
  private:
   ModelConfig config_;
-  PoseSearch search_;
 };
 
 }  // namespace laparoscope_servo::model

@@ -44,7 +44,6 @@ class ModelTracker::Implementation {
         camera_(camera),
         config_(checked(config)),
         fit_(config_.edges),
-        start_(config_),
         keeper_(config_.edges.state) {
     if (model_ == nullptr) throw std::invalid_argument("no model, expected one");
     if (!camera_.error().empty()) throw std::invalid_argument(camera_.error());
@@ -59,7 +58,7 @@ class ModelTracker::Implementation {
                                   " m, expected it in front of the camera");
     }
     features::EdgeFit fit(config_.edges);
-    const StartResult start = start_.find(image, found, fit);
+    const StartResult start = ModelStart(config_).find(image, found, fit);
     if (start.report.reason != Reason::kNone) refuse(start);
     fit_ = std::move(fit);
     home_ = last_ = found.pose();
@@ -220,7 +219,6 @@ class ModelTracker::Implementation {
   geometry::PinholeCamera camera_;
   ModelConfig config_;
   features::EdgeFit fit_;
-  ModelStart start_;
   features::StateKeeper keeper_;
   Outline expected_, now_;
   Eigen::Isometry3d home_ = Eigen::Isometry3d::Identity();  // where it was seen last, moved on by what knows the motion

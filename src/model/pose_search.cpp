@@ -47,6 +47,7 @@ std::vector<PoseCandidate> PoseSearch::find(const cv::Mat& image, const Outline&
                                             double min_contrast, std::size_t most) {
   const double radius = radiusInImage(outline);
   const Eigen::Vector2d centre = project(outline.camera(), outline.centre());
+  if (!(radius > 0.0) || !std::isfinite(radius) || !centre.allFinite()) return {};  // before the casts
   const int level = std::clamp(static_cast<int>(std::lround(std::log2(radius / kCoarseRadius))), 1, 5);
   const double reach = (kGrowth + 0.1 + range.shift) * radius;
   const cv::Rect area(

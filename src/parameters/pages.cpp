@@ -111,24 +111,6 @@ std::size_t columnOf(const Table& table, const std::string& top) {
   return widest + 2;
 }
 
-std::string typeText(const Row& row) {
-  switch (row.kind) {
-    case Row::Kind::kFlag:
-      return "bool";
-    case Row::Kind::kInteger:
-      return "int";
-    case Row::Kind::kNumber:
-      return "double";
-    case Row::Kind::kText:
-      return "string";
-    case Row::Kind::kNumbers:
-      return row.size > 0 ? std::to_string(row.size) + " doubles" : "list of doubles";
-    case Row::Kind::kTexts:
-      return "list of strings";
-  }
-  return "";
-}
-
 std::string markdownDefault(const Row& row) {
   if (!row.example.empty()) return row.is_required ? "required" : "none";
   const Value value = row.get();
@@ -148,6 +130,24 @@ std::string markdownDefault(const Row& row) {
 }
 
 }  // namespace
+
+std::string typeText(const Row& row) {
+  switch (row.kind) {
+    case Row::Kind::kFlag:
+      return "bool";
+    case Row::Kind::kInteger:
+      return "int";
+    case Row::Kind::kNumber:
+      return "double";
+    case Row::Kind::kText:
+      return "string";
+    case Row::Kind::kNumbers:
+      return row.size > 0 ? std::to_string(row.size) + " doubles" : "list of doubles";
+    case Row::Kind::kTexts:
+      return "list of strings";
+  }
+  return "";
+}
 
 std::string yamlText(const Value& value) {
   if (const auto* number = std::get_if<double>(&value)) return yamlNumber(*number);

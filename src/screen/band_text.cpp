@@ -2,6 +2,7 @@
 
 #include <laparoscope_servo/Homography.h>
 #include <laparoscope_servo/TrackedFeatures.h>
+#include <laparoscope_servo/TrackerState.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +10,7 @@
 
 #include "ros/playback/corners_apart.h"
 #include "ros/reasons/reason_table.h"
+#include "screen/picture_words.h"
 #include "screen/task_words.h"
 
 namespace laparoscope_servo::screen {
@@ -16,10 +18,21 @@ namespace laparoscope_servo::screen {
 namespace {
 
 // s without a message after which a connected node counts as hung. The tracker publishes its state once a second, the
-// others their states or commands at least ten times a second.
+// trackers of features a result for each image, the others their states or commands at least ten times a second.
 constexpr double kTrackerSilence = 2.5;
-constexpr double kSilence = 1.0;
+constexpr double kFeatureSilence = 1.0;
+constexpr double kSilence = 0.5;
 constexpr double kTrackerPatience = 1.0;  // s without an image, after which the tracker says NO_IMAGE
+
+std::string percent(double share) {
+  return std::isfinite(share) ? std::to_string(std::lround(100.0 * share)) + " %" : "?";
+}
+
+std::string seconds(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, value < 9.95 ? "%.1f s" : "%.0f s", std::min(value, 1e6));
+  return text;
+}
 
 // Text for a node from which no message has come yet, or that is silent; empty if it publishes.
 BandText absence(const Facts& facts, const std::string& who, bool connected, double heard_at, double patience,
@@ -30,8 +43,8 @@ BandText absence(const Facts& facts, const std::string& who, bool connected, dou
   if (!connected) return {"GONE", "The " + who + " has ended.", "Start it again.", "", Level::kBad};
   if (heard_at < 0.0) return {"WAITING", "The " + who + " has not spoken yet.", "Wait.", "", {}};
   if (!(now - heard_at <= patience))
-    return {"SILENT", "The " + who + " does not speak any more.", "Look at its terminal; start it again.", "",
-            Level::kBad};
+    return {"SILENT", "The " + who + " has said nothing for " + seconds(now - heard_at) + ".",
+            "Look at its terminal; start it again.", "", Level::kBad};
   return {};
 }
 
@@ -54,18 +67,8 @@ std::string besideRecorded(const Facts& facts) {
   return text;
 }
 
-std::string percent(double share) {
-  return std::isfinite(share) ? std::to_string(std::lround(100.0 * share)) + " %" : "?";
-}
-
-std::string seconds(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g s", value);
-  return text;
-}
-
-// No camera has failed where a recording does not play, or plays more slowly than the tracker waits for an image. Empty
-// while it plays, and without one.
+// No camera has failed where a recording does not play, cannot be read, or plays more slowly than the tracker waits for
+// an image. Empty while it plays, and without one.
 BandText standingRecording(const PlaybackFacts& playback) {
   if (!playback.connected) return {};
   if (playback.state == "ENDED")
@@ -79,8 +82,25 @@ BandText standingRecording(const PlaybackFacts& playback) {
   if (playback.state == "PLAYING" && playback.period > kTrackerPatience)
     return {"PLAYS", "The recording plays slowly: one picture in " + seconds(playback.period) + ".", "Wait.", "",
             Level::kResting};
+  if (playback.state == "FAILED") {
+    BandText failed{"UNREADABLE", "", "", "", Level::kBad};
+    explainTo(failed, Speaker::kPlayer, playback.reason);
+    return failed;
+  }
   if (playback.state == "WAITING") return {"WAITING", "The recording has not begun yet.", "Wait.", "", Level::kResting};
   return {};
+}
+
+// The tracker publishes its state once a second only, and says that no image comes after a second: what it said last of
+// the pictures is true only while results come. Empty while they do.
+BandText staleness(const Facts& facts, double now) {
+  const TrackerFacts& tracker = facts.tracker;
+  const bool of_pictures = tracker.state != TrackerState::NO_IMAGE && tracker.state != TrackerState::NOT_STARTED;
+  const double age = now - tracker.result_at;
+  if (!of_pictures || tracker.result_at < 0.0 || age <= oldestLive(facts.playback)) return {};
+  if (BandText recording = standingRecording(facts.playback); !recording.word.empty()) return recording;
+  return {"NO RESULT", "No picture has been looked at for " + seconds(age) + ". Before: " + tracker.state + ".",
+          "Wait a moment: it will be said whether camera or tracker have stopped.", tracker.reason, Level::kWaiting};
 }
 
 // Of the feature that is known worst.
@@ -108,13 +128,14 @@ BandText trackerBand(const Facts& facts, double now) {
   const TrackerFacts& tracker = facts.tracker;
   BandText band = absence(facts, "tracker", tracker.connected, tracker.heard_at, kTrackerSilence, now);
   if (!band.word.empty()) return band;
+  if (BandText stale = staleness(facts, now); !stale.word.empty()) return stale;
   band.word = tracker.state;
   for (char& letter : band.word) letter = letter == '_' ? ' ' : letter;
   explainTo(band, Speaker::kTracker, tracker.reason);
   band.level = Level::kBad;
   if (tracker.state == "NO_IMAGE" && tracker.reason.find("image refused: ") == std::string::npos) {
     BandText recording = standingRecording(facts.playback);
-    recording.detail = tracker.reason;
+    if (recording.detail.empty()) recording.detail = tracker.reason;
     if (!recording.word.empty()) return recording;
   }
   if (tracker.state == "IDLE") band.level = Level::kResting;
@@ -134,10 +155,10 @@ BandText trackerBand(const Facts& facts, double now) {
 }
 
 BandText featureBand(const Facts& facts, const FeatureTrackerFacts& tracker, double now) {
-  BandText band = absence(facts, "tracker " + tracker.name, tracker.connected, tracker.heard_at, kTrackerSilence, now);
+  BandText band = absence(facts, "tracker " + tracker.name, tracker.connected, tracker.heard_at, kFeatureSilence, now);
   if (band.word == "SILENT") {
     if (const BandText recording = standingRecording(facts.playback); !recording.word.empty()) return recording;
-    band.sentence = "It has said nothing for " + std::to_string(std::lround(now - tracker.heard_at)) + " s.";
+    band.sentence = "It has said nothing for " + seconds(now - tracker.heard_at) + ".";
     band.cure = "Does the camera send? If so, look at the tracker's terminal.";
   }
   if (!band.word.empty()) return band;

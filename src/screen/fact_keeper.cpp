@@ -95,6 +95,7 @@ void FactKeeper::take(const Homography& homography, double delay, double now) {
   const auto ofRegion = [region](double value) { return region ? value : std::numeric_limits<double>::quiet_NaN(); };
   history_.add(now, homography.state == Homography::TRACKING, ofRegion(homography.zncc),
                ofRegion(homography.corner_error), ofRegion(homography.visible_fraction), delay);
+  facts_.tracker.result_at = now;
   keep(results_, result);
   if (result.stamp == facts_.picture.stamp) match();
 }

@@ -22,7 +22,8 @@ constexpr double kNever = -1.0;
 struct TrackerFacts {
   bool connected = false;
   double heard_at = kNever;
-  std::string state;  // of TrackerState
+  double result_at = kNever;  // of its newest result: one comes for each image
+  std::string state;          // of TrackerState
   std::string reason;
   std::string view;
   int width = 0;  // px, of the images; 0: not known
@@ -115,6 +116,7 @@ struct Frozen {
 struct PlaybackFacts {
   bool connected = false;
   std::string state;      // of PlaybackState
+  std::string reason;     // why it is FAILED
   double position = 0.0;  // s
   double duration = 0.0;  // s; 0: not known
   double period = 0.0;    // s from one picture to the next; 0: not known

@@ -5,7 +5,7 @@
 namespace laparoscope_servo::screen {
 
 // s. The two events of a pair are sent together; a hand that releases and presses again takes longer.
-constexpr double kRepeatGap = 0.03;
+constexpr double kRepeatGap = 0.02;
 
 class KeyHold {
  public:

@@ -4,17 +4,13 @@
 #include <cmath>
 #include <cstdio>
 
+#include "ros/reasons/reason_table.h"
+
 namespace laparoscope_servo::screen {
 
 namespace {
 
 constexpr double kPatience = 2.5;  // periods of a recording: one picture may be late, or repeat
-
-// s, above which a picture is not live.
-double oldestOf(const PlaybackFacts& playback) {
-  const bool slow = playback.connected && std::isfinite(playback.period);
-  return slow ? std::max(kOldest, kPatience * playback.period) : kOldest;
-}
 
 std::string seconds(double value) {
   char text[32];
@@ -24,7 +20,16 @@ std::string seconds(double value) {
 
 }  // namespace
 
+double oldestLive(const PlaybackFacts& playback) {
+  const bool slow = playback.connected && std::isfinite(playback.period);
+  return slow ? std::max(kOldest, kPatience * playback.period) : kOldest;
+}
+
 PictureWords pictureWords(const Picture& picture, double now, const PlaybackFacts& playback) {
+  if (playback.connected && playback.state == "FAILED") {
+    const ReasonRow* row = explain(Speaker::kPlayer, playback.reason);
+    return {false, "UNREADABLE", row != nullptr ? row->sentence : playback.reason};
+  }
   if (picture.image.isNull() || picture.arrived_at < 0.0)
     return {false, "NO PICTURE", "The tracker has sent none yet."};
   const std::string state = playback.connected ? playback.state : "";
@@ -32,7 +37,7 @@ PictureWords pictureWords(const Picture& picture, double now, const PlaybackFact
   // The player is paused on purpose, which the bar below shows.
   if (state == "HOLDING" || state == "PAUSED") return {true, "", ""};
   const double age = now - picture.arrived_at + std::max(0.0, picture.age_at_arrival);
-  const double oldest = oldestOf(playback);
+  const double oldest = oldestLive(playback);
   if (!(age <= oldest)) return {false, "NOT LIVE", "This picture is " + seconds(age) + " old."};
   const double still = picture.arrived_at - picture.changed_at;
   if (!(still <= oldest)) return {false, "STANDS STILL", "The same picture comes again for " + seconds(still) + "."};

@@ -15,6 +15,9 @@ struct PictureWords {
   std::string detail;  // below them
 };
 
+// s, above which a picture, or what is said of one, is not live. A recording that plays slowly has older ones.
+double oldestLive(const PlaybackFacts& playback);
+
 // `playback`: a recording that plays slowly has older pictures that are live.
 PictureWords pictureWords(const Picture& picture, double now, const PlaybackFacts& playback = {});
 

@@ -27,7 +27,10 @@ PlaybackBar::PlaybackBar(const Control& control, QWidget* parent) : QWidget(pare
   auto* row = new QHBoxLayout(this);
   row->setContentsMargins(0, 0, 0, 0);
   play_ = makeButton("Play", "Plays on, or pauses; from the beginning when it has ended", [this] {
-    control_(facts_.state == "PLAYING" ? "PAUSE" : facts_.state == "ENDED" ? "AGAIN" : "PLAY", 0.0);
+    control_(facts_.state == "PLAYING"                             ? "PAUSE"
+             : facts_.state == "ENDED" || facts_.state == "FAILED" ? "AGAIN"
+                                                                   : "PLAY",
+             0.0);
   });
   row->addWidget(play_);
   row->addWidget(makeButton("Step", "One picture", [this] { control_("STEP", 0.0); }));

@@ -143,6 +143,7 @@ std::unique_ptr<RosLink::Connection> RosLink::connect() {
   made->playback = listen<PlaybackState>(node, "player/state", 5, [this](const PlaybackState& message) {
     keeper_.change([&](Facts& facts) {
       facts.playback.state = message.state;
+      facts.playback.reason = message.reason;
       facts.playback.position = message.position;
       facts.playback.duration = message.duration;
       facts.playback.period = message.period;
@@ -173,6 +174,7 @@ void RosLink::look(Connection& connection) {
   const double now = steadyNow();
   keeper_.change([&](Facts& facts) {
     setConnected(facts.tracker, tracker, now);
+    if (facts.tracker.heard_at < 0.0) facts.tracker.result_at = kNever;
     setConnected(facts.controller, controller, now);
     setConnected(facts.robot, robot, now);
     facts.dead_man_wanted = dead_man;

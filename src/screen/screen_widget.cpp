@@ -10,6 +10,7 @@
 #include <QVBoxLayout>
 
 #include "ros/common/clocks.h"
+#include "ros/controller/controller_conversions.h"
 #include "ros/reasons/reason_table.h"
 #include "screen/action_bar.h"
 #include "screen/band_text.h"
@@ -48,9 +49,9 @@ const char* const kStyle = R"(
 
 // What to do about a refusal; with a space in front. Empty if it is not known.
 QString cureOf(const std::string& refusal) {
-  static const std::string kRefused = "not engaged: ";
-  if (refusal.compare(0, kRefused.size(), kRefused) != 0) return {};
-  const ReasonRow* row = explain(Speaker::kController, refusal.substr(kRefused.size()));
+  const std::string refused = kNotEngaged;
+  if (refusal.compare(0, refused.size(), refused) != 0) return {};
+  const ReasonRow* row = explain(Speaker::kController, refusal.substr(refused.size()));
   return row == nullptr ? QString() : " " + QString::fromStdString(row->cure);
 }
 

@@ -14,7 +14,8 @@ constexpr double kSymbol = 13.0;  // px, radius
 constexpr int kWordSize = 56;     // px, size of the font; its capitals are 41 px high
 constexpr int kWordTop = 14;      // px, from the top of the band to the word's line
 constexpr int kWordHeight = 56;
-constexpr int kTextSize = 13;      // px of the font
+constexpr int kMargin = 6;     // px, beside a long word: condensed letters are up to a pixel wider than their measure
+constexpr int kTextSize = 13;  // px of the font
 constexpr int kSmallestText = 10;  // px of the font, of a text that is too long otherwise
 constexpr int kLine = 16;          // px
 
@@ -69,7 +70,7 @@ void StateBand::paintEvent(QPaintEvent*) {
   const QString word = QString::fromStdString(text_.word);
   // A long word is condensed horizontally, but keeps its height.
   const int natural = QFontMetrics(font).horizontalAdvance(word);
-  if (natural > width) font.setStretch(std::max(40, 100 * width / natural));
+  if (natural > width - kMargin) font.setStretch(std::max(40, 100 * (width - kMargin) / natural));
   painter.setFont(font);
   painter.setPen(kText);
   painter.drawText(QRect(left, kWordTop, width, kWordHeight), Qt::AlignLeft | Qt::AlignVCenter, word);

@@ -18,6 +18,8 @@ const std::vector<TaskWords>& taskWords() {
        "the node motion and a calibrated camera.", "The scope follows the object."},
       {"POINTS", "Bring points", "the scope brings the selected points to their places.",
        "the node points and a calibrated camera.", "The scope brings the points to their places."},
+      {"POSITION", "Bring back", "the scope brings the region back by its homography.",
+       "a tracked region and a calibrated camera.", "The scope brings the region back."},
       {"PARALLEL", "Face tissue", "the scope circles; engaged again, it turns to face the tissue.",
        "the node motion, tf and a calibrated camera.", "The scope turns to face the tissue."}};
   return all;

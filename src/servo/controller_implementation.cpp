@@ -82,7 +82,7 @@ SafetyFacts Controller::Implementation::facts(const ControllerInput& input) cons
 EffectFacts Controller::Implementation::effectFacts() const {
   if (!opposed_.words().empty()) return {Effect::kWrong, opposed_.words()};
   if (task_ == Task::kManual) return {};  // what the picture shows does not count
-  if (effect_.effect() == Effect::kAsCommanded && effect_.budget().spent() >= kUsedUp)
+  if (effect_.effect() == Effect::kAsCommanded && !(effect_.budget().spent() < kUsedUp))
     return {Effect::kDoubted, "the picture has not yet shown what the motion of the scope does"};
   return {effect_.effect(), effect_.words()};
 }
@@ -231,7 +231,7 @@ ServoLimits Controller::Implementation::limits(const SafetyOutput& safety, doubl
   // Without commanded pan or tilt there is no effect of theirs to verify.
   if (told_.head<2>().isZero(0.0)) return limits;
   const double left = std::clamp((1.0 - effect_.budget().aside()) / (1.0 - kSlowerAside), kSlowest, 1.0);
-  if (!(left < 1.0)) return limits;
+  if (left >= 1.0) return limits;
   const double step = has_time_ ? std::min(time - last_time_, config_.safety.max_period) : 0.0;
   const Eigen::Vector4d slowed = told_.cwiseAbs() - step * config_.limits.acceleration.vector();
   limits.spin = std::max(slowed[2], left * config_.limits.velocity.spin);

@@ -26,6 +26,8 @@ const TaskErrorInput& ControllerInput::seenBy(Task task) const {
       return object;
     case Task::kPoints:
       return points;
+    case Task::kPosition:
+      return position;
     case Task::kHoldView:
     case Task::kManual:
       break;

@@ -34,8 +34,8 @@ ServoUse following() {
   return use;
 }
 
-// The paper's law is one of a plane's homography, which points have none of.
-ServoUse bringingPoints(const ControllerConfig& config) {
+// Their error is that of a displacement of the scope; the paper's law is one of the numbers of a homography.
+ServoUse byDisplacement(const ControllerConfig& config) {
   ServoUse use;
   use.spin = config.spin;
   return use;
@@ -62,7 +62,7 @@ ServoUse servoUse(Task task, const ControllerConfig& config) {
   if (task == Task::kStabilise) return stabilising(config);
   if (task == Task::kCentreTip) return centringTip(config);
   if (task == Task::kFollow) return following();
-  if (task == Task::kPoints) return bringingPoints(config);
+  if (task == Task::kPoints || task == Task::kPosition) return byDisplacement(config);
   if (task == Task::kParallel) return turningParallel(config);
   ServoUse use;
   use.law = config.law;

@@ -68,6 +68,10 @@ options::options_description describeOptions(Command& command, bool features) {
     add("select", options::bool_switch(&command.draw),
         "the region is drawn in a window that shows the first image; with another tracker --select FILE.yaml: the file "
         "with the features");
+    add("resume", options::value(&command.offline.source.resume),
+        "s of the input: after the first image, in which the region is selected, those before this time are skipped, "
+        "and "
+        "the region is searched for from there on");
     add("instruments", options::value<int>()->implicit_value(0)->notifier([&](int late) { command.late_masks = late; }),
         "instruments are found, too, and the region tracker is told what they cover; =N: N images late, as between "
         "nodes, 0 unless said otherwise");

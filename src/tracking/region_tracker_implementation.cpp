@@ -40,8 +40,9 @@ double RegionTracker::Implementation::setReference(const cv::Mat& image, double 
   checkStamp(stamp);
   // Everything is built aside, so that a ROI that is refused leaves the tracker as it was.
   Implementation fresh(config_, lens_);
-  const double error = takeReference(image, wanted, mask, config_, lens_.get(), fresh.aligner_);
-  fresh.search_.setReference(image, fresh.aligner_);
+  const double error = takeReference(image, wanted, mask, config_, lens_.get(), fresh.aligners_.usual());
+  fresh.aligners_.setBright(image);
+  fresh.search_.setReference(image, fresh.aligners_.usual());
   fresh.image_size_ = image.size();
   fresh.reference_stamp_ = stamp;
   *this = std::move(fresh);
@@ -51,8 +52,8 @@ double RegionTracker::Implementation::setReference(const cv::Mat& image, double 
 TrackResult RegionTracker::Implementation::select(const cv::Mat& image, double stamp, const geometry::Rectangle& wanted,
                                                   const cv::Mat& mask) {
   const double error = setReference(image, stamp, wanted, mask);
-  const geometry::Rectangle& roi = aligner_.roi();
-  history_.start(roi, aligner_.esm().normalisation(), stamp);
+  const geometry::Rectangle& roi = aligners_.usual().roi();
+  history_.start(roi, aligners_.usual().esm().normalisation(), stamp);
   state_ = State::kTracking;
   last_stamp_ = stamp;
 
@@ -61,7 +62,7 @@ TrackResult RegionTracker::Implementation::select(const cv::Mat& image, double s
   attempt.evidence.esm.status = EsmStatus::kConverged;
   attempt.evidence.esm.corner_error = attempt.evidence.corner_error = error;
   attempt.evidence.centre_error = error;  // it is not known worse than the worst corner
-  const cv::Mat1f weights = aligner_.weights();
+  const cv::Mat1f weights = aligners_.now().weights();
   attempt.evidence.visible_fraction = cv::sum(weights)[0] / weights.cols / weights.rows;
   attempt.evidence.zncc = 1.0;
   TrackResult result = report(attempt);
@@ -73,7 +74,7 @@ void RegionTracker::Implementation::recall(const cv::Mat& reference, double refe
                                            const geometry::Rectangle& wanted, double now) {
   checkStamp(now);
   setReference(reference, reference_stamp, wanted);
-  history_.startUnseen(aligner_.roi(), aligner_.esm().normalisation(), reference_stamp, now);
+  history_.startUnseen(aligners_.usual().roi(), aligners_.usual().esm().normalisation(), reference_stamp, now);
   state_ = State::kSearching;
   last_stamp_ = now;
   search_.restart();
@@ -99,11 +100,14 @@ const TrackResult& RegionTracker::Implementation::track(const cv::Mat& image, do
   MotionPrior prior = history_.predict(stamp, carried_);
   field_.look(image);
   const bool deep = state_ == State::kTracking && field_.contains(seenBox(prior.predicted));
-  aligner_.setMask(deep ? mask : field_.joined(mask));
+  aligners_.setMask(deep ? mask : field_.joined(mask));
   const Attempt best = state_ == State::kTracking ? follow(image, stamp, prior) : search(image, stamp);
   decide(best, prior, stamp);
-  if (state_ == State::kTracking) search_.keepKeyframe(image, stamp, best.evidence, history_.last().g, aligner_);
-  aligner_.advance();
+  if (state_ == State::kTracking) {
+    aligners_.remember(history_.last());
+    search_.keepKeyframe(image, stamp, best.evidence, history_.last().g, aligners_.now());
+  }
+  aligners_.advance();
   last_stamp_ = stamp;
   return report(best);
 }
@@ -120,7 +124,7 @@ std::string RegionTracker::Implementation::whyAnotherSequence(const cv::Mat& ima
 }
 
 cv::Rect RegionTracker::Implementation::seenBox(const Eigen::Matrix3d& g) const {
-  const geometry::Rectangle& roi = aligner_.roi();
+  const geometry::Rectangle& roi = aligners_.usual().roi();
   return image::seenBox(lens_.get(), geometry::apply(g, roi.corners()), kLeastReach * lengthUnit(roi));
 }
 
@@ -129,21 +133,23 @@ std::optional<Eigen::Matrix3d> RegionTracker::Implementation::carriedBy(
     const std::optional<Eigen::Matrix3d>& motion) const {
   if (!motion || !motion->allFinite() || !(motion->determinant() > 1e-12)) return std::nullopt;
   const Eigen::Matrix3d g = geometry::normaliseDeterminant(*motion * history_.last().g);
-  const geometry::Quadrilateral corners = geometry::apply(g, aligner_.roi().corners());
-  const double ratio = geometry::signedArea(corners) / geometry::signedArea(aligner_.roi().corners());
+  const geometry::Quadrilateral corners = geometry::apply(g, aligners_.usual().roi().corners());
+  const double ratio = geometry::signedArea(corners) / geometry::signedArea(aligners_.usual().roi().corners());
   const bool possible = geometry::isConvex(corners) && std::max(ratio, 1.0 / ratio) <= config_.quality.max_area_ratio;
   return possible ? std::optional<Eigen::Matrix3d>(g) : std::nullopt;
 }
 
-// One attempt from the prediction. If it was that of an ego-motion and no estimate was accepted, retries without the
-// ego-motion, discards the results of its gates, and leaves the prior that was used.
+// One attempt from the prediction; if it is not accepted, another one with the colours that are left in bright light.
+// If the prediction was that of an ego-motion and no estimate was accepted, retries without the ego-motion, discards
+// the results of its gates, and leaves the prior that was used.
 Attempt RegionTracker::Implementation::follow(const cv::Mat& image, double stamp, MotionPrior& prior) {
   EsmState start = history_.last();
   start.g = prior.predicted;
   Attempt first = attempt(image, stamp, start, &prior);
+  if (!first.doubt.empty() && aligners_.turnBright(image, start.g)) first = attempt(image, stamp, start, &prior);
   if (!carried_ || first.doubt.empty()) return first;
   carried_.reset();
-  aligner_.startAfresh();
+  aligners_.startAfresh();
   prior = history_.predict(stamp, carried_);
   start.g = prior.predicted;
   return attempt(image, stamp, start, &prior);
@@ -152,18 +158,20 @@ Attempt RegionTracker::Implementation::follow(const cv::Mat& image, double stamp
 // With a prior when the ROI was tracked until the image before; without when it is searched for.
 Attempt RegionTracker::Implementation::attempt(const cv::Mat& image, double stamp, const EsmState& start,
                                                const MotionPrior* prior, bool confirming) {
-  const geometry::Rectangle& roi = aligner_.roi();
+  const geometry::Rectangle& roi = aligners_.usual().roi();
   const double reach = prior != nullptr
                            ? std::max(kLeastReach * lengthUnit(roi), kReach * history_.record().innovation())
                            : std::max(32.0, kSearchReach * std::max(roi.width, roi.height));
-  const Alignment found = aligner_.align(image, start, prior, reach);
+  if (prior == nullptr) aligners_.turnBright(image, start.g);
+  const EsmState lit = aligners_.choose(image, start);
+  const Alignment found = aligners_.now().align(image, lit, prior, reach);
   Attempt result;
   Evidence& e = result.evidence;
   e.roi = roi;
   e.predicted = start.g;
   e.from_track = prior != nullptr;
   e.confirming = confirming;
-  e.light_gain = aligner_.gates().lightGain();
+  e.light_gain = aligners_.now().gates().lightGain();
   e.esm = found.esm;
   e.visible_fraction = found.visible_fraction;
   e.in_image = found.share_in_image;
@@ -178,10 +186,10 @@ Attempt RegionTracker::Implementation::attempt(const cv::Mat& image, double stam
 
 Attempt RegionTracker::Implementation::search(const cv::Mat& image, double stamp) {
   search_.begin(history_.last(), carried_, confirmation_.awaited());
-  while (const std::optional<SearchPlace> place = search_.next(image, aligner_)) {
-    aligner_.startAfresh();
+  while (const std::optional<SearchPlace> place = search_.next(image, aligners_.usual())) {
+    aligners_.startAfresh();
     const bool confirming = place->by == Suggestion::kConfirmation;
-    if (search_.judge(attempt(image, stamp, place->start, nullptr, confirming), aligner_)) break;
+    if (search_.judge(attempt(image, stamp, place->start, nullptr, confirming), aligners_.now())) break;
   }
   if (search_.suggestedBy() != Suggestion::kCarried) carried_.reset();
   return search_.best();
@@ -201,7 +209,7 @@ void RegionTracker::Implementation::decide(const Attempt& best, const MotionPrio
   if (state_ == State::kTracking) {
     history_.addTracked(best.evidence, prior, stamp, carried_);
   } else {
-    if (!confirmation_.add(best.evidence.esm, aligner_.roi(), history_.record())) return;
+    if (!confirmation_.add(best.evidence.esm, aligners_.usual().roi(), history_.record())) return;
     state_ = State::kTracking;
     history_.addFoundAgain(best.evidence, stamp);
   }
@@ -221,7 +229,7 @@ const TrackResult& RegionTracker::Implementation::report(const Attempt& attempt)
   result.reason = attempt.doubt;
   if (state_ != State::kTracking && attempt.doubt.empty()) result.reason = "found, waits for confirmation";
   result.g = shown();
-  result.roi = aligner_.roi();
+  result.roi = aligners_.usual().roi();
   result.reference_stamp = reference_stamp_;
   result.visible_fraction = e.visible_fraction;
   result.zncc = e.zncc;
@@ -233,8 +241,8 @@ const TrackResult& RegionTracker::Implementation::report(const Attempt& attempt)
   result.gain = e.esm.state.gain;
   result.bias = e.esm.state.bias;
   result.motion_used = carried_ && attempt.doubt.empty();
-  result.colour_used = aligner_.gates().colourUsed();
-  aligner_.gates().report(result.areas);
+  result.colour_used = aligners_.now().gates().colourUsed();
+  aligners_.now().gates().report(result.areas);
   return result;
 }
 
@@ -247,7 +255,7 @@ const TrackResult& RegionTracker::Implementation::idle(double stamp, const std::
 
 void RegionTracker::Implementation::retune(const TrackerConfig& config) {
   parameters::copyWhatMayChange(config, config_);
-  aligner_.retune(config_);
+  aligners_.retune(config_);
   history_.setDamping(config_.velocity_damping);
   search_.retune(config_);
   confirmation_.retune(config_.quality);
@@ -258,7 +266,7 @@ void RegionTracker::Implementation::reset() {
 }
 
 cv::Mat RegionTracker::Implementation::occlusionMask() const {
-  return state_ == State::kIdle ? cv::Mat() : aligner_.occlusionMask(shown(), image_size_);
+  return state_ == State::kIdle ? cv::Mat() : aligners_.now().occlusionMask(shown(), image_size_);
 }
 
 }  // namespace laparoscope_servo::tracking

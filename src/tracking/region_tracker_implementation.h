@@ -9,7 +9,7 @@
 
 #include "laparoscope_servo/image/field_mask.h"
 #include "laparoscope_servo/tracking/region_tracker.h"
-#include "tracking/align/region_aligner.h"
+#include "tracking/align/region_aligners.h"
 #include "tracking/region_history.h"
 #include "tracking/search/confirmation.h"
 #include "tracking/search/region_search.h"
@@ -21,7 +21,7 @@ class RegionTracker::Implementation {
   explicit Implementation(const TrackerConfig& config, std::shared_ptr<const image::Lens> lens = nullptr)
       : config_(config),
         lens_(lens),
-        aligner_(config, lens),
+        aligners_(config, lens),
         history_(config.velocity_damping),
         search_(config, lens),
         confirmation_(config.quality) {}
@@ -58,7 +58,7 @@ class RegionTracker::Implementation {
   TrackerConfig config_;
   std::shared_ptr<const image::Lens> lens_;  // null: none
   std::string reset_reason_;                 // for the next image
-  RegionAligner aligner_;
+  RegionAligners aligners_;
   RegionHistory history_;
   RegionSearch search_;
   Confirmation confirmation_;

@@ -4,11 +4,12 @@
 // The camera measures the exact homography of the plane, with noise on the ROI's corners; in STABILISE on those of
 // servo::viewRegion(), as long as enough of the reference image is in view for AnchoredMotion; in CENTRE_TIP
 // the ROI's centre is an instrument's tip, which a hand moves as the patient's tissue moves, and in FOLLOW the middle
-// of an object; in PARALLEL the view is followed from image to image where too little of the reference image is left;
-// in POINTS there are 36 points in the ROI, of which a share may be astray. The robot executes the
-// commands after a delay and with a dead zone, as the end-effector's velocity of eq. (12). Tissue and insertion point
-// may move, the optics may be oblique, and the controller's depths and delay may be wrong. Deterministic: the same
-// configuration and seed give the same numbers. World frame: the camera's at the reference pose.
+// of an object; in POINTS there are 36 points in the ROI, of which a share may be astray; POSITION goes by
+// that homography; in PARALLEL the view is followed from image to image where too little of the reference image is
+// left. The robot executes the commands after a delay and with a dead zone, as the end-effector's velocity of eq. (12).
+// Tissue and insertion point may move, the optics may be oblique, and the controller's depths and delay may be wrong.
+// Deterministic: the same configuration and seed give the same numbers. World frame: the camera's at the reference
+// pose.
 #pragma once
 
 #include <iosfwd>

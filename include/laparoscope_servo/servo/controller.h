@@ -48,6 +48,7 @@ struct ControllerInput {
   TaskErrorInput view;        // of STABILISE and PARALLEL: of viewRegion(), from the anchor image to this one
   TaskErrorInput object;      // of FOLLOW: see placeError()
   TaskErrorInput points;      // of POINTS: see points_error.h
+  TaskErrorInput position;    // of POSITION: see position_error.h
   ManualInput manual;         // unusable input stops the scope at once
   DepthInput depth;
   RobotReport robot_report;

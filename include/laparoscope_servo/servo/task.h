@@ -10,10 +10,11 @@ enum class Task {
   kCentreTip,  // the control law, which brings an instrument's tip back where it leaves a zone of the image
   kFollow,     // the control law, which keeps a moving object in the middle by its own dominant motion
   kPoints,     // the control law on points of texture, which brings each of them to its desired place
+  kPosition,   // the control law, which brings the region back by its homography: 2 1/2 D
   kParallel,   // a small circle that measures the tissue's slant, then the control law, which turns the view onto it
 };
 
 constexpr Task kTasks[] = {Task::kHoldView, Task::kManual, Task::kStabilise, Task::kCentreTip,
-                           Task::kFollow,   Task::kPoints, Task::kParallel};
+                           Task::kFollow,   Task::kPoints, Task::kPosition,  Task::kParallel};
 
 }  // namespace laparoscope_servo::servo

@@ -19,6 +19,11 @@ float bilinear(const cv::Mat1f& level, float x, float y) {
   return top + fy * (bottom - top);
 }
 
+// Within 0 and `most`; 0 for NaN, which could not be cast.
+float within(float value, float most) {
+  return value > 0.0f ? std::min(value, most) : 0.0f;
+}
+
 }  // namespace
 
 Window::Window(int half) : half_(half), stride_((2 * half + kVector) / kVector * kVector) {
@@ -54,7 +59,7 @@ void Window::fill(const cv::Mat1f& level, const Eigen::Vector2d& centre, const E
     auto x = static_cast<float>(first.x()), y = static_cast<float>(first.y());
     // What lies outside of the image takes the value of its border, and is not valid.
     for (int i = 0; i < samples; ++i, x += ax, y += ay) {
-      row[i] = bilinear(level, std::clamp(x, 0.0f, right), std::clamp(y, 0.0f, low));
+      row[i] = bilinear(level, within(x, right), within(y, low));
     }
   }
 }

@@ -24,6 +24,7 @@ struct Shaft {
   double score = 0.0;                               // points of the outline that speak for it
   double coverage = 0.0;                            // of its length by the shorter edge
   double clarity = 0.0;  // of the edge that differs less in colour, over the picture's usual colour
+  double colour = 0.0;   // that nine tenths of what lies between the edges stay below, over that which counts as grey
 
   // Cells, between the edges, at `along` from the entry.
   double widthAt(double along) const;

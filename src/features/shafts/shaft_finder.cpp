@@ -1,6 +1,7 @@
 #include "features/shafts/shaft_finder.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -23,6 +24,36 @@ constexpr double kEntryFill = 0.6;       // the same between their ends and the 
 constexpr double kEntersAt = 0.26;       // sine of the least angle between axis and border: 15 degrees
 constexpr double kSingleLength = 0.25;   // of the picture's diagonal: an edge whose partner is out of the picture
 constexpr double kSingleDepth = 0.35;    // of the picture's rows: how far away the border may be then
+
+// What lies between the edges of a shaft: how much of it is grey, and how grey.
+class Inside {
+ public:
+  Inside(const GreyMap& map, double threshold) : map_(map), threshold_(threshold) {}
+  void add(const Eigen::Vector2d& p) {
+    const cv::Point cell = GreyMap::cellOf(p);
+    ++counts_[map_.contains(cell.x, cell.y) ? map_.colour()(cell) : 255];
+    ++all_;
+  }
+  double fill() const { return share(std::ceil(threshold_)); }
+  // That nine tenths stay below, over the threshold.
+  double colour() const {
+    int level = 0;
+    while (level < 255 && share(level + 1.0) < kMostly) ++level;
+    return (level - GreyMap::kZero) / (threshold_ - GreyMap::kZero);
+  }
+
+ private:
+  static constexpr double kMostly = 0.9;
+  double share(double below) const {
+    const auto end = counts_.begin() + static_cast<std::ptrdiff_t>(std::min(below, 256.0));
+    return all_ > 0 ? static_cast<double>(std::accumulate(counts_.begin(), end, 0)) / all_ : 0.0;
+  }
+
+  const GreyMap& map_;
+  double threshold_;
+  std::array<int, 256> counts_{};
+  int all_ = 0;
+};
 
 }  // namespace
 
@@ -88,18 +119,17 @@ bool ShaftFinder::pair(const Scene& scene, const GreyLine& a, const GreyLine& b,
   shaft.entry = first;
   const double span = (last - first).norm();
 
-  int grey = 0, all = 0;
+  Inside inside(scene.map, scene.threshold);
   const Eigen::Vector2d side(-shaft.axis.y(), shaft.axis.x());
   for (int i = 0; i <= 16; ++i) {
     const double along = (low + (high - low) * i / 16.0) - std::min(low_a, low_b);
     const double half = 0.5 * shaft.widthAt(along);
     if (!(half > 0.5 * kLeastWidth)) return false;
     for (const double k : {-0.75, -0.4, 0.0, 0.4, 0.75}) {
-      ++all;
-      grey += scene.isGrey(shaft.entry + along * shaft.axis + k * half * side) ? 1 : 0;
+      inside.add(shaft.entry + along * shaft.axis + k * half * side);
     }
   }
-  shaft.fill = static_cast<double>(grey) / all;
+  shaft.fill = inside.fill();
   if (!(shaft.fill >= kFill)) return false;
 
   // Which end is the entry? The one from which grey goes on to the border; of two, the wider one, which is nearer.
@@ -136,6 +166,7 @@ bool ShaftFinder::pair(const Scene& scene, const GreyLine& a, const GreyLine& b,
   if (slope > 1.0 / kEntersAt) return false;
   const double seen = std::min(1.0, (high - low) / std::max(1.0, std::max(high_a, high_b) - std::min(low_a, low_b)));
   shaft.clarity = std::min(a.contrast, b.contrast) / scene.usual;
+  shaft.colour = inside.colour();
   shaft.score = shaft.fill * (a.support + b.support) * (0.5 + 0.5 * seen);
   return true;
 }
@@ -143,20 +174,19 @@ bool ShaftFinder::pair(const Scene& scene, const GreyLine& a, const GreyLine& b,
 bool ShaftFinder::single(const Scene& scene, const GreyLine& line, Shaft& shaft) const {
   const double diagonal = std::hypot(scene.map.columns(), scene.map.rows());
   if (!(line.length() >= kSingleLength * diagonal && line.contrast >= scene.contrast)) return false;
-  int grey = 0, all = 0;
+  Inside inside(scene.map, scene.threshold);
   double depth[2] = {0.0, 0.0}, deepest = 0.0;
   for (int i = 0; i <= 16; ++i) {
     const Eigen::Vector2d p = line.at(line.begin + line.length() * i / 16.0);
     double t = 1.5;
     for (; scene.isInside(p - t * line.normal); t += 1.0) {
       if (t > kSingleDepth * scene.map.rows()) return false;
-      ++all;
-      grey += scene.isGrey(p - t * line.normal) ? 1 : 0;
+      inside.add(p - t * line.normal);
     }
     deepest = std::max(deepest, t);
     depth[i < 8 ? 0 : 1] += t;
   }
-  shaft.fill = all > 0 ? static_cast<double>(grey) / all : 0.0;
+  shaft.fill = inside.fill();
   if (!(shaft.fill >= kFill) || deepest < kLeastWidth) return false;
   // The border has to cut it off at an angle: what lies along the border is the border.
   if (!(std::abs(depth[1] - depth[0]) / 8.5 > kEntersAt * 0.5 * 0.5 * line.length())) return false;
@@ -180,6 +210,7 @@ bool ShaftFinder::single(const Scene& scene, const GreyLine& line, Shaft& shaft)
   shaft.length = line.length() + back;
   shaft.coverage = line.length() / shaft.length;
   shaft.clarity = line.contrast / scene.usual;
+  shaft.colour = inside.colour();
   shaft.score = shaft.fill * line.support;
   return true;
 }

@@ -23,6 +23,16 @@ int conversionOf(BayerPattern pattern) {
   }
 }
 
+// Its channels are the same but for what a video's codec makes of them.
+bool isGrey(const cv::Mat& picture) {
+  constexpr double kCodec = 4.0;  // grey levels
+  cv::Mat blue, green, red;
+  cv::extractChannel(picture, blue, 0);
+  cv::extractChannel(picture, green, 1);
+  cv::extractChannel(picture, red, 2);
+  return cv::norm(blue, green, cv::NORM_INF) <= kCodec && cv::norm(green, red, cv::NORM_INF) <= kCodec;
+}
+
 }  // namespace
 
 cv::Mat colourOf(const cv::Mat& raw, BayerPattern pattern) {
@@ -33,7 +43,12 @@ cv::Mat colourOf(const cv::Mat& raw, BayerPattern pattern) {
                                 " is no Bayer pattern, expected 8 bit and one channel");
   }
   cv::Mat mosaic = raw;
-  if (raw.channels() == 3) cv::extractChannel(raw, mosaic, 0);
+  if (raw.channels() == 3) {
+    if (!isGrey(raw)) {
+      throw std::invalid_argument("a picture that is in colour already is no Bayer pattern, expected bayer = none");
+    }
+    cv::extractChannel(raw, mosaic, 0);
+  }
   cv::Mat colour;
   cv::cvtColor(mosaic, colour, conversionOf(pattern));
   return colour;

@@ -15,7 +15,8 @@ enum class Interlacing {
 };
 
 // Converts a raw picture to blue-green-red. `raw`: 8 bit, one channel; with three, as from decoders of grey video, the
-// first is used. Throws std::invalid_argument for other types and for pictures below 2x2 px.
+// first is used. Throws std::invalid_argument for other types, for what is in colour already and for pictures below 2x2
+// px.
 cv::Mat colourOf(const cv::Mat& raw, BayerPattern pattern);
 
 // Keeps one half picture in full size; the lines of the other one, taken some 20 ms earlier or later, are interpolated.

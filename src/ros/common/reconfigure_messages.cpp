@@ -4,6 +4,7 @@
 #include <set>
 
 #include "laparoscope_servo/parameters/nearest_name.h"
+#include "laparoscope_servo/parameters/pages.h"
 
 namespace laparoscope_servo {
 
@@ -16,17 +17,8 @@ using parameters::Value;
 
 constexpr char kSlash[] = "__";
 
-const char* typeOf(const Row& row) {
-  switch (row.kind) {
-    case Row::Kind::kFlag:
-      return "bool";
-    case Row::Kind::kInteger:
-      return "int";
-    case Row::Kind::kNumber:
-      return "double";
-    default:
-      return "str";
-  }
+std::string typeOf(const Row& row) {
+  return row.kind == Row::Kind::kText ? "str" : parameters::typeText(row);
 }
 
 // The protocol has no lists; none of them may change while a node runs.

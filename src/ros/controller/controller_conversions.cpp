@@ -89,6 +89,8 @@ std::string taskName(servo::Task task) {
       return ControllerState::FOLLOW;
     case servo::Task::kPoints:
       return ControllerState::POINTS;
+    case servo::Task::kPosition:
+      return ControllerState::POSITION;
     case servo::Task::kParallel:
       return ControllerState::PARALLEL;
   }

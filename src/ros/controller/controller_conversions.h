@@ -15,6 +15,9 @@
 
 namespace laparoscope_servo {
 
+// In front of the reason for which the service engage refuses.
+constexpr char kNotEngaged[] = "not engaged: ";
+
 std::string taskName(servo::Task task);
 // Empty: there is none of that name.
 std::optional<servo::Task> taskNamed(const std::string& name);

@@ -46,6 +46,8 @@ ControllerInputs::ControllerInputs(ros::NodeHandle& node, ros::NodeHandle& priva
       calls_(calls),
       task_error_input_(resolved(node, config.owners.task_error), "task errors", "owners/task_error",
                         config.control.safety.max_clock_difference),
+      homography_input_(resolved(node, config.owners.task_error), "homographies", "owners/task_error",
+                        config.control.safety.max_clock_difference),
       motion_input_(resolved(node, config.owners.motion), "motion features", "owners/motion",
                     config.control.safety.max_clock_difference),
       instrument_input_(resolved(node, config.owners.instrument), "instruments", "owners/instrument",
@@ -65,12 +67,14 @@ ControllerInputs::ControllerInputs(ros::NodeHandle& node, ros::NodeHandle& priva
       camera_(config.rectified_images),
       object_place_(config.control.follow),
       points_error_(config.control.points, config.control.features.desired_depth),
+      position_input_(config.control.features.desired_depth),
       tip_input_(config.control.centre_tip),
       dead_man_(config.control.safety.max_dead_man_age) {
   // tcpNoDelay: a message must not wait for a full packet.
   const ros::TransportHints at_once = ros::TransportHints().tcpNoDelay();
   using Self = ControllerInputs;
   task_error_input_.subscriber = node.subscribe("task_error", kQueue, &Self::onTaskError, this, at_once);
+  homography_input_.subscriber = node.subscribe("homography", kQueue, &Self::onHomography, this, at_once);
   motion_input_.subscriber = node.subscribe("motion_features", kQueue, &Self::onMotion, this, at_once);
   instrument_input_.subscriber = node.subscribe("instrument_features", kQueue, &Self::onInstrument, this, at_once);
   points_input_.subscriber = node.subscribe("points_features", kQueue, &Self::onPoints, this, at_once);
@@ -108,6 +112,8 @@ void ControllerInputs::forgetStamps() {
   object_.forget();
   points_.forget();
   points_input_.stamps.clear();
+  position_.forget();
+  homography_input_.stamps.clear();
 }
 
 void ControllerInputs::end(const std::string& why) {
@@ -215,6 +221,7 @@ void ControllerInputs::fill(servo::ControllerInput& input, double steady_now) co
   input.tip = agedOf(instrument_input_, tip_, steady_now);
   input.object = agedOf(motion_input_, object_, steady_now);
   input.points = agedOf(points_input_, points_, steady_now);
+  input.position = agedOf(homography_input_, position_, steady_now);
   input.robot_report = robot_report_;
   input.robot_report.age = steady_now - robot_report_arrival_;
 }
@@ -236,11 +243,13 @@ void ControllerInputs::taken() {
 }
 
 void ControllerInputs::describe(diagnostic_updater::DiagnosticStatusWrapper& status) {
-  for (Input* input : {&task_error_input_, &motion_input_, &instrument_input_, &points_input_, &camera_info_input_,
-                       &operating_state_input_, &measured_velocity_input_, &manual_input_, &dead_man_input_}) {
+  for (Input* input :
+       {&task_error_input_, &homography_input_, &motion_input_, &instrument_input_, &points_input_, &camera_info_input_,
+        &operating_state_input_, &measured_velocity_input_, &manual_input_, &dead_man_input_}) {
     if (input->subscriber) describe(*input, status);
   }
-  for (const Input* input : {&task_error_input_, &motion_input_, &instrument_input_, &points_input_}) {
+  for (const Input* input :
+       {&task_error_input_, &homography_input_, &motion_input_, &instrument_input_, &points_input_}) {
     const StampGate& stamps = input->stamps;
     status.add(input->owner.what() + ": stamps late", stamps.late());
     status.add(input->owner.what() + ": stamps repeated", stamps.repeated());

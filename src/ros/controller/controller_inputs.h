@@ -29,6 +29,7 @@
 #include "ros/controller/feature_camera.h"
 #include "ros/controller/object_place.h"
 #include "ros/controller/points_input.h"
+#include "ros/controller/position_input.h"
 #include "ros/controller/tip_input.h"
 
 namespace laparoscope_servo {
@@ -100,6 +101,7 @@ class ControllerInputs {
   void keep(Picture& picture, const servo::TaskErrorInput& seen);
   static servo::TaskErrorInput agedOf(const Input& input, const Picture& picture, double steady_now);
   void onTaskError(const ros::MessageEvent<TaskError const>& event);
+  void onHomography(const ros::MessageEvent<Homography const>& event);
   void onMotion(const ros::MessageEvent<TrackedFeatures const>& event);
   void onPoints(const ros::MessageEvent<TrackedFeatures const>& event);
   void onInstrument(const ros::MessageEvent<TrackedFeatures const>& event);
@@ -120,6 +122,7 @@ class ControllerInputs {
   std::string clock_jump_;  // clock jump since taken()
 
   Input task_error_input_;
+  Input homography_input_;
   Input motion_input_;
   Input instrument_input_;
   Input points_input_;
@@ -140,9 +143,12 @@ class ControllerInputs {
                    "stamps of the motion of the object jumped back"}};
   Picture points_{{"points of the view", "no points of the view were received", "points of the view have no stamp",
                    "stamps of the points of the view jumped back"}};
+  Picture position_{{"homography of the region", "no homography of the region was received",
+                     "homography of the region has no stamp", "stamps of the homography of the region jumped back"}};
   FeatureCamera camera_;
   ObjectPlace object_place_;
   PointsInput points_error_;
+  PositionInput position_input_;
   TipInput tip_input_;
   servo::RobotFacts robot_;
   ros::Time robot_stamp_;

@@ -32,6 +32,8 @@ const char* doing(servo::Task task) {
       return "follows the object";
     case servo::Task::kPoints:
       return "brings the points to their places";
+    case servo::Task::kPosition:
+      return "brings the region back by its homography";
     case servo::Task::kParallel:
       return "faces the tissue";
   }

@@ -29,7 +29,7 @@ void ControllerNode::engage(bool on, std_srvs::SetBool::Response& response) {
     std::string problem = stops_.obstacle(steadyNow());
     if (problem.empty()) problem = controller_.engage(input());
     response.success = problem.empty();
-    response.message = problem.empty() ? "engaged" : "not engaged: " + problem;
+    response.message = problem.empty() ? "engaged" : kNotEngaged + problem;
   }
   onTick();
 }

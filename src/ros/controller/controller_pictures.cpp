@@ -33,8 +33,15 @@ void ControllerInputs::keep(Picture& picture, const servo::TaskErrorInput& seen)
 }
 
 void ControllerInputs::onTaskError(const ros::MessageEvent<TaskError const>& event) {
-  if (takes(task_error_input_, task_error_, event, task_ == servo::Task::kHoldView))
-    keep(task_error_, fromMessage(*event.getConstMessage()));
+  const bool follows = task_ == servo::Task::kHoldView || task_ == servo::Task::kPosition;
+  if (!takes(task_error_input_, task_error_, event, follows)) return;
+  keep(task_error_, fromMessage(*event.getConstMessage()));
+  position_input_.know(*event.getConstMessage());
+}
+
+void ControllerInputs::onHomography(const ros::MessageEvent<Homography const>& event) {
+  if (takes(homography_input_, position_, event, task_ == servo::Task::kPosition))
+    keep(position_, position_input_.from(*event.getConstMessage(), calls_.depth()));
 }
 
 // The motion of the view, or of an object in it: one node tells both, by what was selected.
@@ -66,7 +73,8 @@ void ControllerInputs::onInstrument(const ros::MessageEvent<TrackedFeatures cons
 // Without a check of its stamp: a calibration does not grow old. With another one, what was measured by the last one
 // does not go on.
 void ControllerInputs::onCameraInfo(const ros::MessageEvent<sensor_msgs::CameraInfo const>& event) {
-  const bool needs_none = task_ == servo::Task::kHoldView || task_ == servo::Task::kManual;
+  const bool needs_none =
+      task_ == servo::Task::kHoldView || task_ == servo::Task::kManual || task_ == servo::Task::kPosition;
   const bool matters = engaged_ && !needs_none;
   if (!counts(camera_info_input_, event, matters)) return;
   if (camera_.take(*event.getConstMessage()) && matters) end("camera_info has another calibration");

@@ -9,6 +9,7 @@
 #include <std_msgs/Header.h>
 
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <opencv2/core.hpp>
 #include <optional>
@@ -28,7 +29,10 @@ struct SourceOptions {
   std::string image_topic;        // of a bag; may be empty if it has only one topic with images
   std::string camera_info_topic;  // of a bag; empty: camera_info beside the image's topic
   double start = 0.0;             // s after the beginning of the input; images before are skipped
-  double folder_rate = 25.0;      // Hz: rate for a folder of images, and for a video without a rate
+  double end = std::numeric_limits<double>::infinity();  // s after the beginning: the image then is the first left out
+  double resume = 0.0;        // s after the beginning; behind the first image, those before are skipped
+  double folder_rate = 25.0;  // Hz: rate for a folder of images, and for a video without a rate
+  cv::Rect crop;              // px: of a video or a folder, the part of each image that is used; empty: all of it
 };
 
 struct SourceImage {

@@ -4,6 +4,7 @@
 #include <sensor_msgs/CompressedImage.h>
 
 #include <boost/make_shared.hpp>
+#include <fstream>
 #include <memory>
 #include <opencv2/imgcodecs.hpp>
 #include <utility>
@@ -39,15 +40,34 @@ void decode(const sensor_msgs::CompressedImage& message, SourceImage& image) {
   }
 }
 
+// Throws SourceError for what no repair makes a bag of.
+void checkBeginning(const std::string& path) {
+  const std::string expected = "#ROSBAG V2.0";
+  std::string begin(expected.size(), '\0');
+  std::ifstream file(path, std::ios::binary);
+  file.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  if (file.gcount() == 0) throw SourceError("'" + path + "' is empty, expected a bag");
+  if (begin != expected) {
+    throw SourceError("'" + path + "' is no bag of format 2.0, whatever its name says: it does not begin with '" +
+                      expected + "'");
+  }
+}
+
+SourceError brokenOff(const std::string& path, const rosbag::BagException& error) {
+  return SourceError("bag '" + path + "' breaks off: it was cut, or the recorder was killed (" + error.what() +
+                     "); 'rosbag reindex' makes what is there readable");
+}
+
 class BagSource : public ImageSource {
  public:
-  BagSource(const std::vector<std::string>& paths, const SourceOptions& options) : name_(paths.front()) {
+  BagSource(const std::vector<std::string>& paths, const SourceOptions& options)
+      : name_(paths.front()), span_(options) {
     if (paths.size() > 1) name_ += "' and " + std::to_string(paths.size() - 1) + " more '";
     for (const std::string& path : paths) openBag(path);
     try {
       open(options);
     } catch (const rosbag::BagException& error) {
-      throw damaged(error);
+      throw brokenOff(name_, error);
     }
   }
 
@@ -73,20 +93,13 @@ class BagSource : public ImageSource {
   }
 
  private:
-  SourceError damaged(const rosbag::BagException& error) const {
-    return SourceError("'" + name_ + "' is no bag, or a damaged one (" + error.what() +
-                       "); 'rosbag reindex' may repair it");
-  }
-
   void openBag(const std::string& path) {
+    checkBeginning(path);
     auto bag = std::make_unique<rosbag::Bag>();
     try {
       bag->open(path, rosbag::bagmode::Read);
-    } catch (const rosbag::BagUnindexedException&) {
-      throw SourceError("bag '" + path + "' has no index, it was not closed: 'rosbag reindex' may repair it");
-    } catch (const rosbag::BagException& error) {
-      throw SourceError("'" + path + "' is no bag, or a damaged one (" + error.what() +
-                        "); 'rosbag reindex' may repair it");
+    } catch (const rosbag::BagException& error) {  // among them BagUnindexedException, of one that was not closed
+      throw brokenOff(path, error);
     }
     bags_.push_back(std::move(bag));
   }
@@ -115,7 +128,7 @@ class BagSource : public ImageSource {
     size_ = images->size();
     const double duration = (images->getEndTime() - images->getBeginTime()).toSec();
     rate_ = size_ > 1 && duration > 0.0 ? static_cast<double>(size_ - 1) / duration : options.folder_rate;
-    start_ = images->getBeginTime() + ros::Duration(options.start);
+    begin_ = images->getBeginTime();
 
     std::vector<std::string> read_topics{image_topic_};
     const std::string camera_info_topic = chooseCameraInfoTopic(topics, name_, image_topic_, options.camera_info_topic);
@@ -157,7 +170,9 @@ class BagSource : public ImageSource {
         continue;
       }
       const std::size_t frame = frame_++;
-      if (instance.getTime() < start_) continue;
+      const double time = (instance.getTime() - begin_).toSec();
+      if (span_.isSkipped(time)) continue;
+      if (span_.isBehind(time)) break;
       SourceImage image = imageOf(instance);
       image.frame = frame;
       image.record_time = instance.getTime();
@@ -197,7 +212,8 @@ class BagSource : public ImageSource {
   std::string image_topic_;
   std::size_t size_ = 0;
   double rate_ = 0.0;
-  ros::Time start_;
+  ros::Time begin_;
+  ImageSpan span_;
   std::unique_ptr<rosbag::View> view_;
   rosbag::View::iterator position_;
   std::size_t frame_ = 0;

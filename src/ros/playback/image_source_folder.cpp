@@ -46,8 +46,7 @@ bool isCutOff(const std::string& path) {
 
 class FolderSource : public ImageSource {
  public:
-  FolderSource(const std::string& path, const SourceOptions& options)
-      : rate_(options.folder_rate), start_(options.start) {
+  FolderSource(const std::string& path, const SourceOptions& options) : rate_(options.folder_rate), span_(options) {
     std::error_code error;
     for (const auto& entry : std::filesystem::directory_iterator(path, error)) {
       if (isImage(entry.path())) files_.push_back(entry.path().string());
@@ -61,8 +60,8 @@ class FolderSource : public ImageSource {
   }
 
   std::optional<SourceImage> next() override {
-    while (frame_ < files_.size() && isBeforeStart(static_cast<double>(frame_) / rate_, start_)) ++frame_;
-    if (frame_ >= files_.size()) return std::nullopt;
+    while (frame_ < files_.size() && span_.isSkipped(timeOf(frame_))) ++frame_;
+    if (frame_ >= files_.size() || span_.isBehind(timeOf(frame_))) return std::nullopt;
     SourceImage image = imageAt(frame_, rate_);
     const std::string& file = files_[frame_++];
     if (isCutOff(file)) {
@@ -79,8 +78,10 @@ class FolderSource : public ImageSource {
   bool hasRecordedStamps() const override { return false; }
 
  private:
+  double timeOf(std::size_t frame) const { return static_cast<double>(frame) / rate_; }
+
   double rate_;
-  double start_;
+  ImageSpan span_;
   std::vector<std::string> files_;
   std::size_t frame_ = 0;
 };

@@ -53,7 +53,7 @@ class VideoSource : public ImageSource {
  public:
   VideoSource(const std::string& path, const SourceOptions& options)
       : path_(path),
-        start_(options.start),
+        span_(options),
         reader_(path),
         rate_(reader_.rate() > 0.0 ? reader_.rate() : options.folder_rate),
         converter_(reader_.orientation()),
@@ -65,7 +65,8 @@ class VideoSource : public ImageSource {
       const std::size_t frame = frame_;
       frame_ += picture->count;
       decoded_ = decoded_ || picture->frame != nullptr;
-      if (isBeforeStart(time, start_)) continue;
+      if (span_.isSkipped(time)) continue;
+      if (span_.isBehind(time)) break;
       return imageOf(*picture, frame, time);
     }
     if (!decoded_) throw SourceError("video '" + path_ + "' has no picture that can be decoded");
@@ -115,7 +116,7 @@ class VideoSource : public ImageSource {
   }
 
   std::string path_;
-  double start_;
+  ImageSpan span_;
   VideoReader reader_;
   double rate_;
   PictureConverter converter_;

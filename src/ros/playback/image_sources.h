@@ -9,11 +9,31 @@
 
 namespace laparoscope_servo {
 
-// --start 0.2 means frame 5 at 25 Hz, in spite of rounding.
-inline bool isBeforeStart(double time, double start) {
-  constexpr double kTolerance = 1e-6;  // s
-  return time < start - kTolerance;
-}
+// Which images of an input are wanted, by SourceOptions. Times in s after the beginning of the input.
+class ImageSpan {
+ public:
+  explicit ImageSpan(const SourceOptions& options)
+      : begin_(options.start), resume_(options.resume), end_(options.end) {}
+
+  // Called once for each image, in their order.
+  bool isSkipped(double time) {
+    if (isBefore(time, begin_)) return true;
+    begin_ = resume_;  // for all but the first that is wanted
+    return false;
+  }
+  bool isBehind(double time) const { return !isBefore(time, end_); }
+
+ private:
+  // --start 0.2 means frame 5 at 25 Hz, in spite of rounding.
+  static bool isBefore(double time, double bound) {
+    constexpr double kTolerance = 1e-6;  // s
+    return time < bound - kTolerance;
+  }
+
+  double begin_;  // of what is wanted next
+  double resume_;
+  double end_;
+};
 
 // Several bags count as one recording, with messages in the order of time.
 std::unique_ptr<ImageSource> openBagSource(const std::vector<std::string>& paths, const SourceOptions& options);

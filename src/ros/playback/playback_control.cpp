@@ -7,7 +7,7 @@ namespace laparoscope_servo {
 std::string PlaybackControl::command(const std::string& command, double position) {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (state_ == State::kWaiting) return "the recording has not begun: it waits for who is to see it";
-  const bool ended = state_ == State::kEnded;
+  const bool ended = state_ == State::kEnded || state_ == State::kFailed;
   if (command == "SEEK" || command == "AGAIN") {
     const double to = command == "AGAIN" ? 0.0 : position;
     if (!(to >= 0.0 && std::isfinite(to))) return "position is " + std::to_string(position) + " s, expected 0 or more";
@@ -23,6 +23,7 @@ std::string PlaybackControl::command(const std::string& command, double position
   }
   if (command != "PLAY" && command != "PAUSE" && command != "STEP")
     return "command is '" + command + "', expected PLAY, PAUSE, STEP, SEEK or AGAIN";
+  if (state_ == State::kFailed) return "the recording cannot be read: AGAIN tries once more";
   if (ended) return "the recording has ended: AGAIN, or SEEK";
   state_ = command == "PLAY" ? State::kPlaying : State::kPaused;
   if (command == "STEP") ++steps_;
@@ -31,7 +32,8 @@ std::string PlaybackControl::command(const std::string& command, double position
 
 void PlaybackControl::begin(bool hold) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (state_ != State::kWaiting) return;
+  if (begun_) return;
+  begun_ = true;
   state_ = hold ? State::kHolding : State::kPlaying;
   steps_ = hold ? 1 : 0;  // plays the image at which it holds
 }
@@ -39,6 +41,13 @@ void PlaybackControl::begin(bool hold) {
 void PlaybackControl::end() {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (!seek_) state_ = State::kEnded;
+  steps_ = 0;
+}
+
+void PlaybackControl::fail() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  state_ = State::kFailed;
+  seek_.reset();
   steps_ = 0;
 }
 
@@ -56,7 +65,7 @@ std::optional<double> PlaybackControl::takeSeek() {
 
 bool PlaybackControl::takeImage() {
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (seek_ || state_ == State::kEnded || state_ == State::kWaiting) return false;
+  if (seek_ || state_ == State::kEnded || state_ == State::kFailed || state_ == State::kWaiting) return false;
   if (state_ == State::kPlaying) return true;
   if (steps_ == 0) return false;
   --steps_;
@@ -78,6 +87,8 @@ const char* PlaybackControl::stateName() const {
       return "PLAYING";
     case State::kPaused:
       return "PAUSED";
+    case State::kFailed:
+      return "FAILED";
     case State::kEnded:
       break;
   }

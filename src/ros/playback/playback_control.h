@@ -9,15 +9,16 @@ namespace laparoscope_servo {
 
 class PlaybackControl {
  public:
-  enum class State { kWaiting, kHolding, kPlaying, kPaused, kEnded };
+  enum class State { kWaiting, kHolding, kPlaying, kPaused, kEnded, kFailed };
 
   // May be called from any thread. Commands are those of ControlPlayback.srv. Returns why it is refused, or an empty
   // text.
   std::string command(const std::string& command, double position);
 
   // The functions below are for the player. begin(): call when the awaited subscribers are there.
-  void begin(bool hold);
+  void begin(bool hold);  // no effect the second time
   void end();
+  void fail();  // the recording cannot be read, or not further
   // A region was selected.
   void releaseHold();
   // Takes a requested position [s]; 0 is the beginning.
@@ -31,6 +32,7 @@ class PlaybackControl {
  private:
   mutable std::mutex mutex_;
   State state_ = State::kWaiting;
+  bool begun_ = false;
   int steps_ = 0;
   std::optional<double> seek_;
 };

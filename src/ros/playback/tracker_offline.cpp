@@ -42,6 +42,7 @@ class RegionOffline : public OfflineTracker {
   void take(const SourceImage& image, bool first, OfflineSummary& summary) override {
     const Processed processed = processImage(session_, image);
     if (first && !processed.result.selected_now) throw std::invalid_argument(processed.selection_error);
+    if (first && options_.source.resume > 0.0) searchFromNowOn(processed);
     ++summary.by_state[static_cast<std::size_t>(processed.result.state)];
     summary.times.push_back(processed.processing_time);
     compare(image, processed, summary);
@@ -60,6 +61,16 @@ class RegionOffline : public OfflineTracker {
   }
 
  private:
+  // The region is somewhere else by the next image, as after a loss.
+  void searchFromNowOn(const Processed& selected) {
+    const auto reference = session_.reference();
+    RecallRoute route;
+    route.steps.push_back({"", {reference->image, selected.result.roi}, reference->stamp});
+    route.epoch = reference->epoch;
+    const std::string refused = session_.recall(route);
+    if (!refused.empty()) throw std::runtime_error(refused);
+  }
+
   void noteCamera(const Processed& last) {
     camera_note_.clear();
     if (!last.camera) {

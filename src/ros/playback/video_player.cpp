@@ -54,16 +54,12 @@ std::vector<std::string> validate(const VideoPlayerConfig& config) {
 }
 
 VideoPlayer::VideoPlayer(ros::NodeHandle node, const VideoPlayerConfig& config)
-    : config_(config), transport_(node), control_node_("~"), control_spinner_(1, &control_queue_) {
+    : node_(node), config_(config), transport_(node), control_node_("~"), control_spinner_(1, &control_queue_) {
   options_.image_topic = config.image_topic;
   options_.camera_info_topic = config.camera_info_topic;
   options_.start = config.start;
   options_.folder_rate = config.fps;
-  source_ = openImageSource(inputsOf(config.video), options_);
-  if (!source_->hasRecordedStamps()) offset_ = ros::Duration(config.first_stamp);
   if (!config.camera_info.empty()) camera_info_ = readCameraInfo(config.camera_info);
-  recorded_ = std::make_unique<RecordedResults>(inputsOf(config.video), config.image_topic);
-  if (recorded_->any()) recorded_publisher_ = node.advertise<Homography>("recorded_homography", 50);
   if (config.clock) clock_publisher_ = node.advertise<rosgraph_msgs::Clock>("/clock", 10);
   if (config.lockstep || config.hold) {
     homography_subscriber_ = node.subscribe<Homography>("homography", 10, [this](const HomographyConstPtr& result) {
@@ -88,33 +84,65 @@ VideoPlayer::VideoPlayer(ros::NodeHandle node, const VideoPlayerConfig& config)
   tellState();
 }
 
+void VideoPlayer::open(double start) {
+  SourceOptions options = options_;
+  options.start = std::max(start, options_.start);
+  source_ = openImageSource(inputsOf(config_.video), options);
+  if (recorded_) return;
+  if (!source_->hasRecordedStamps()) offset_ = ros::Duration(config_.first_stamp);
+  recorded_ = std::make_unique<RecordedResults>(inputsOf(config_.video), config_.image_topic);
+  if (recorded_->any()) recorded_publisher_ = node_.advertise<Homography>("recorded_homography", 50);
+}
+
 void VideoPlayer::run() {
-  waitForSubscribers();
-  control_.begin(config_.hold);
-  bool first_time = true;
   do {
+    try {
+      failure_.clear();
+      if (!source_) open(from_);
+      play();
+    } catch (const SourceError& error) {
+      if (!config_.wait_for_screen || !config_.stay) throw;
+      fail(error);
+    }
+  } while (waitForAgain());
+  if (!failure_.empty()) throw SourceError(failure_);
+}
+
+void VideoPlayer::fail(const SourceError& error) {
+  ROS_ERROR("%s", error.what());
+  failure_ = error.what();
+  control_.fail();
+  told_ = PlaybackState();  // said also when it could not be read before
+  tellState();
+}
+
+// Until the end of the recording.
+void VideoPlayer::play() {
+  if (!begun_) {
+    waitForSubscribers();
+    control_.begin(config_.hold);
+    begun_ = true;
+  }
+  while (ros::ok()) {
     const std::size_t before = published_;
     playOnce();
     if (ros::ok() && published_ == before && !sought_) {
       throw SourceError("'" + config_.video + "' has no image after " + std::to_string(config_.start) + " s");
     }
-    if (first_time) tellNotes();
-    first_time = false;
-    if (!config_.loop) {
-      if (!waitForAgain()) break;
-      continue;
-    }
+    if (!told_notes_) tellNotes();
+    told_notes_ = true;
+    if (!config_.loop) break;
     if (!config_.restart_time) offset_ += last_ - begin_ + ros::Duration(1.0 / source_->rate());
-    source_ = openImageSource(inputsOf(config_.video), options_);
-  } while (ros::ok());
-}
-
-// Waits at the end for another command; returns false if playback is over.
-bool VideoPlayer::waitForAgain() {
+    open(0.0);
+  }
   control_.end();
   tellState();
   ROS_INFO("played %zu images of '%s'%s", published_, config_.video.c_str(),
            config_.stay && ros::ok() ? "; the last one stays until this node is ended" : "");
+}
+
+// Waits at the end for another command; returns false if playback is over.
+bool VideoPlayer::waitForAgain() {
   while (config_.stay && ros::ok()) {
     if (const std::optional<double> seek = control_.takeSeek()) {
       reopen(*seek);
@@ -126,12 +154,14 @@ bool VideoPlayer::waitForAgain() {
   return false;
 }
 
+// What cannot be opened any more is read on from where it is; one that could not be read at all is tried by run().
 void VideoPlayer::reopen(double start) {
-  SourceOptions options = options_;
-  options.start = std::max(start, options_.start);
-  sought_ = true;
+  sought_ = failure_.empty();
+  from_ = start;
+  if (!failure_.empty()) source_.reset();
+  if (!source_) return;
   try {
-    source_ = openImageSource(inputsOf(config_.video), options);
+    open(start);
   } catch (const SourceError& error) {
     ROS_ERROR("%s", error.what());
   }
@@ -140,9 +170,12 @@ void VideoPlayer::reopen(double start) {
 void VideoPlayer::tellState() {
   PlaybackState state;
   state.state = control_.stateName();
+  state.reason = failure_;
   state.position = position_;
-  state.duration = source_->rate() > 0.0 ? static_cast<double>(source_->size()) / source_->rate() : 0.0;
-  state.period = source_->rate() > 0.0 ? 1.0 / (source_->rate() * config_.speed) : 0.0;
+  if (source_ && source_->rate() > 0.0) {
+    state.duration = static_cast<double>(source_->size()) / source_->rate();
+    state.period = 1.0 / (source_->rate() * config_.speed);
+  }
   state.images = static_cast<std::uint32_t>(published_);
   const auto now = Clock::now();
   if (state.state == told_.state && now - told_at_ < kStatePeriod) return;

@@ -49,7 +49,7 @@ struct VideoPlayerConfig {
   bool clock = true;             // publishes /clock
   bool lockstep = false;         // the next image waits for the tracker's result, so that a slow tracker misses none
   bool hold = false;             // holds at the first image until a region is selected or the command to play comes
-  bool wait_for_screen = false;  // waits for a subscriber of ~state before the first image
+  bool wait_for_screen = false;  // waits for a subscriber of ~state before the first image, see also run()
   int subscribers = 1;           // 0 to 100: waits for this number of subscribers of image_raw before the first image
 };
 
@@ -59,11 +59,12 @@ std::vector<std::string> validate(const VideoPlayerConfig& config);
 
 class VideoPlayer {
  public:
-  // Throws SourceError when the video cannot be opened, std::runtime_error when the calibration cannot be read or is
-  // for images of another size.
+  // Throws std::runtime_error when the calibration cannot be read.
   VideoPlayer(ros::NodeHandle node, const VideoPlayerConfig& config);
 
-  // Plays until the end of the video or of the node. Throws SourceError if the video is damaged or has no images.
+  // Plays until the end of the video or of the node. Throws SourceError if the video cannot be opened, is damaged or
+  // has no images, std::runtime_error if the calibration is for images of another size. With a screen and `stay` it
+  // first says what is wrong on ~state, where it can be read and tried once more, until the node ends.
   void run();
 
   std::size_t published() const { return published_; }
@@ -71,6 +72,9 @@ class VideoPlayer {
  private:
   using Clock = std::chrono::steady_clock;
 
+  void open(double start);
+  void play();
+  void fail(const SourceError& error);
   void waitForSubscribers() const;
   void playOnce();
   // Returns false if the position in the recording has changed.
@@ -89,6 +93,7 @@ class VideoPlayer {
   // The time on /clock for the image.
   ros::Time timeOf(const SourceImage& image) const;
 
+  ros::NodeHandle node_;
   VideoPlayerConfig config_;
   SourceOptions options_;
   std::unique_ptr<ImageSource> source_;
@@ -109,6 +114,10 @@ class VideoPlayer {
   ros::AsyncSpinner control_spinner_;
   PlaybackState told_;
   Clock::time_point told_at_;
+  std::string failure_;  // why the recording cannot be read; empty: it can
+  bool begun_ = false;
+  bool told_notes_ = false;
+  double from_ = 0.0;           // s: where it is opened after a failure
   double position_ = 0.0;       // s
   sensor_msgs::ImagePtr held_;  // the image that was published last
   ros::Time held_time_;         // its time on /clock

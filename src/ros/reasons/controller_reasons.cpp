@@ -154,6 +154,16 @@ const std::vector<ReasonRow>& controllerReasons() {
        "The points differ too much in where they are.",
        "Wait until more of them are seen, or select others.",
        "tasks.md#points"},
+      // The region by its homography, in POSITION.
+      {{"no homography of the region was received", "homography of the region has no stamp"},
+       "The tracker sends no homography.",
+       "Start it, and select a region.",
+       "tasks.md#position"},
+      {{"the place of the region is not known: ", "the homography of the region has no intrinsics: ",
+        "the homography of the region is of no plane before the camera"},
+       "The region's homography cannot be used.",
+       "Is there a camera_info? Select a region anew.",
+       "tasks.md#position"},
       // The plane of the tissue, in PARALLEL.
       {{"ready to turn by "},
        "The tissue's slant is known, and what the turn onto it will do is said here.",

@@ -11,5 +11,6 @@ const std::vector<ReasonRow>& trackerReasons();
 const std::vector<ReasonRow>& featureReasons();
 const std::vector<ReasonRow>& controllerReasons();
 const std::vector<ReasonRow>& robotReasons();
+const std::vector<ReasonRow>& playerReasons();
 
 }  // namespace laparoscope_servo

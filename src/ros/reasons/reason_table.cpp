@@ -31,6 +31,8 @@ const std::vector<ReasonRow>& reasonRows(Speaker speaker) {
       return featureReasons();
     case Speaker::kController:
       return controllerReasons();
+    case Speaker::kPlayer:
+      return playerReasons();
     case Speaker::kRobot:
       break;
   }
@@ -67,6 +69,8 @@ std::string reasonPage() {
   addTable("Of the controller", Speaker::kController, page);
   page += "\n";
   addTable("Of the robot", Speaker::kRobot, page);
+  page += "\n";
+  addTable("Of the player of a recording", Speaker::kPlayer, page);
   return page;
 }
 

@@ -1,9 +1,9 @@
 // Explains each reason of the nodes in a sentence for a user, with what to do about it.
 //
-// Covers tracker/state, ~features of the trackers of features, controller/state (reason and caution) and
-// aesop/operating_state. The screen shows it, and the
-// part "Reasons of the states" of doc/troubleshooting.md is generated from it. One test compares both, another finds
-// reasons in the sources that are missing here.
+// Covers tracker/state, ~features of the trackers of features, controller/state (reason and caution),
+// aesop/operating_state and player/state. The screen shows it, and the part "Reasons of the states" of
+// doc/troubleshooting.md is generated from it. One test compares both, another finds reasons in the sources that are
+// missing here.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace laparoscope_servo {
 
-enum class Speaker { kTracker, kFeatures, kController, kRobot };
+enum class Speaker { kTracker, kFeatures, kController, kRobot, kPlayer };
 
 struct ReasonRow {
   std::vector<std::string> patterns;  // patterns, one of which the reason contains; each `…` stands for any text

@@ -88,7 +88,7 @@ void describeDisturbances(Table& table, SimulationConfig& c) {
 }  // namespace
 
 void describe(Table& table, SimulationConfig& c) {
-  table.choice("task", c.task, {"HOLD_VIEW", "STABILISE", "CENTRE_TIP", "FOLLOW", "POINTS", "PARALLEL"},
+  table.choice("task", c.task, {"HOLD_VIEW", "STABILISE", "CENTRE_TIP", "FOLLOW", "POINTS", "POSITION", "PARALLEL"},
                "which the controller does");
   table.number("duration", c.duration, {0.1, 36000}, "s", "of simulated time, where --duration is not given");
   table.number("rest_from", c.rest_from, {0, 0.999}, "share",
@@ -97,8 +97,9 @@ void describe(Table& table, SimulationConfig& c) {
   table.number("image_delay", c.image_delay, {0, 1}, "s", "from the exposure to the task error");
   table.number("corner_noise", c.corner_noise, {0, 20}, "px",
                "standard deviation of each coordinate of the region's corners");
-  table.number("step_noise", c.step_noise, {0, 20}, "px",
-               "standard deviation of the view's corners from an image to the next, where it is followed so, in PARALLEL");
+  table.number(
+      "step_noise", c.step_noise, {0, 20}, "px",
+      "standard deviation of the view's corners from an image to the next, where it is followed so, in PARALLEL");
   table.number("reading_time", c.reading_time, {0, 1000}, "s", "from PARALLEL's announcement to engaging again");
   table.number("points_astray", c.points_astray, {0, 1}, "share",
                "of the points of POINTS, that stand still in the image, as those on an instrument or on the lens");

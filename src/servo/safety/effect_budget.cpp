@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "laparoscope_servo/robust/largest.h"
 #include "servo/safety/effect_explanations.h"
 
 namespace laparoscope_servo::servo {
@@ -26,6 +27,11 @@ constexpr double kOpenedAxis = 0.5;
 // again after 23 s, the time constant times the log of kMost over the threshold of opening.
 constexpr double kMost = 10.0;
 constexpr double kMemory = 10.0;
+
+// NaN if one of them is: a motion that is not known is not one that used nothing up.
+double largest(double a, double b, double c) {
+  return robust::largest(robust::largest(a, b), c);
+}
 
 }  // namespace
 
@@ -52,7 +58,7 @@ struct EffectBudget::Fault {
     // A pan moves the picture in the opposite direction, a tilt in the same one.
     const Eigen::Vector2d seen = turned * Eigen::Vector2d(-displacement[0], displacement[1]);
     const Eigen::Vector4d of_axes = of_arm.cwiseProduct(displacement).cwiseAbs();
-    return {std::max({(of_picture * seen).norm(), of_axes.head<2>().norm(), of_axes[2]}), of_axes[3]};
+    return {largest((of_picture * seen).norm(), of_axes.head<2>().norm(), of_axes[2]), of_axes[3]};
   }
   bool ofPicture() const { return !of_picture.isZero() || explanation.frozen(); }
   double closed() const { return ofPicture() ? kClosed : kClosedAxis; }
@@ -117,7 +123,7 @@ double EffectBudget::spent() const {
   for (const Fault& fault : faults_) {
     if (!fault.open) continue;
     const Eigen::Vector2d wrong = fault.wrong(moved_ - fault.since, turned);
-    most = std::max({most, wrong[0] / config_.unconfirmed_turn, wrong[1] / config_.unconfirmed_insertion});
+    most = largest(most, wrong[0] / config_.unconfirmed_turn, wrong[1] / config_.unconfirmed_insertion);
   }
   return most;
 }
@@ -127,7 +133,7 @@ double EffectBudget::aside() const {
   for (const Fault& fault : faults_) {
     if (!fault.open || !fault.ofPicture()) continue;
     const Eigen::Vector4d moved = (moved_ - fault.since).cwiseAbs();
-    most = std::max({most, moved[2] / config_.unconfirmed_turn, moved[3] / config_.unconfirmed_insertion});
+    most = largest(most, moved[2] / config_.unconfirmed_turn, moved[3] / config_.unconfirmed_insertion);
   }
   return most;
 }

@@ -43,7 +43,7 @@ class EffectBudget {
   void see(double dt, const std::vector<double>& log_likelihoods, const Eigen::Vector4d& pending, double turned,
            bool breath_known);
 
-  // Used share of the budget; 1: used up.
+  // Used share of the budget; 1: used up; NaN after a displacement that was not finite.
   double spent() const;
 
   // Used share for spin and insertion: their motion while a fault of pan and tilt was open, which they do not reveal.

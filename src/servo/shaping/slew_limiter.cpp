@@ -7,12 +7,13 @@ namespace laparoscope_servo::servo {
 
 namespace {
 
-// The largest factor, from 0 to 1, for which base + factor * v stays within the limits; `base` is within them.
+// The largest factor, from 0 to 1, for which base + factor * v stays within the limits; `base` is within them. A limit
+// that is NaN allows nothing; a v that is NaN stays so.
 double scaleWithin(const Eigen::Vector4d& v, const Eigen::Vector4d& limit,
                    const Eigen::Vector4d& base = Eigen::Vector4d::Zero()) {
   double scale = 1.0;
   for (int k = 0; k < 4; ++k) {
-    if (std::abs(base[k] + v[k]) > limit[k]) {
+    if (!(std::abs(base[k] + v[k]) <= limit[k])) {
       scale = std::min(scale, std::max(0.0, limit[k] - std::copysign(1.0, v[k]) * base[k]) / std::abs(v[k]));
     }
   }

@@ -90,8 +90,14 @@ Principal principalOf(const Eigen::Matrix3d& energy, int set) {
   return principal;
 }
 
+// Weights along the axis whose magnitudes sum to one, which keeps the range of grey levels.
+image::ChannelWeights weightsAlong(const Eigen::Vector3d& axis) {
+  const Eigen::Vector3d w = axis * ((axis.sum() < 0.0 ? -1.0 : 1.0) / axis.cwiseAbs().sum());
+  return {static_cast<float>(w[0]), static_cast<float>(w[1]), static_cast<float>(w[2])};
+}
+
 // Among the sets whose mixture has nearly the most energy in the present light, takes the one with the most energy in
-// brighter light. The weights are scaled so that their magnitudes sum to one, which keeps the range of grey levels.
+// brighter light.
 image::Channels strongestMixture(const cv::Mat& patch, int saturation) {
   const Gradients gradients = gradientsOf(patch);
   const Energies as_it_is = energiesOf(gradients, clippedSets(patch, saturation));
@@ -112,10 +118,8 @@ image::Channels strongestMixture(const cv::Mat& patch, int saturation) {
     best = set;
     most_then = then;
   }
-  const double magnitude = now[best].axis.cwiseAbs().sum();
-  if (!(magnitude > 0.0)) return image::kLuma;
-  const Eigen::Vector3d w = now[best].axis * ((now[best].axis.sum() < 0.0 ? -1.0 : 1.0) / magnitude);
-  return image::ChannelWeights{static_cast<float>(w[0]), static_cast<float>(w[1]), static_cast<float>(w[2])};
+  if (!(now[best].axis.cwiseAbs().sum() > 0.0)) return image::kLuma;
+  return weightsAlong(now[best].axis);
 }
 
 image::Channels bestColours(const cv::Mat& patch, int saturation) {
@@ -139,6 +143,21 @@ image::Channels bestColours(const cv::Mat& patch, int saturation) {
 image::Channels chosenChannels(TrackedChannels wanted, const cv::Mat& patch, int saturation) {
   if (patch.channels() == 1 || wanted == TrackedChannels::kLuma) return image::kLuma;
   return wanted == TrackedChannels::kStrongest ? strongestMixture(patch, saturation) : bestColours(patch, saturation);
+}
+
+std::optional<image::Channels> brightChannels(TrackedChannels wanted, const cv::Mat& patch, int saturation,
+                                              const image::Channels& usual) {
+  if (wanted != TrackedChannels::kStrongest || saturation > 255) return std::nullopt;  // 256: nothing clips
+  const Energies brighter = energiesOf(gradientsOf(patch), clippedSets(patch, saturation / kBrighter));
+  double most = 0.0;
+  std::optional<image::Channels> best;
+  for (int set = 1; set < kSets; ++set) {
+    const Principal principal = principalOf(energyOf(brighter, set), set);
+    if (!(principal.energy > most)) continue;
+    most = principal.energy;
+    best = weightsAlong(principal.axis);
+  }
+  return best && coloursIn(*best) != coloursIn(usual) ? best : std::nullopt;
 }
 
 std::array<bool, 3> coloursIn(const image::Channels& tracked) {

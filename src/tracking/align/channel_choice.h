@@ -4,6 +4,7 @@
 
 #include <array>
 #include <opencv2/core.hpp>
+#include <optional>
 
 #include "laparoscope_servo/image/pyramid.h"
 #include "laparoscope_servo/tracking/tracker_config.h"
@@ -18,6 +19,12 @@ namespace laparoscope_servo::tracking {
 //               lamp
 //   kColour     the channels that have the strongest gradients together, without those that clip
 image::Channels chosenChannels(TrackedChannels wanted, const cv::Mat& patch, int saturation);
+
+// The mixture for light in which others clip: that of the set of channels with the strongest gradient for its noise
+// under a lamp 1.5 times as bright. Empty where that set is the one of `usual`, or where `wanted` is not kStrongest.
+// `patch`: CV_8UC3.
+std::optional<image::Channels> brightChannels(TrackedChannels wanted, const cv::Mat& patch, int saturation,
+                                              const image::Channels& usual);
 
 // Whether the tracked channels depend on blue, green, red.
 std::array<bool, 3> coloursIn(const image::Channels& tracked);

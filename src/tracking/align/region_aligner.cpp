@@ -3,7 +3,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <vector>
 
 #include "laparoscope_servo/geometry/sl3.h"
@@ -61,9 +60,10 @@ RegionAligner::RegionAligner(const TrackerConfig& config, std::shared_ptr<const 
       blocks_(lens),
       far_blocks_(lens) {}
 
-void RegionAligner::setReference(const cv::Mat& image, const geometry::Rectangle& roi) {
+void RegionAligner::setReference(const cv::Mat& image, const geometry::Rectangle& roi,
+                                 const std::optional<image::Channels>& channels) {
   const cv::Rect box = image::seenBox(lens_.get(), roi.corners(), 0.0) & cv::Rect(cv::Point(0, 0), image.size());
-  channels_ = chosenChannels(config_.channels, image(box), config_.saturation);
+  channels_ = channels ? *channels : chosenChannels(config_.channels, image(box), config_.saturation);
   finest_ = finestScale(roi);
   const cv::Rect with_border = image::seenBox(lens_.get(), roi.corners(), kBorder * (finest_ << config_.levels));
   noise_ = noiseOf(mixed(image(box), channels_.weights[0]));

@@ -14,6 +14,7 @@
 #include <Eigen/Core>
 #include <memory>
 #include <opencv2/core.hpp>
+#include <optional>
 
 #include "laparoscope_servo/geometry/homography.h"
 #include "laparoscope_servo/image/colour_patch.h"
@@ -54,8 +55,9 @@ class RegionAligner {
   explicit RegionAligner(const TrackerConfig& config, std::shared_ptr<const image::Lens> lens = nullptr);
 
   // `roi`: whole pixels, shown by the image (CV_8UC1 or CV_8UC3). In the reference everything counts as visible except
-  // highlights.
-  void setReference(const cv::Mat& image, const geometry::Rectangle& roi);
+  // highlights. `channels`: that are tracked; empty: those that chosenChannels() finds.
+  void setReference(const cv::Mat& image, const geometry::Rectangle& roi,
+                    const std::optional<image::Channels>& channels = std::nullopt);
 
   // Aligns from `start`. `reach` [px]: how far a corner may be from there without leaving the crop of the image that is
   // used.
@@ -67,6 +69,7 @@ class RegionAligner {
   // Of the image that setReference() or align() gets next, and its size: what is not 0 is covered. Empty: nothing is
   // known. Stays until it is set again.
   void setMask(const cv::Mat& mask) { mask_ = mask; }
+  const cv::Mat& mask() const { return mask_; }
 
   // Forgets occlusions and light of the last alignment, before one that starts elsewhere.
   void startAfresh();

@@ -80,7 +80,7 @@ double spreadOfShifts(const std::vector<BlockShift>& shifts, const geometry::Rec
 Matrix8d deformationCovariance(const std::vector<BlockShift>& shifts, double median, const geometry::Rectangle& roi) {
   const double deviation = median / robust::kRayleighMedian;  // in each direction
   const int count = confidentShifts(shifts);
-  if (!(deviation > kPlace) || count < kTellingShifts) return Matrix8d::Zero();
+  if (!(deviation > kPlace) || count < kDeformationShifts) return Matrix8d::Zero();
   const double left = (deviation * deviation - kPlace * kPlace) / std::pow(halfSize(roi), 2);  // variance
   const double alike = std::max(1.0, static_cast<double>(shifts.size()) / kPieces);            // blocks of one piece
   const Eigen::Matrix3d n = templateFromPixels(roi);
@@ -101,7 +101,7 @@ Matrix8d deformationCovariance(const std::vector<BlockShift>& shifts, double med
 }
 
 void DeformationMemory::complete(int confident, Matrix8d& covariance) {
-  if (confident >= kTellingShifts) {
+  if (confident >= kDeformationShifts) {
     last_ = covariance;
   } else {
     covariance = last_;

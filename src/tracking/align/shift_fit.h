@@ -23,18 +23,18 @@ struct ShiftFit {
 std::optional<ShiftFit> fitShifts(const std::vector<BlockShift>& shifts, const geometry::Rectangle& roi, double side);
 
 // Fewer confident shifts, beside an instrument, tell nothing of the rest of the region.
-constexpr int kTellingShifts = 8;
+constexpr int kDeformationShifts = 8;
 
 // Covariance of x that comes of tissue which is not a plane, or deforms: from the confident shifts' `median` [px], as
 // far as it exceeds the accuracy of block matching, and for what the fit to these shifts has taken up of it. Zero if it
-// does not, or if fewer than kTellingShifts are confident.
+// does not, or if fewer than kDeformationShifts are confident.
 Matrix8d deformationCovariance(const std::vector<BlockShift>& shifts, double median, const geometry::Rectangle& roi);
 
 // Tissue deforms where it is covered, too: as long as too few shifts tell by how much, it counts as deformed as it was.
 class DeformationMemory {
  public:
-  // `covariance`: by deformationCovariance, of so many confident shifts. With fewer than kTellingShifts it is replaced
-  // by that of the last image that had as many; zero before there was one.
+  // `covariance`: by deformationCovariance, of so many confident shifts. With fewer than kDeformationShifts it is
+  // replaced by that of the last image that had as many; zero before there was one.
   void complete(int confident, Matrix8d& covariance);
 
  private:

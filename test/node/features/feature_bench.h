@@ -87,9 +87,13 @@ class FeatureBench {
     });
   }
 
+  // More than once if need be: roscpp drops the answer of a call whose connection the server closes while another
+  // thread of the client is about to read it, which happens on a busy machine.
   bool reset(const std::string& kind) {
-    std_srvs::Trigger call;
-    return ros::service::call("/scope/" + kind + "/reset", call) && call.response.success;
+    return waitFor([&] {
+      std_srvs::Trigger call;
+      return ros::service::call("/scope/" + kind + "/reset", call) && call.response.success;
+    });
   }
 
   ros::NodeHandle& node() { return node_; }

@@ -268,6 +268,50 @@ TEST_F(VideoPlayer, HoldsItsFirstImageUntilARegionIsSelectedAndGoesOnAsItIsTold)
   EXPECT_TRUE(player_->isRunning());
 }
 
+// Where a screen is, it is said there, and a file that is repaired meanwhile is played.
+TEST_F(VideoPlayer, SaysOnItsStateWhatCannotBeReadAndTriesAgain) {
+  parameters_["stay"] = true;
+  parameters_["wait_for_screen"] = true;
+  const std::string whole = bag(true), cut = folder_.file("cut.bag");
+  std::filesystem::copy_file(whole, cut);
+  std::filesystem::resize_file(cut, std::filesystem::file_size(whole) / 2);
+  start(cut);
+  ASSERT_NO_FATAL_FAILURE(listen());
+  Recorder<PlaybackState> states(node_, "player/state");
+  const auto is = [&](const std::string& state) {
+    return spinUntil([&] { return !states.all.empty() && states.all.back()->state == state; });
+  };
+  ASSERT_TRUE(is(PlaybackState::FAILED)) << contents(log());
+  EXPECT_NE(states.all.back()->reason.find("cut.bag' breaks off"), std::string::npos) << states.all.back()->reason;
+  const auto control = [&](const std::string& command) {
+    ControlPlayback call;
+    call.request.command = command;
+    return ros::service::call("player/control", call) && call.response.success;
+  };
+  EXPECT_FALSE(control("PLAY"));
+  const std::size_t before = states.all.size();
+  EXPECT_TRUE(control("AGAIN"));
+  EXPECT_TRUE(spinUntil([&] { return states.all.size() > before; }));
+  EXPECT_TRUE(is(PlaybackState::FAILED)) << "it is as it was";
+  std::filesystem::copy_file(whole, cut, std::filesystem::copy_options::overwrite_existing);
+  EXPECT_TRUE(control("AGAIN"));
+  ASSERT_TRUE(is(PlaybackState::ENDED)) << contents(log());
+  EXPECT_EQ(images_->all.size(), static_cast<std::size_t>(kImages));
+  EXPECT_EQ(states.all.back()->reason, "");
+  player_->kill(SIGINT);
+  EXPECT_EQ(player_->exitStatus(20.0), 0);
+}
+
+TEST_F(VideoPlayer, EndsWithStatusOneWhatCouldNotBeRead) {
+  parameters_["stay"] = true;
+  parameters_["wait_for_screen"] = true;
+  start(folder_.file("missing.mp4"));
+  Recorder<PlaybackState> states(node_, "player/state");
+  ASSERT_TRUE(spinUntil([&] { return !states.all.empty() && states.all.back()->state == PlaybackState::FAILED; }));
+  player_->kill(SIGINT);
+  EXPECT_EQ(player_->exitStatus(20.0), 1);
+}
+
 TEST_F(VideoPlayer, TakesIntrinsicsFromACalibration) {
   parameters_["camera_info"] = calibration(64);
   ASSERT_NO_FATAL_FAILURE(play(video()));

@@ -126,10 +126,19 @@ std_srvs::Trigger::Response AesopBench::call(const std::string& service) {
   return trigger.response;
 }
 
+// On a busy machine the emulator may be silent for longer than the node bears, who refuses then, or disables again:
+// then once more.
 bool AesopBench::enable() {
-  const std_srvs::Trigger::Response answer = call("enable");
-  if (!answer.success) std::cerr << "enable: " << answer.message << "\n";
-  return answer.success && waitFor([this] { return stateIs("ENABLED"); });
+  const double end = steadyNow() + 20.0;
+  std::string why;
+  do {
+    const std_srvs::Trigger::Response answer = call("enable");
+    if (answer.success && waitFor([this] { return stateIs("ENABLED"); }, 2.0)) return true;
+    why = answer.success ? state_->reason : answer.message;
+    std::cerr << "enable: " << why << "\n";
+  } while (steadyNow() < end && (why.find("has not confirmed the enable") != std::string::npos ||
+                                 why.find("has sent no status for") != std::string::npos));
+  return false;
 }
 
 bool AesopBench::startMoving() {

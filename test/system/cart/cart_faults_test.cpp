@@ -1,5 +1,5 @@
 // What stops the arm, one fault after the other on the whole cart: each in the situations that its line names, see
-// fault_table.cpp; where the scope goes by features, in cart_feature_faults.test. CART_FAULTS=all tries all situations,
+// fault_table.cpp; those of other tasks, in cart_task_faults.test. CART_FAULTS=all tries all situations,
 // CART_FAULT_PAIRS=N as many random pairs, from CART_FAULT_SEED on; CART_TIME_LIMIT=S gives it more than 900 s. It
 // prints what happened, for doc/what_stops_the_arm.md.
 #include <gtest/gtest.h>
@@ -40,6 +40,7 @@ std::vector<Case> cases() {
   };
   // One tracker after the other.
   add({Situation::kServo, Situation::kHold, Situation::kManual});
+  add({Situation::kPosition});
   add({Situation::kFollow});
   add({Situation::kPoints});
   add({Situation::kParallel});

@@ -33,6 +33,8 @@ const char* name(Situation situation) {
       return "FOLLOW";
     case Situation::kPoints:
       return "POINTS";
+    case Situation::kPosition:
+      return "POSITION";
     case Situation::kParallel:
       return "PARALLEL";
   }
@@ -96,7 +98,8 @@ std::vector<std::string> FaultCart::controllerArguments() {
           "operating_state:=aesop/operating_state",
           "measured_cv:=aesop/measured_cv",
           "motion_features:=motion/features",
-          "points_features:=points/features"};
+          "points_features:=points/features",
+          "homography:=tracker/homography"};
 }
 
 std::string FaultCart::waitFor(const char* what, const std::function<bool()>& condition, double seconds) {
@@ -176,6 +179,7 @@ std::string FaultCart::go(Situation situation) {
   SelectTask task;
   task.request.task = manual ? ControllerState::MANUAL : ControllerState::HOLD_VIEW;
   if (by_features_ != nullptr) task.request.task = by_features_->task;
+  if (situation == Situation::kPosition) task.request.task = ControllerState::POSITION;
   if (!test_support::callWithin("controller/select_task", task)) return "controller/select_task does not answer";
   if (!task.response.success) return task.response.message;
   // A line that is up may be lost once more on a busy machine.

@@ -18,8 +18,17 @@
 
 namespace laparoscope_servo::test {
 
-// SERVO by the region of interest; HOLD; MANUAL; SERVO by an object, by points, on PARALLEL's circle.
-enum class Situation : unsigned { kServo = 1, kHold = 2, kManual = 4, kFollow = 8, kPoints = 16, kParallel = 32 };
+// SERVO by the region of interest; HOLD; MANUAL; SERVO by an object, by points, by the region's homography, on
+// PARALLEL's circle.
+enum class Situation : unsigned {
+  kServo = 1,
+  kHold = 2,
+  kManual = 4,
+  kFollow = 8,
+  kPoints = 16,
+  kPosition = 32,
+  kParallel = 64
+};
 
 constexpr double kStick = 0.08;  // rad/s, of pan, in MANUAL
 

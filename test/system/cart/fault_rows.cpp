@@ -39,8 +39,8 @@ FaultRow stranger(const std::string& name, unsigned usually, unsigned otherwise,
   return row;
 }
 
-FaultRow alsoByFeatures(FaultRow row) {
-  row.usually |= row.outcome == Outcome::kStands ? kFeatures | kParallel : kFeatures;
+FaultRow alsoInOtherTasks(FaultRow row) {
+  row.usually |= row.outcome == Outcome::kStands ? kOtherTasks | kParallel : kOtherTasks;
   return row;
 }
 

@@ -11,7 +11,8 @@ constexpr unsigned kServo = static_cast<unsigned>(Situation::kServo);
 constexpr unsigned kHold = static_cast<unsigned>(Situation::kHold);
 constexpr unsigned kManual = static_cast<unsigned>(Situation::kManual);
 constexpr unsigned kAll = kServo | kHold | kManual;
-constexpr unsigned kFeatures = static_cast<unsigned>(Situation::kFollow) | static_cast<unsigned>(Situation::kPoints);
+constexpr unsigned kOtherTasks = static_cast<unsigned>(Situation::kFollow) | static_cast<unsigned>(Situation::kPoints) |
+                                 static_cast<unsigned>(Situation::kPosition);
 constexpr unsigned kParallel = static_cast<unsigned>(Situation::kParallel);
 
 // States of the controller that a fault may lead to: what is missing may come again, or the picture is doubted.
@@ -35,9 +36,9 @@ FaultRow stranger(
     const std::string& name, unsigned usually, unsigned otherwise, Outcome outcome, const std::string& states,
     const std::string& topic, const std::string& says, double rate, const Begin& begin = [](FaultCart&) {});
 
-// Also where the scope goes by an object or by points, and what stops it also on PARALLEL's circle, which ends by
-// itself; by the tests of these.
-FaultRow alsoByFeatures(FaultRow row);
+// Also in the tasks FOLLOW, POINTS and POSITION, and what stops it also on PARALLEL's circle, which ends by itself; by
+// the test of these.
+FaultRow alsoInOtherTasks(FaultRow row);
 
 // What comes of it shows later: a loop that swings, a fault that grows. `seconds`: how long it is watched.
 FaultRow watched(FaultRow row, double seconds);

@@ -10,15 +10,15 @@ namespace {
 std::vector<FaultRow> ofImages() {
   using namespace image_faults;
   return {
-      alsoByFeatures(image("frozen", kServo | kHold, Outcome::kStands, kDoubted, frozen)),
+      alsoInOtherTasks(image("frozen", kServo | kHold, Outcome::kStands, kDoubted, frozen)),
       image("frozen where the region is", kServo, Outcome::kStands, kDoubted, frozenInside),
       image("half of the last", kServo, Outcome::kStands, kDoubted, half),
       inTurn("two", 2),
-      alsoByFeatures(inTurn("twelve", 12)),
+      alsoInOtherTasks(inTurn("twelve", 12)),
       image("swapped in pairs", kServo, Outcome::kEither, kLost, swapped),
-      alsoByFeatures(image("mirrored left to right", kServo, Outcome::kStands, kDoubted, [] { return flipped(1); })),
+      alsoInOtherTasks(image("mirrored left to right", kServo, Outcome::kStands, kDoubted, [] { return flipped(1); })),
       image("mirrored upside down", 0, Outcome::kStands, kDoubted, [] { return flipped(0); }),
-      alsoByFeatures(image("rolled by 180 degrees", kServo, Outcome::kStands, kDoubted, [] { return flipped(-1); })),
+      alsoInOtherTasks(image("rolled by 180 degrees", kServo, Outcome::kStands, kDoubted, [] { return flipped(-1); })),
       image("mirrored and rolled by 90 degrees", 0, Outcome::kStands, kDoubted, flippedAndTurned),
       image("shifted by 40 px", 0, Outcome::kEither, kDoubted,
             [] {
@@ -28,25 +28,25 @@ std::vector<FaultRow> ofImages() {
             [] {
               return warped({1.25, 0.0, -80.0, 0.0, 1.25, -60.0});
             }),
-      alsoByFeatures(image("of another size", kServo, Outcome::kStands, kLost, [] { return resized(320, 240); })),
+      alsoInOtherTasks(image("of another size", kServo, Outcome::kStands, kLost, [] { return resized(320, 240); })),
       image("of one pixel", kServo, Outcome::kStands, kLost, [] { return resized(1, 1); }),
-      alsoByFeatures(image("late by 0.5 s", kServo, Outcome::kStands, kLost, [] { return late(0.5); })),
+      alsoInOtherTasks(image("late by 0.5 s", kServo, Outcome::kStands, kLost, [] { return late(0.5); })),
       image("1 in 5 stamped 30 ms early", kServo, Outcome::kEither, kLost, [] { return stamped(-0.03, 5); }),
       image("1 in 5 stamped 1 s ahead", kServo, Outcome::kEither, kLost, [] { return stamped(1.0, 5); }),
-      alsoByFeatures(image("stamped 5 s ago", 0, Outcome::kStands, kDoubted, [] { return stamped(-5.0); })),
+      alsoInOtherTasks(image("stamped 5 s ago", 0, Outcome::kStands, kDoubted, [] { return stamped(-5.0); })),
       image("stamped 1 s ahead", kServo, Outcome::kStands, kLost, [] { return stamped(1.0); }),
       image("stamped unevenly, 0 to 0.1 s later", kServo, Outcome::kGoesOn, "", [] { return unevenlyStamped(0.1); }),
       image("all of one stamp", kServo, Outcome::kStands, kLost, [] { return slowlyStamped(0.0); }),
       image("stamps that go half as fast", 0, Outcome::kStands, kLost, [] { return slowlyStamped(0.5); }),
-      alsoByFeatures(image("without stamps", kServo, Outcome::kStands, kLost, unstamped)),
+      alsoInOtherTasks(image("without stamps", kServo, Outcome::kStands, kLost, unstamped)),
       image("flickering", kServo, Outcome::kEither, kLost, flickering),
-      alsoByFeatures(image("black", kServo, Outcome::kStands, kLost, black)),
-      alsoByFeatures(image("none", kServo | kHold, Outcome::kStands, kLost, silent)),
+      alsoInOtherTasks(image("black", kServo, Outcome::kStands, kLost, black)),
+      alsoInOtherTasks(image("none", kServo | kHold, Outcome::kStands, kLost, silent)),
       image("1 in 2 dropped", kServo, Outcome::kEither, kLost, [] { return dropped(2); }),
       image("1 in 10 dropped", 0, Outcome::kGoesOn, "", [] { return dropped(10); }),
       image("1 in 50 dropped", 0, Outcome::kGoesOn, "", [] { return dropped(50); }),
       image("1 in 4 of another camera", kServo, Outcome::kEither, kLost, [] { return otherScene(4); }),
-      alsoByFeatures(image("of another camera", kServo, Outcome::kStands, kLost, [] { return otherScene(1); })),
+      alsoInOtherTasks(image("of another camera", kServo, Outcome::kStands, kLost, [] { return otherScene(1); })),
       image("of an encoding that they are not in", 0, Outcome::kStands, kLost, mislabelled),
   };
 }
@@ -90,12 +90,14 @@ std::vector<FaultRow> ofInputs() {
                "elsewhere", 25.0, [](FaultCart& cart) { cart.relay->begin(image_faults::silent()); }),
       stranger("measured velocity: another's", 0, kServo, Outcome::kEither, kDoubted, "aesop/measured_cv", "measured",
                50.0),
-      alsoByFeatures(stranger("camera_info: another's, of twice the focal length", 0, kServo, Outcome::kGoesOn, "",
-                              "camera_info", "intrinsics", 25.0)),
+      alsoInOtherTasks(stranger("camera_info: another's, of twice the focal length", 0, kServo, Outcome::kGoesOn, "",
+                                "camera_info", "intrinsics", 25.0)),
       byFeatures(Situation::kFollow, "motion/features", "object_elsewhere"),
       byFeatures(Situation::kPoints, "points/features", "points_elsewhere"),
+      byFeatures(Situation::kPosition, "tracker/homography", "homography_elsewhere"),
       silentByFeatures(Situation::kFollow, "motion/features", "object_elsewhere"),
       silentByFeatures(Situation::kPoints, "points/features", "points_elsewhere"),
+      silentByFeatures(Situation::kPosition, "tracker/homography", "homography_elsewhere"),
       stranger("images: another's", kServo, kServo | kHold, Outcome::kEither, kDoubted, "relayed/image_raw", "grey",
                25.0),
   };
@@ -157,7 +159,7 @@ std::vector<FaultRow> ofProcesses() {
   for (FaultRow& row : rows) {
     if (row.name != "tracker: hangs") continue;
     row.otherwise = kServo | kHold;
-    row.usually |= kFeatures | kParallel;
+    row.usually |= kOtherTasks | kParallel;
   }
   return rows;
 }
@@ -167,7 +169,7 @@ std::vector<FaultRow> ofFrames() {
     return stranger("tf: " + name, usually, kServo | kHold, Outcome::kEither, kDoubted, "/tf", says, 50.0);
   };
   return {
-      row("another's camera, 50 mm off", kServo | kFeatures, "tip_off"),
+      row("another's camera, 50 mm off", kServo | kOtherTasks, "tip_off"),
       row("another's camera, not a number", 0, "tip_nan"),
       row("another's shaft, 50 mm off", kServo, "shaft_off"),
       row("another's insertion point", kServo, "trocar_off"),

@@ -13,6 +13,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "laparoscope_servo/Homography.h"
 #include "laparoscope_servo/OperatingState.h"
 #include "laparoscope_servo/ScopeVelocity.h"
 #include "laparoscope_servo/TaskError.h"
@@ -81,6 +82,20 @@ TrackedFeatures pointsElsewhere() {
     point.parameters = {point.desired[0] + 100.0, point.desired[1]};
   }
   return features;
+}
+
+// A region far to the right.
+Homography homographyElsewhere() {
+  Homography message;
+  message.header.stamp = ros::Time::now();
+  message.reference_stamp = ros::Time(1.0);
+  message.state = Homography::TRACKING;
+  message.has_intrinsics = 1;
+  message.g = {1.0, 0.0, 120.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
+  message.h = {1.0, 0.0, 0.3, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
+  message.visible_fraction = 1.0;
+  message.corner_error = 0.1;
+  return message;
 }
 
 OperatingState enabled() {
@@ -182,6 +197,7 @@ int runStranger(int argc, char** argv) {
       {"elsewhere", [&] { return publish<TaskError>(topic, rate, elsewhere, ready); }},
       {"object_elsewhere", [&] { return publish<TrackedFeatures>(topic, rate, objectElsewhere, ready); }},
       {"points_elsewhere", [&] { return publish<TrackedFeatures>(topic, rate, pointsElsewhere, ready); }},
+      {"homography_elsewhere", [&] { return publish<Homography>(topic, rate, homographyElsewhere, ready); }},
       {"enabled", [&] { return publish<OperatingState>(topic, rate, enabled, ready); }},
       {"velocity",
        [&] {

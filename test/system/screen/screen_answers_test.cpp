@@ -1,12 +1,15 @@
 // Answers of services that come late, when something else was asked for meanwhile: the screen's link, without its
-// window, and nodes whose services wait.
+// window, and nodes whose services wait; and nodes that end.
 #include <gtest/gtest.h>
 #include <ros/ros.h>
 
 #include "ros/common/clocks.h"
+#include "screen/band_text.h"
 #include "screen/ros_link.h"
 #include "support/ros_tests.h"
+#include "system/aesop/child_process.h"
 #include "system/screen/fake_nodes.h"
+#include "system/screen/image_feed.h"
 
 namespace laparoscope_servo {
 namespace {
@@ -153,6 +156,23 @@ TEST(ScreenLink, ANodeInPlaceOfOneThatHasEndedHasNotSpokenYet) {
   EXPECT_LT(tracker().heard_at, 0.0);
   state.publish(TrackerState());
   EXPECT_TRUE(waitFor([&] { return tracker().heard_at >= 0.0; }));
+}
+
+// Its connection ends, but nobody tells roscpp that the node has: what the band says has to come from what it hears.
+TEST(ScreenLink, ATrackerThatIsKilledIsNotShownAsIfItTracked) {
+  test_support::ImageFeed camera;
+  camera.show(test_support::ImageFeed::tissue({640, 480}));
+  test::ChildProcess tracker(TRACKER, {"__ns:=killed", "__name:=tracker", "image:=/camera/image_raw"});
+  screen::RosLink link([] {}, "killed");
+  const auto word = [&] { return trackerBand(link.facts(), steadyNow()).word; };
+  ASSERT_TRUE(waitFor([&] { return word() == "IDLE" && link.facts().tracker.result_at >= 0.0; })) << word();
+  link.tracker().selectRegion(QRect(250, 170, 140, 140));
+  ASSERT_TRUE(waitFor([&] { return word() == "TRACKING"; })) << word() << link.facts().answer.text;
+  tracker.kill(SIGKILL);
+  ASSERT_TRUE(waitFor([&] { return word() != "TRACKING"; }));
+  EXPECT_EQ(word(), "NO RESULT");
+  EXPECT_EQ(link.facts().tracker.state, "TRACKING") << "its last word";
+  EXPECT_TRUE(waitFor([&] { return word() == "SILENT"; })) << word();
 }
 
 }  // namespace

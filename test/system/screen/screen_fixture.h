@@ -67,6 +67,14 @@ class ScreenFixture : public testing::Test {
   void drag(const QPoint& from, const QPoint& to) {
     hands(moveTo(from) + "mousedown 1 " + moveTo((from + to) / 2) + moveTo(to) + "mouseup 1");
   }
+  // Draws until the tracker tracks: a busy machine makes the picture old for a moment, and then nothing can be drawn.
+  bool selects(const QPoint& from, const QPoint& to) {
+    for (int tries = 0; tries < 10; ++tries) {
+      drag(from, to);
+      if (waitFor([this] { return word("Tracker") == "TRACKING"; }, 5.0)) return true;
+    }
+    return false;
+  }
   // The middle of the picture has a colour.
   bool isColoured() const {
     const QImage shown = image().grab().toImage();

@@ -1,5 +1,5 @@
-// How long it takes from a hand to what another process hears: STOP, the dead-man switch, a slider. Run by
-// scripts/measure_screen in front of the simulated cart; no test.
+// How long it takes from a hand to what another process hears: STOP, the dead-man switch by button and by key, each
+// slider. Run by scripts/measure_screen in front of the simulated cart; no test.
 //
 //   screen_hands TIMES SECONDS_HELD
 //
@@ -31,6 +31,8 @@
 
 namespace laparoscope_servo {
 namespace {
+
+const char* const kSliders[] = {"Pan", "Tilt", "Spin", "Insertion"};
 
 bool isZero(const ScopeVelocity& v) {
   return v.pan == 0.0 && v.tilt == 0.0 && v.spin == 0.0 && v.insertion == 0.0;
@@ -65,6 +67,8 @@ class Hand {
     display_ = reinterpret_cast<void* (*)(const char*)>(::dlsym(x, "XOpenDisplay"))(nullptr);
     flush_ = reinterpret_cast<int (*)(void*)>(::dlsym(x, "XFlush"));
     button_ = reinterpret_cast<int (*)(void*, unsigned, int, unsigned long)>(::dlsym(test, "XTestFakeButtonEvent"));
+    key_ = reinterpret_cast<int (*)(void*, unsigned, int, unsigned long)>(::dlsym(test, "XTestFakeKeyEvent"));
+    code_ = reinterpret_cast<unsigned char (*)(void*, unsigned long)>(::dlsym(x, "XKeysymToKeycode"));
     motion_ = reinterpret_cast<int (*)(void*, int, int, int, unsigned long)>(::dlsym(test, "XTestFakeMotionEvent"));
     if (display_ == nullptr) throw std::runtime_error("no display");
   }
@@ -74,11 +78,19 @@ class Hand {
     button_(display_, 1, down ? 1 : 0, 0), flush_(display_);
     return now;
   }
+  double f9(bool down) {
+    constexpr unsigned long kF9 = 0xffc6;  // XK_F9
+    const double now = steadyNow();
+    key_(display_, code_(display_, kF9), down ? 1 : 0, 0), flush_(display_);
+    return now;
+  }
 
  private:
   void* display_;
   int (*flush_)(void*);
   int (*button_)(void*, unsigned, int, unsigned long);
+  int (*key_)(void*, unsigned, int, unsigned long);
+  unsigned char (*code_)(void*, unsigned long);
   int (*motion_)(void*, int, int, int, unsigned long);
 };
 
@@ -140,9 +152,22 @@ class Measurement {
   void run(const std::map<std::string, QPoint>& places) {
     call<SelectTask>("controller/select_task", [](SelectTask& task) { task.request.task = "MANUAL"; });
     stop(places.at("stop"));
-    release("dead_man", places.at("dead_man"), places.at("dead_man"));
-    release("slider", places.at("slider"), places.at("slider") + QPoint(60, 0));
-    hold("dead_man", places.at("dead_man"));
+    const auto button = [this](bool down) { return hand_.button(down); };
+    const auto key = [this](bool down) { return hand_.f9(down); };
+    const QPoint dead_man = places.at("dead_man"), picture = places.at("image");
+    release("dead_man", "dead_man_button", dead_man, dead_man, button);
+    for (const char* const slider : kSliders) {
+      const QPoint place = places.at(slider);
+      release("slider", std::string("slider_") + slider, place, place + QPoint(60, 0), button);
+    }
+    hold("false_releases_button", dead_man, button);
+    hand_.move(picture);  // a click there gives the screen the focus, and draws nothing
+    ros::WallDuration(0.2).sleep();
+    hand_.button(true);
+    hand_.button(false);
+    ros::WallDuration(0.5).sleep();
+    release("dead_man", "dead_man_key", picture, picture, key);
+    hold("false_releases_key", picture, key);
   }
 
  private:
@@ -200,30 +225,36 @@ class Measurement {
       hand_.button(false);
     }
   }
-  void release(const std::string& topic, const QPoint& from, const QPoint& to) {
+  void release(const std::string& topic, const std::string& name, const QPoint& from, const QPoint& to,
+               const std::function<double(bool)>& press) {
     for (int k = 0; k < times_ && ros::ok(); ++k) {
       hand_.move(from);
       ros::WallDuration(0.1).sleep();
-      hand_.button(true);
+      press(true);
       hand_.move(to);
       if (!wait([&] { return heard(topic).moves; })) {
-        std::cerr << topic << " cannot be held" << std::endl;
-        hand_.button(false);
+        std::cerr << name << " cannot be held" << std::endl;
+        press(false);
         return;
       }
       ros::WallDuration(0.3).sleep();
-      const double released = hand_.button(false);
-      if (wait([&] { return !heard(topic).moves; })) tell(topic, heard(topic).since - released);
+      const double released = press(false);
+      if (wait([&] { return !heard(topic).moves; })) tell(name, heard(topic).since - released);
     }
   }
-  void hold(const std::string& topic, const QPoint& place) {
+  void hold(const std::string& name, const QPoint& place, const std::function<double(bool)>& press) {
     hand_.move(place);
-    hand_.button(true);
-    if (!wait([&] { return heard(topic).moves; })) return;
-    const int before = zeros(topic);
+    press(true);
+    if (!wait([&] { return heard("dead_man").moves; })) {
+      std::cerr << name << ": it cannot be held" << std::endl;
+      press(false);
+      return;
+    }
+    const int before = zeros("dead_man");
     ros::WallDuration(held_).sleep();
-    tell("false_releases", zeros(topic) - before);
-    hand_.button(false);
+    tell(name, zeros("dead_man") - before);
+    press(false);
+    wait([&] { return !heard("dead_man").moves; });
   }
   int zeros(const std::string& topic) {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -264,8 +295,9 @@ int main(int argc, char** argv) {
     auto* widget = screen.findChild<QWidget*>(name);
     return widget->mapToGlobal(widget->rect().center());
   };
-  const std::map<std::string, QPoint> places{
-      {"stop", centre("stop")}, {"dead_man", centre("dead_man")}, {"slider", centre("Pan")}};
+  std::map<std::string, QPoint> places{
+      {"stop", centre("stop")}, {"dead_man", centre("dead_man")}, {"image", centre("image")}};
+  for (const char* const slider : kSliders) places[slider] = centre(slider);
   std::thread work([&, program = std::string(argv[0]), times = std::stoi(argv[1]), held = std::stod(argv[2])] {
     try {
       Measurement(program, times, held).run(places);

@@ -1,5 +1,8 @@
-// replay.launch with the screen's window, to the end of the recording: what a user sees, read by OCR.
+// replay.launch with the screen's window, to the end of the recording, or to where it breaks off: what a user sees,
+// read by OCR.
+#include <cv_bridge/cv_bridge.h>
 #include <gtest/gtest.h>
+#include <rosbag/bag.h>
 
 #include <QGuiApplication>
 #include <filesystem>
@@ -43,6 +46,30 @@ TEST_F(ScreenReplay, SaysThatTheRecordingHasEnded) {
   EXPECT_EQ(test_support::notRead(text, words), "") << text;
   launch.kill(SIGINT);
   EXPECT_EQ(launch.exitStatus(60.0), 0);
+}
+
+// As a copy that was not finished leaves it.
+TEST_F(ScreenReplay, SaysThatABagWasCutOffAndWhatToDo) {
+  const std::string file = folder_.file("cut.bag");
+  {
+    rosbag::Bag bag(file, rosbag::bagmode::Write);
+    for (int k = 0; k < kImages; ++k) {
+      std_msgs::Header header;
+      header.stamp = ros::Time(100.0 + 0.04 * k);
+      const cv::Mat image = cv::imread(folder_.file(cv::format("images/%03d.png", k)));
+      bag.write("/camera/image_raw", header.stamp, *cv_bridge::CvImage(header, "bgr8", image).toImageMsg());
+    }
+  }
+  std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
+  test::ChildProcess launch("/bin/sh",
+                            {"-c", "exec roslaunch laparoscope_servo replay.launch screen:=window bag:=" + file},
+                            folder_.file("log"));
+  const std::vector<std::string> words{"UNREADABLE", "breaks off", "reindex"};
+  const std::string text = test_support::readUntil(words);
+  EXPECT_EQ(test_support::notRead(text, words), "") << text;
+  EXPECT_TRUE(launch.isRunning());
+  launch.kill(SIGINT);
+  EXPECT_NE(launch.exitStatus(60.0), -1) << "it ends";
 }
 
 }  // namespace

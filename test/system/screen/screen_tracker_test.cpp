@@ -38,14 +38,10 @@ class ScreenTracker : public test_support::ScreenFixture {
   }
   const screen::BandText& tracker() const { return find<screen::StateBand>("Tracker").text(); }
   QString answer() const { return find<QLabel>("answer").text(); }
-  // By mouse, in px of the image. A busy machine makes the picture old for a moment, and then nothing can be drawn.
+  // By mouse, in px of the image.
   bool selects(const QSize& size, const QRect& region) {
-    for (int tries = 0; tries < 10; ++tries) {
-      drag(onDisplay(size, region.topLeft()),
-           onDisplay(size, region.topLeft() + QPoint(region.width(), region.height())));
-      if (waitFor([this] { return word("Tracker") == "TRACKING"; }, 5.0)) return true;
-    }
-    return false;
+    return ScreenFixture::selects(onDisplay(size, region.topLeft()),
+                                  onDisplay(size, region.topLeft() + QPoint(region.width(), region.height())));
   }
   void track() {
     feed_.show(ImageFeed::tissue(kSize));

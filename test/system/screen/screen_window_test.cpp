@@ -1,79 +1,23 @@
 // The screen's window, with real events of an X server, against nodes that say what the test wants.
 #include <diagnostic_msgs/DiagnosticArray.h>
 
-#include <QMenu>
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
 #include "system/aesop/child_process.h"
 #include "system/screen/display_text.h"
-#include "system/screen/fake_nodes.h"
-#include "system/screen/screen_fixture.h"
+#include "system/screen/screen_window_fixture.h"
 
 namespace laparoscope_servo {
 namespace {
 
 using test_support::hands;
 using test_support::moveTo;
+using test_support::ScreenWindow;
 using test_support::waitFor;
 
 const QSize kOriginal(1280, 720);
-
-class ScreenWindow : public test_support::ScreenFixture {
- protected:
-  void SetUp() override {
-    static const char* const names[] = {"pan", "tilt", "spin", "insertion"};
-    for (const char* name : names) ros::param::set(std::string("controller/limits/velocity/") + name, 0.1);
-    show({1280, 800});
-    ASSERT_TRUE(waitFor([this] { return nodes_.connected() && word("Tracker") == "IDLE" && isColoured(); }));
-    nodes_.forget();
-  }
-  // The other hand: another window of this program, as a dialog would be.
-  std::unique_ptr<QWidget> otherWindow() {
-    auto other = std::make_unique<QWidget>();
-    other->setGeometry(1300, 10, 200, 100);
-    other->show();
-    waitFor([&] { return other->windowHandle()->isExposed(); });
-    return other;
-  }
-  bool deadManIs(bool held) {
-    return waitFor([&] { return !nodes_.deadMan().empty() && nodes_.deadMan().back() == held; });
-  }
-  // A machine too busy for the screen to say in time that it lives ends a hold: then once more.
-  void hold(const std::string& begin, const std::string& end, const std::function<bool()>& is_held) {
-    for (int tries = 0; tries < 20; ++tries) {
-      nodes_.forget();
-      hands(begin);
-      if (waitFor(is_held, 5.0)) return;
-      hands(end);
-      waitFor([this] { return isSilent(); });
-    }
-    FAIL() << "it could not be held";
-  }
-  bool isRepeated() const {
-    const std::vector<bool> words = nodes_.deadMan();
-    return words.size() >= 6 && std::count(words.begin() + 1, words.end(), false) == 0;
-  }
-  void holdDeadMan() {
-    ASSERT_TRUE(waitFor([this] { return nodes_.connected(); }));
-    hold(moveTo(centreOf(find<QWidget>("dead_man"))) + "mousedown 1", "mouseup 1", [this] { return isRepeated(); });
-    EXPECT_FALSE(nodes_.deadMan().front()) << "it was seen released";
-  }
-  bool isSilent() {  // no word for as long as ten of them would take
-    const std::size_t told = nodes_.deadMan().size() + nodes_.manual().size();
-    waitFor([] { return false; }, 0.5);
-    return nodes_.deadMan().size() + nodes_.manual().size() == told;
-  }
-  bool isStopped(int times) {
-    return waitFor([&] {
-      return nodes_.robot_stops == times && nodes_.controller_stops == times && nodes_.disables == times &&
-             nodes_.disengages == times;
-    });
-  }
-
-  test_support::FakeNodes nodes_;
-};
 
 TEST_F(ScreenWindow, ARegionIsDrawnWithinOnePixelOfTheScreenAtAnySize) {
   const QRect wanted(310, 170, 403, 287);
@@ -277,138 +221,6 @@ TEST_F(ScreenWindow, ACameraThatDiesIsSeen) {
   EXPECT_TRUE(waitFor([this] { return !isColoured(); })) << "the last picture does not stay as if live";
   nodes_.runCamera(true);
   EXPECT_TRUE(waitFor([this] { return isColoured(); }));
-}
-
-TEST_F(ScreenWindow, StopsByItsButtonAndByKeysFromAnyFocus) {
-  click("stop");
-  EXPECT_TRUE(isStopped(1)) << nodes_.robot_stops << nodes_.controller_stops << nodes_.disables << nodes_.disengages;
-  const auto answer = [this] { return find<QLabel>("answer").text().toStdString(); };
-  EXPECT_TRUE(waitFor([&] { return answer() == "STOP: done. The arm is disabled. The controller is disengaged."; }))
-      << answer();
-  hands("key Escape");
-  EXPECT_TRUE(isStopped(2));
-  const auto other = otherWindow();
-  focus(*other);
-  hands("key Pause");
-  EXPECT_TRUE(isStopped(3)) << "the focus is in another window";
-  focus(*screen_);
-  QMenu menu;
-  menu.addAction("a");
-  menu.popup(QPoint(600, 300));
-  ASSERT_TRUE(waitFor([&] { return menu.isVisible() && QApplication::activePopupWidget() == &menu; }));
-  hands("key Pause");
-  EXPECT_TRUE(isStopped(4)) << "a menu is open";
-  menu.close();
-}
-
-TEST_F(ScreenWindow, StopsWhileAServiceHangs) {
-  nodes_.close("enable");
-  click("enable");
-  ASSERT_TRUE(waitFor([this] { return nodes_.enables == 1; }));
-  nodes_.change([](TrackerState&, ControllerState&, OperatingState& robot) { robot.state = "PAUSED"; });
-  EXPECT_TRUE(waitFor([this] { return word("Robot") == "PAUSED"; })) << "the screen lives";
-  click("stop");
-  EXPECT_TRUE(isStopped(1));
-  nodes_.open("enable");
-}
-
-TEST_F(ScreenWindow, TheDeadManEndsWithTheMouseButton) {
-  holdDeadMan();
-  hands("mouseup 1");
-  EXPECT_TRUE(deadManIs(false));
-  EXPECT_TRUE(waitFor([this] { return isSilent(); })) << "who holds another switch is not disturbed";
-}
-
-TEST_F(ScreenWindow, TheDeadManEndsWithTheFocus) {
-  holdDeadMan();
-  const auto other = otherWindow();
-  focus(*other);
-  EXPECT_TRUE(deadManIs(false));
-  focus(*screen_);
-  EXPECT_TRUE(waitFor([this] { return isSilent(); })) << "and stays so";
-  EXPECT_FALSE(nodes_.deadMan().back());
-  hands("mouseup 1");
-}
-
-TEST_F(ScreenWindow, TheDeadManEndsWhenTheWindowIsMinimised) {
-  const test::ChildProcess manager("/usr/bin/env", {"cwm", "-c", "/dev/null"});
-  const std::string window = std::to_string(screen_->winId());
-  ASSERT_TRUE(waitFor([&] {  // it takes the window, and gives it the focus when it is asked to
-    return std::system(("xdotool windowactivate " + window + " 2>/dev/null").c_str()) == 0 && screen_->isActiveWindow();
-  }));
-  holdDeadMan();
-  hands("windowminimize " + window);
-  EXPECT_TRUE(deadManIs(false));
-  EXPECT_TRUE(waitFor([this] { return screen_->isMinimized(); }));
-  hands("windowactivate " + window);
-  EXPECT_TRUE(waitFor([this] { return !screen_->isMinimized() && screen_->isActiveWindow(); }));
-  EXPECT_TRUE(waitFor([this] { return isSilent(); })) << "the button that is still down does not take it again";
-  EXPECT_FALSE(nodes_.deadMan().back());
-  hands("mouseup 1");
-}
-
-TEST_F(ScreenWindow, TheDeadManEndsWithAPopup) {
-  holdDeadMan();
-  QMenu menu;
-  menu.addAction("a");
-  menu.popup(QPoint(600, 300));
-  EXPECT_TRUE(deadManIs(false));
-  menu.close();
-  hands("mouseup 1");
-}
-
-TEST_F(ScreenWindow, TheDeadManEndsWithStop) {
-  holdDeadMan();
-  hands("key Escape");
-  EXPECT_TRUE(deadManIs(false));
-  EXPECT_TRUE(isStopped(1));
-  hands("mouseup 1");
-}
-
-// Nobody takes in events meanwhile; the fakes live in other threads.
-TEST_F(ScreenWindow, TheDeadManEndsWhenTheGuiHangs) {
-  holdDeadMan();
-  const double until = steadyNow() + 20.0;
-  while (nodes_.deadMan().back() && steadyNow() < until) ros::WallDuration(0.01).sleep();
-  EXPECT_FALSE(nodes_.deadMan().back());
-  EXPECT_TRUE(waitFor([this] { return isSilent(); })) << "a GUI that comes back does not take it again";
-  EXPECT_FALSE(nodes_.deadMan().back());
-  hands("mouseup 1");
-}
-
-TEST_F(ScreenWindow, TheDeadMansKeyHoldsThroughItsRepetition) {
-  hands(moveTo(onDisplay(kOriginal, {100, 100})) + "click 1");  // the focus is within the screen
-  // 1.5 s: the X server repeats after 0.5 s.
-  hold("keydown F9", "keyup F9", [this] { return isRepeated() && nodes_.deadMan().size() >= 30; });
-  hands("keyup F9");
-  EXPECT_TRUE(deadManIs(false));
-}
-
-TEST_F(ScreenWindow, ASliderDrivesWhileItIsHeldAndReturnsToZero) {
-  nodes_.change([](TrackerState&, ControllerState& controller, OperatingState&) { controller.task = "MANUAL"; });
-  auto& pan = find<screen::VelocitySlider>("Pan");
-  ASSERT_TRUE(waitFor([&] { return pan.isEnabled(); }));
-  const QPoint at = centreOf(pan);
-  hands(moveTo(at) + "click 4 click 5 click 4");
-  hands("key Right key Right key Prior");
-  EXPECT_TRUE(isSilent()) << "neither wheel nor keys";
-  const auto drives = [this] { return !nodes_.manual().empty() && nodes_.manual().back().pan > 0.01; };
-  const std::string push = moveTo(at) + "mousedown 1 " + moveTo(at + QPoint(60, 0));
-  hold(push, "mouseup 1", drives);
-  EXPECT_LE(nodes_.manual().back().pan, 0.1);
-  EXPECT_EQ(nodes_.manual().front().pan, 0.0) << "it begins at rest";
-  EXPECT_EQ(nodes_.manual().back().insertion, 0.0);
-  hands("mouseup 1");
-  ASSERT_TRUE(waitFor([this] { return nodes_.manual().back().pan == 0.0; }));
-  EXPECT_TRUE(waitFor([&] { return pan.share() == 0.0; }));
-  EXPECT_TRUE(waitFor([this] { return isSilent(); }));
-  EXPECT_EQ(nodes_.manual().back().pan, 0.0);
-
-  hold(push, "mouseup 1", drives);
-  const double until = steadyNow() + 20.0;
-  while (nodes_.manual().back().pan != 0.0 && steadyNow() < until) ros::WallDuration(0.01).sleep();
-  EXPECT_EQ(nodes_.manual().back().pan, 0.0) << "a GUI that hangs";
-  hands("mouseup 1");
 }
 
 // The program itself, where there is no master: it is there, and ends when it is asked to.

@@ -188,7 +188,7 @@ TEST_F(SessionReport, AnEmptyBagAndAnEmptyFileHaveNothingInThem) {
   ASSERT_EQ(report("'" + folder_.file("empty.bag") + "'"), 0) << contents("log");
   EXPECT_TRUE(has("There is nothing in it"));
   std::ofstream(folder_.file("none.bag")).close();
-  ASSERT_EQ(report("'" + folder_.file("none.bag") + "'"), 0) << contents("log");
+  ASSERT_EQ(report("'" + folder_.file("none.bag") + "'"), 1) << contents("log");
   EXPECT_TRUE(has("is no bag of format 2.0"));
 }
 

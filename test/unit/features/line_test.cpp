@@ -118,5 +118,16 @@ TEST(Line, refusesWhatIsNoLine) {
   }
 }
 
+TEST(Line, oneThatIsNotFiniteHasNoSites) {
+  Eigen::Matrix3d nowhere = Eigen::Matrix3d::Identity();
+  nowhere(0, 2) = std::numeric_limits<double>::quiet_NaN();
+  Line line({10.0, 10.0}, {100.0, 39.0});
+  line.transform(nowhere);
+  EXPECT_FALSE(line.isSound());
+  std::vector<Site> sites(3);
+  line.sites(4.0, 50, sites);
+  EXPECT_TRUE(sites.empty());
+}
+
 }  // namespace
 }  // namespace laparoscope_servo::features

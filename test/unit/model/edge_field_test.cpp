@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "support/synthetic_edges.h"
 
 namespace laparoscope_servo::model {
@@ -62,6 +64,23 @@ TEST(EdgeField, theBorderOfTheImageIsNoEdge) {
   double slope = 1.0;
   EXPECT_EQ(field.distance({-1.0, 5.0}, Eigen::Vector2d::UnitX(), slope), EdgeField::kFarthest);
   EXPECT_EQ(slope, 0.0);
+}
+
+TEST(EdgeField, aPlaceOrADirectionThatIsNotFiniteIsFarFromEveryEdge) {
+  test::EdgeScene scene;
+  EdgeField field;
+  field.compute(test::draw(scene, test::halfPlane(180.0, 0.3)), cv::Rect(0, 0, 320, 240), 1, 8.0);
+  const double nan = std::nan("");
+  double slope = 1.0;
+  const double far = field.distance({-5.0, 3.0}, {1.0, 0.0}, slope);
+  EXPECT_EQ(field.distance({nan, nan}, {nan, nan}, slope), far);
+  EXPECT_EQ(slope, 0.0);
+  for (const double angle : {0.0, M_PI, -1e-17, 3.0}) {
+    const int bin = EdgeField::bin({std::cos(angle), std::sin(angle)});
+    EXPECT_GE(bin, 0);
+    EXPECT_LT(bin, EdgeField::kBins);
+  }
+  EXPECT_EQ(EdgeField::bin({-1.0, 0.0}), EdgeField::bin({1.0, 0.0}));
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "support/synthetic_model.h"
 
 namespace laparoscope_servo::model {
@@ -91,6 +93,12 @@ TEST_F(PoseSearchTest, candidatesAreSortedAndApart) {
 
 TEST_F(PoseSearchTest, outsideOfTheImageThereIsNone) {
   EXPECT_TRUE(search_.find(image_, start({0.0, 0.0, 0.0}, {2.0, 0.0, 0.0}), {0.5, 1.0}, 8.0, 8).empty());
+}
+
+TEST_F(PoseSearchTest, aPoseThatIsNotFiniteHasNoCandidates) {
+  const double nan = std::nan("");
+  EXPECT_TRUE(search_.find(image_, start({0.0, 0.0, 0.0}, {nan, 0.0, 0.0}), PoseRange{0.52, 1.0}, 8.0, 8).empty());
+  EXPECT_TRUE(search_.find(image_, start({0.0, 0.0, 0.0}, {0.0, 0.0, nan}), PoseRange{0.52, 1.0}, 8.0, 8).empty());
 }
 
 }  // namespace

@@ -126,7 +126,7 @@ TEST(BandText, ATrackerOfFeaturesThatSaysNothingIsSaid) {
   tracker.newest = std::make_shared<FeatureResult>();
   tracker.heard_at = kNow - 7.0;
   EXPECT_EQ(featureBand(facts(), tracker, kNow).word, "SILENT");
-  EXPECT_EQ(featureBand(facts(), tracker, kNow).sentence, "It has said nothing for 7 s.");
+  EXPECT_EQ(featureBand(facts(), tracker, kNow).sentence, "It has said nothing for 7.0 s.");
   tracker.connected = false;
   EXPECT_EQ(featureBand(facts(), tracker, kNow).word, "GONE");
   EXPECT_NE(featureBand(facts(), tracker, kNow).sentence.find("edges"), std::string::npos);
@@ -162,7 +162,7 @@ TEST(BandText, ARecordingThatStandsIsNoCameraThatFails) {
   EXPECT_EQ(trackerBand(all, kNow).sentence, "The camera has stopped sending.");
   EXPECT_EQ(featureBand(all, edges, kNow).word, "SILENT");
   all.playback.period = 2.0;
-  EXPECT_EQ(trackerBand(all, kNow).sentence, "The recording plays slowly: one picture in 2 s.");
+  EXPECT_EQ(trackerBand(all, kNow).sentence, "The recording plays slowly: one picture in 2.0 s.");
   EXPECT_EQ(trackerBand(all, kNow).level, Level::kResting);
   all.playback.state = "ENDED";
   all.tracker.reason = "image refused: the image is truncated: it has 7 bytes";
@@ -218,6 +218,64 @@ TEST(BandText, AStateDoesNotOutliveItsNode) {
   EXPECT_EQ(controllerBand(all, kNow).word, "GONE");
   EXPECT_EQ(robotBand(all, kNow).word, "GONE");
   EXPECT_EQ(robotBand(all, kNow).level, Level::kBad);
+}
+
+TEST(BandText, ARecordingThatCannotBeReadSaysWhyAndWhatToDo) {
+  Facts all = facts();
+  all.tracker.state = "NO_IMAGE";
+  all.tracker.reason = "no image has come yet";
+  all.playback.connected = true;
+  all.playback.state = "FAILED";
+  all.playback.reason = "bag 'a.bag' breaks off: it was cut, or the recorder was killed (Error reading from file)";
+  EXPECT_EQ(trackerBand(all, kNow).word, "UNREADABLE");
+  EXPECT_EQ(trackerBand(all, kNow).level, Level::kBad);
+  EXPECT_EQ(trackerBand(all, kNow).sentence, "The bag breaks off: it was cut, or the recorder was killed.");
+  EXPECT_NE(trackerBand(all, kNow).cure.find("rosbag reindex"), std::string::npos);
+  EXPECT_EQ(trackerBand(all, kNow).detail, all.playback.reason);
+  all.tracker.state = "TRACKING";
+  all.tracker.result_at = kNow - 0.5;
+  all.playback.reason = "bag 'a.bag' is damaged behind image 7 (Error); 'rosbag reindex' may repair it";
+  EXPECT_EQ(trackerBand(all, kNow).sentence, "The bag is damaged here.");
+}
+
+// A tracker that was killed keeps its connection for roscpp, and its state was latched.
+TEST(BandText, WhatIsSaidOfPicturesIsAsOldAsTheyAre) {
+  Facts all = facts();
+  all.tracker.result_at = kNow;
+  for (const char* state : {"TRACKING", "SEARCHING", "LOST", "IDLE"}) {
+    all.tracker.state = state;
+    EXPECT_EQ(trackerBand(all, kNow + 0.2).word, state);
+    const BandText stale = trackerBand(all, kNow + 0.3);
+    EXPECT_EQ(stale.word, "NO RESULT") << "at once when the picture says NOT LIVE";
+    EXPECT_EQ(stale.level, Level::kWaiting);
+    EXPECT_EQ(stale.sentence, "No picture has been looked at for 0.3 s. Before: " + std::string(state) + ".");
+    EXPECT_NE(stale.cure, "");
+    EXPECT_EQ(trackerBand(all, kNow + 3.0).word, "SILENT");
+  }
+  all.tracker.state = "NO_IMAGE";
+  EXPECT_EQ(trackerBand(all, kNow + 0.3).word, "NO IMAGE") << "the tracker says so itself";
+  all.tracker.state = "NOT_STARTED";
+  EXPECT_EQ(trackerBand(all, kNow + 0.3).word, "NOT STARTED");
+  all.tracker.state = "TRACKING";
+  all.playback.connected = true;
+  all.playback.state = "PLAYING";
+  all.playback.period = 0.2;
+  EXPECT_EQ(trackerBand(all, kNow + 0.3).word, "TRACKING") << "a recording that plays slowly";
+  EXPECT_EQ(trackerBand(all, kNow + 0.6).word, "NO RESULT");
+  all.playback.state = "PAUSED";
+  EXPECT_EQ(trackerBand(all, kNow + 0.6).word, "PAUSED");
+  all.playback.connected = false;
+  all.tracker.result_at = kNever;
+  EXPECT_EQ(trackerBand(all, kNow + 0.6).word, "TRACKING") << "its results have not come yet";
+}
+
+TEST(BandText, ANodeThatIsSilentSaysForHowLong) {
+  Facts all = facts();
+  EXPECT_EQ(controllerBand(all, kNow + 0.3).word, "SERVO");
+  EXPECT_EQ(controllerBand(all, kNow + 0.5).word, "SILENT");
+  EXPECT_EQ(controllerBand(all, kNow + 0.5).sentence, "The controller has said nothing for 0.6 s.");
+  EXPECT_EQ(robotBand(all, kNow + 0.3).word, "ENABLED");
+  EXPECT_EQ(robotBand(all, kNow + 0.5).sentence, "The robot's node has said nothing for 0.6 s.");
 }
 
 TEST(BandText, SaysWhatIsNotThere) {

@@ -36,6 +36,14 @@ AreaSelection areas(double stamp) {
   return message;
 }
 
+TEST(FactKeeper, KnowsWhenTheNewestResultCame) {
+  FactKeeper keeper;
+  keeper.takeRecorded(homography(9.9));
+  EXPECT_EQ(keeper.facts().tracker.result_at, kNever) << "one that was recorded is none of the tracker that runs";
+  keeper.take(homography(10.0), 0.02, 100.0);
+  EXPECT_EQ(keeper.facts().tracker.result_at, 100.0);
+}
+
 TEST(FactKeeper, FindsTheResultOfThePicturesOwnImage) {
   FactKeeper keeper;
   for (const double stamp : {10.0, 10.1, 10.2, 10.3}) keeper.take(homography(stamp), 0.01, 1.0);

@@ -1,4 +1,7 @@
 // A region that the user draws, moves and selects, by mouse and keys.
+#include <algorithm>
+#include <cmath>
+
 #include "screen/region_painter.h"
 #include "unit/screen/image_view_fixture.h"
 
@@ -58,6 +61,35 @@ TEST_F(ImageViewRegion, TheRegionThatThereIsIsMovedFromItsInside) {
   drag({700, 450}, {760, 470});
   ASSERT_EQ(regions_.size(), 2u);
   EXPECT_EQ(regions_[1], QRect(500, 300, 260, 170)) << "resized by its corner";
+}
+
+// Within a pixel of the screen, of each edge.
+TEST_F(ImageViewRegion, ItIsMovedResizedAndNudgedWithinOnePixelOfTheScreenAtAnySize) {
+  const auto isWithin = [](const QRect& region, const QRect& wanted, double scale) {
+    const double pixel = std::max(1.0, 1.0 / scale);
+    return std::abs(region.left() - wanted.left()) <= pixel && std::abs(region.top() - wanted.top()) <= pixel &&
+           std::abs(region.right() - wanted.right()) <= pixel && std::abs(region.bottom() - wanted.bottom()) <= pixel;
+  };
+  const QRect present(500, 300, 200, 150);
+  for (const QSize& size : {QSize(1280, 720), QSize(500, 700), QSize(1900, 400), QSize(2560, 1440)}) {
+    view_.resize(size);
+    view_.show(tracked(), kNow);
+    const Letterbox box(QSize(1280, 720), QRectF(view_.rect()));
+    const QPoint begin = box.fromEdge({600, 370}).toPoint(), end = box.fromEdge({471, 433}).toPoint();
+    const QPointF way = QPointF(end - begin) / box.scale();
+    drag(begin, end);
+    ASSERT_FALSE(regions_.empty());
+    EXPECT_TRUE(isWithin(regions_.back(), present.translated(way.toPoint()), box.scale())) << size.width();
+    view_.show(tracked(), kNow);
+    drag(box.fromEdge({700, 450}).toPoint(), box.fromEdge({761, 473}).toPoint());
+    EXPECT_TRUE(isWithin(regions_.back(), QRect(500, 300, 261, 173), box.scale())) << size.width();
+    view_.show(tracked(), kNow);
+    for (int k = 0; k < 7; ++k) QTest::keyClick(&view_, Qt::Key_Right);
+    QTest::keyClick(&view_, Qt::Key_Up, Qt::ShiftModifier);
+    QTest::keyClick(&view_, Qt::Key_Return);
+    EXPECT_TRUE(isWithin(regions_.back(), present.translated(7, -10), box.scale())) << size.width();
+  }
+  EXPECT_EQ(regions_.size(), 12u);
 }
 
 TEST_F(ImageViewRegion, AsksForARegionWhileItIsDrawnAndShowsTheAnswer) {

@@ -70,6 +70,18 @@ TEST(PictureWords, ARecordingSaysThatItHasEnded) {
   EXPECT_FALSE(pictureWords(Picture(), 99.0, recording("PAUSED")).live);
 }
 
+TEST(PictureWords, ARecordingThatCannotBeReadSaysWhy) {
+  PlaybackFacts failed = recording("FAILED");
+  failed.reason = "'film.bag' is empty, expected a bag";
+  for (const Picture& shown : {Picture(), picture(10.0, 10.0)}) {
+    EXPECT_FALSE(pictureWords(shown, 10.0, failed).live);
+    EXPECT_EQ(pictureWords(shown, 10.0, failed).words, "UNREADABLE");
+    EXPECT_EQ(pictureWords(shown, 10.0, failed).detail, "There is nothing in the file.");
+  }
+  failed.connected = false;
+  EXPECT_EQ(pictureWords(Picture(), 10.0, failed).words, "NO PICTURE") << "the player has ended";
+}
+
 TEST(PictureWords, ARecordingThatPlaysSlowlyIsLive) {
   const Picture last = picture(10.0, 10.0);
   EXPECT_TRUE(pictureWords(last, 10.4, recording("PLAYING", 0.2)).live) << "a fifth of 25 Hz";

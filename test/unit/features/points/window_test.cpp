@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "seen.h"
 
 namespace laparoscope_servo::features {
@@ -72,6 +74,15 @@ TEST(Window, TellsValuesBetweenItsPixelsAndNothingBeyond) {
   EXPECT_TRUE(window.at(4.0, 4.0, value));
   EXPECT_FALSE(window.at(4.1, 0.0, value));
   EXPECT_FALSE(window.at(0.0, -4.1, value));
+}
+
+TEST(Window, APlaceThatIsNotFiniteShowsNothing) {
+  const PointImage image = slope();
+  Window window(4);
+  const double nan = std::nan("");
+  EXPECT_EQ(window.sample(image, 0, {nan, 20.0}, Eigen::Matrix2d::Identity()), 0.0);
+  EXPECT_EQ(window.sample(image, 0, {30.0, 20.0}, Eigen::Matrix2d::Constant(nan)), 0.0);
+  EXPECT_EQ(window.sample(image, 0, {1e30, -1e30}, Eigen::Matrix2d::Identity()), 0.0);
 }
 
 }  // namespace

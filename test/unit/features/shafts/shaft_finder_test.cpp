@@ -111,6 +111,22 @@ TEST(ShaftFinder, FindsItInEveryDirectionAndDarkOnesToo) {
   }
 }
 
+TEST(ShaftFinder, TellsHowGreyItIsBetweenTheEdges) {
+  ShaftScene scene;
+  scene.tissue = {90, 90, 170};
+  scene.shaft = {106, 106, 138};  // S0 cos H / mean is 0.27, that of the tissue 0.69
+  const Finding grey(drawShaft(scene).image);
+  scene.shaft = {130, 130, 182};  // 0.35
+  const Finding pale(drawShaft(scene).image);
+  ASSERT_EQ(grey.shafts.size(), 1u);
+  ASSERT_EQ(pale.shafts.size(), 1u);
+  for (const Finding* finding : {&grey, &pale}) {
+    const double inside = finding == &grey ? 0.27 : 0.35;
+    EXPECT_NEAR(finding->shafts[0].colour, inside * GreyMap::kUnit / (finding->levels.threshold - GreyMap::kZero),
+                0.08);
+  }
+}
+
 TEST(ShaftFinder, TissueAndTheRoundBorderAreNoShafts) {
   for (int seed = 1; seed <= 10; ++seed) {
     ShaftScene scene;

@@ -76,6 +76,31 @@ TEST(InstrumentTracker, FollowsAShaftInLargeImages) {
   }
 }
 
+// Between tissue and shaft there is no step of brightness, and little contrast of colour: it has to last.
+TEST(InstrumentTracker, AShaftAsDarkAsTheTissueIsTakenOnceItHasLasted) {
+  InstrumentTracker tracker;
+  for (int k = 0; k < 12; ++k) {
+    ShaftScene scene;
+    scene.tissue = {90, 90, 170};
+    scene.shaft = {106, 106, 138};
+    scene.seed = k + 1;
+    const InstrumentsResult& result = tracker.track(drawShaft(scene).image, k * kPeriod);
+    EXPECT_EQ(result.instruments.size(), k + 1 < InstrumentConfig().confirmations ? 0u : 1u) << k;
+  }
+}
+
+// A strip that is brighter than the rest, with two straight edges, and just grey enough to be a shaft by its outline.
+TEST(InstrumentTracker, PaleTissueWithTwoEdgesIsNone) {
+  InstrumentTracker tracker;
+  for (int k = 0; k < 12; ++k) {
+    ShaftScene scene;
+    scene.tissue = {90, 90, 170};
+    scene.shaft = {130, 130, 182};
+    scene.seed = k + 1;
+    EXPECT_TRUE(tracker.track(drawShaft(scene).image, k * kPeriod).instruments.empty()) << k;
+  }
+}
+
 TEST(InstrumentTracker, TheSameImagesGiveTheSameNumbers) {
   InstrumentTracker a, b;
   for (int k = 0; k < 10; ++k) {

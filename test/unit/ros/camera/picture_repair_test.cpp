@@ -43,6 +43,9 @@ TEST(PictureRepair, EachBayerPatternGivesTheColourBack) {
 TEST(PictureRepair, WhatIsNoPatternIsRefused) {
   EXPECT_THROW(colourOf(cv::Mat(16, 16, CV_16UC1), BayerPattern::kRggb), std::invalid_argument);
   EXPECT_THROW(colourOf(cv::Mat(1, 1, CV_8UC1), BayerPattern::kRggb), std::invalid_argument);
+  EXPECT_THROW(colourOf(cv::Mat(16, 16, CV_8UC3, cv::Scalar(10, 90, 160)), BayerPattern::kRggb), std::invalid_argument)
+      << "in colour already";
+  EXPECT_NO_THROW(colourOf(cv::Mat(16, 16, CV_8UC3, cv::Scalar(90, 92, 91)), BayerPattern::kRggb)) << "a grey video";
   const cv::Mat picture(3, 3, CV_16UC1);
   EXPECT_EQ(colourOf(picture, BayerPattern::kNone).data, picture.data) << "untouched without a pattern";
 }

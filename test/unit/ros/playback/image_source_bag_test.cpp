@@ -28,6 +28,16 @@ TEST_F(ImageSourceBagTest, BagGivesMessagesWithTheirHeaders) {
   EXPECT_NEAR(openImageSource(folder_.file("raw.bag"), {})->rate(), 10.0, 1e-6);
 }
 
+TEST_F(ImageSourceBagTest, BagIsReadFromTheStartToTheEnd) {
+  SourceOptions options;
+  options.start = 0.1;
+  options.end = 0.3;  // s of the recording's time, in which images are 0.1 s apart
+  const auto images = readAll(writeBag("raw.bag", {"/scope/image_raw"}), options);
+  ASSERT_EQ(images.size(), 2u);
+  EXPECT_EQ(numberOf(images[0]), 1);
+  EXPECT_EQ(images[1].frame, 2u);
+}
+
 TEST_F(ImageSourceBagTest, BagHasCameraInfoFromTheFirstImageOn) {
   const auto images = readAll(writeBag("raw.bag", {"/scope/image_raw"}));
   ASSERT_EQ(images.size(), 5u);
@@ -136,7 +146,21 @@ TEST_F(ImageSourceBagTest, TruncatedBagsAreErrorsThatNameTheRepair) {
     std::filesystem::resize_file(part, static_cast<std::uintmax_t>(share * static_cast<double>(size)));
     const std::string error = errorOf(part);
     EXPECT_TRUE(mentions(error, "part.bag")) << share << ": " << error;
+    EXPECT_TRUE(mentions(error, "breaks off")) << share << ": " << error;
     EXPECT_TRUE(mentions(error, "reindex")) << share << ": " << error;
+  }
+}
+
+TEST_F(ImageSourceBagTest, WhatNoRepairMakesABagOfIsSaidToBeNone) {
+  std::ofstream(folder_.file("empty.bag")).close();
+  EXPECT_TRUE(mentions(errorOf(folder_.file("empty.bag")), "empty.bag' is empty"));
+  std::ofstream(folder_.file("text.bag")) << "This is a text of some length.";
+  std::ofstream(folder_.file("short.bag")) << "#RO";
+  std::ofstream(folder_.file("old.bag")) << "#ROSBAG V1.2\nof long ago";
+  for (const char* name : {"text.bag", "short.bag", "old.bag"}) {
+    const std::string error = errorOf(folder_.file(name));
+    EXPECT_TRUE(mentions(error, "is no bag of format 2.0")) << error;
+    EXPECT_FALSE(mentions(error, "reindex")) << error;
   }
 }
 

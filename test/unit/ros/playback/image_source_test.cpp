@@ -43,6 +43,58 @@ TEST_F(ImageSourceTest, FolderSkipsToTheStartAndKeepsTheNumbers) {
   EXPECT_EQ(images[0].header.stamp, ros::Time(0.3));
 }
 
+TEST_F(ImageSourceTest, FolderEndsInFrontOfTheImageAtTheEnd) {
+  for (int k = 0; k < 8; ++k) cv::imwrite(folder_.file(std::to_string(k) + ".png"), numbered(k));
+  SourceOptions options;
+  options.folder_rate = 10.0;
+  options.start = 0.2;
+  options.end = 0.7;  // frame 7 is at 0.7 s, whatever rounding says
+  const auto images = readAll(folder_.path(), options);
+  ASSERT_EQ(images.size(), 5u);
+  EXPECT_EQ(numberOf(images.front()), 2);
+  EXPECT_EQ(numberOf(images.back()), 6);
+}
+
+TEST_F(ImageSourceTest, CropGivesThatPartOfEachImageAndRefusesSmallerOnes) {
+  cv::Mat image(60, 40, CV_8UC3, cv::Scalar::all(10));
+  image(cv::Rect(5, 30, 20, 10)).setTo(200);
+  cv::imwrite(folder_.file("a.png"), image);
+  cv::imwrite(folder_.file("b.png"), image.rowRange(0, 35));
+  cv::imwrite(folder_.file("c.png"), image);
+  SourceOptions options;
+  options.crop = {5, 30, 20, 10};
+  const auto images = readAll(folder_.path(), options);
+  ASSERT_EQ(images.size(), 3u);
+  for (const std::size_t k : {0u, 2u}) {
+    ASSERT_EQ(images[k].decoded.size(), cv::Size(20, 10));
+    EXPECT_TRUE(images[k].decoded.isContinuous());
+    EXPECT_EQ(cv::mean(images[k].decoded)[0], 200.0);
+  }
+  EXPECT_EQ(images[1].error, "the image has 40x35 px, expected at least 25x40 for crop");
+  EXPECT_TRUE(images[1].decoded.empty());
+}
+
+TEST_F(ImageSourceTest, CropIsNoneOfABag) {
+  writeFile("a.bag", "#ROSBAG V2.0");
+  SourceOptions options;
+  options.crop = {0, 0, 20, 10};
+  EXPECT_NE(errorOf(folder_.file("a.bag"), options).find("expected a video or a folder of images"), std::string::npos);
+}
+
+TEST_F(ImageSourceTest, BehindTheFirstImageItResumesLater) {
+  for (int k = 0; k < 8; ++k) cv::imwrite(folder_.file(std::to_string(k) + ".png"), numbered(k));
+  SourceOptions options;
+  options.folder_rate = 10.0;
+  options.start = 0.1;
+  options.resume = 0.5;
+  options.end = 0.7;
+  const auto images = readAll(folder_.path(), options);
+  ASSERT_EQ(images.size(), 3u);
+  EXPECT_EQ(numberOf(images[0]), 1);
+  EXPECT_EQ(numberOf(images[1]), 5);
+  EXPECT_EQ(images[2].frame, 6u);
+}
+
 TEST_F(ImageSourceTest, FolderNamesAFileThatCannotBeReadAndGoesOn) {
   cv::imwrite(folder_.file("a.png"), numbered(0));
   writeFile("b.png", "this is no image");
@@ -148,6 +200,16 @@ TEST_F(ImageSourceTest, VideoHasStampsOfItsRate) {
   ASSERT_EQ(later.size(), 4u);
   EXPECT_EQ(later[0].frame, 2u);
   EXPECT_EQ(numberOf(later[0]), 2);
+  options.end = 0.2;
+  const auto middle = readAll(path, options);
+  ASSERT_EQ(middle.size(), 2u);
+  EXPECT_EQ(numberOf(middle[1]), 3);
+  options.start = 0.0;
+  options.resume = 0.15;
+  const auto resumed = readAll(path, options);
+  ASSERT_EQ(resumed.size(), 2u);
+  EXPECT_EQ(resumed[0].frame, 0u);
+  EXPECT_EQ(resumed[1].frame, 3u);
   // Frames are buffers of their own.
   EXPECT_NE(images[0].decoded.data, images[1].decoded.data);
 }
@@ -166,6 +228,13 @@ TEST_F(ImageSourceTest, RefusesOptionsThatMakeNoSense) {
   SourceOptions options;
   options.start = -1.0;
   EXPECT_TRUE(mentions(errorOf(folder_.path(), options), "start"));
+  options.start = options.end = 1.0;
+  EXPECT_TRUE(mentions(errorOf(folder_.path(), options), "end"));
+  for (const double resume : {1.0, 2.0, -1.0, std::nan("")}) {
+    options.end = 2.0;
+    options.resume = resume;
+    EXPECT_TRUE(mentions(errorOf(folder_.path(), options), "resume")) << resume;
+  }
   options = {};
   options.folder_rate = 0.0;
   EXPECT_TRUE(mentions(errorOf(folder_.path(), options), "rate"));

@@ -36,6 +36,28 @@ TEST(PlaybackControl, PausesStepsAndPlaysOn) {
   EXPECT_TRUE(control.takeImage());
 }
 
+TEST(PlaybackControl, WhatCannotBeReadIsTriedAgain) {
+  PlaybackControl control;
+  control.fail();  // it could not be opened
+  EXPECT_STREQ(control.stateName(), "FAILED");
+  EXPECT_FALSE(control.takeImage());
+  for (const char* command : {"PLAY", "PAUSE", "STEP"})
+    EXPECT_NE(control.command(command, 0.0).find("cannot be read"), std::string::npos) << command;
+  EXPECT_EQ(control.command("AGAIN", 0.0), "");
+  EXPECT_EQ(control.takeSeek(), 0.0);
+  control.begin(true);
+  EXPECT_EQ(control.state(), State::kHolding) << "it has not begun before";
+  EXPECT_TRUE(control.takeImage());
+  EXPECT_FALSE(control.takeImage());
+  EXPECT_EQ(control.command("PLAY", 0.0), "");
+  control.fail();  // further on
+  EXPECT_EQ(control.command("SEEK", 2.0), "");
+  control.begin(true);
+  EXPECT_EQ(control.state(), State::kPaused) << "it had begun";
+  EXPECT_EQ(control.takeSeek(), 2.0);
+  EXPECT_TRUE(control.takeImage());
+}
+
 TEST(PlaybackControl, SeeksAndBeginsAgain) {
   PlaybackControl control;
   control.begin(false);

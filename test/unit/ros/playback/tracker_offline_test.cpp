@@ -158,6 +158,28 @@ TEST_F(TrackerOfflineTest, GivesTheSameNumbersTwiceAndForBagAndFolder) {
   }
 }
 
+TEST_F(TrackerOfflineTest, ResumesWithASearchForTheRegionOfTheFirstImage) {
+  const cv::Mat texture = test_support::texture(cv::Size(320, 240));
+  images_.clear();
+  for (const Eigen::Matrix3d& g : test_support::motion(12, kRoi, 5.0))
+    images_.push_back(test_support::view(texture, g));
+  writeFolder();
+  run();
+  const auto whole = lines(options_.csv);
+  options_.source.resume = 0.16;  // image 4
+  EXPECT_EQ(run().images, 9u);
+  const auto table = lines(options_.csv);
+  ASSERT_EQ(table.size(), 10u);
+  EXPECT_EQ(table[1].substr(0, 22), "0,0,1,1,0,0,0,1,0,0,0,");
+  EXPECT_EQ(table[2].substr(0, 2), "4,");
+  const auto stateOf = [](const std::string& row) { return row.substr(row.find(',', row.find(',') + 1) + 1, 2); };
+  EXPECT_EQ(stateOf(table[2]), "2,") << "SEARCHING, until it is confirmed";
+  ASSERT_EQ(stateOf(table.back()), "1,") << table.back();
+  const auto found = geometry::apply(test_support::homographyIn(table.back()), kRoi.corners());
+  EXPECT_LT(geometry::largestDistance(found, geometry::apply(test_support::homographyIn(whole.back()), kRoi.corners())),
+            0.1);
+}
+
 TEST_F(TrackerOfflineTest, WritesABagWithTheImagesHeadersAndTimes) {
   writeBag();
   options_.bag = out_.file("out.bag");

@@ -23,7 +23,8 @@ namespace {
 namespace fs = std::filesystem;
 
 const std::string kRoot = LAPAROSCOPE_SERVO_ROOT;
-constexpr Speaker kSpeakers[] = {Speaker::kTracker, Speaker::kFeatures, Speaker::kController, Speaker::kRobot};
+constexpr Speaker kSpeakers[] = {Speaker::kTracker, Speaker::kFeatures, Speaker::kController, Speaker::kRobot,
+                                 Speaker::kPlayer};
 
 std::string textOf(const fs::path& path) {
   std::ifstream file(path);
@@ -103,6 +104,16 @@ const std::map<std::string, std::set<std::string>>& filesWithReasons() {
       {"src/ros/tracker/image_conversion.cpp", {}},
       {"src/ros/tracker/tracker_session_input.cpp", {"the images have their old size again"}},
       {"src/ros/tracker/tracker_state_report.cpp", {}},
+      {"src/ros/playback/image_source.cpp",
+       {" s, expected 0 or more", " Hz, expected more than 0",
+        "no input is given, expected a bag, a video or a folder of images"}},
+      {"src/ros/playback/image_source_bag.cpp",
+       {"compressed image with format '", " cannot be decoded, expected JPEG or PNG",
+        " is a colour filter pattern, expected grey or colour: let image_proc turn it into colour",
+        " images have the stamp 0 or that of the image before: theirs is from the time of recording",
+        "); 'rosbag reindex' may repair it", "the bag has no ", ": one of them can be chosen by camera-info-topic",
+        "' has another definition of its type than this system", "message of topic '"}},
+      {"src/ros/playback/bag_topics.cpp", {"the bag is empty", "the bag has:"}},
       {"src/servo/controller_implementation.cpp", {}},
       {"src/servo/controller_seen.cpp", {}},
       {"src/servo/safety/dead_man_switch.cpp", {}},

@@ -153,5 +153,18 @@ TEST(EffectBudget, SpinAndInsertionWaitForPanAndTilt) {
   EXPECT_EQ(seen.budget.aside(), 0.0);
 }
 
+// Once it is not known how far the scope has gone, nothing of the budget is left.
+TEST(EffectBudget, ADisplacementThatIsNotFiniteIsNotTakenForNone) {
+  for (int k = 0; k < 4; ++k) {
+    Seen seen;
+    seen.see(none);
+    Eigen::Vector4d displacement(0.001, 0.001, 0.001, 0.0001);
+    displacement[k] = std::nan("");
+    seen.budget.command(displacement, true);
+    EXPECT_FALSE(seen.budget.spent() < 1.0) << k;
+    EXPECT_EQ(seen.budget.aside() < 1.0, k < 2) << k;
+  }
+}
+
 }  // namespace
 }  // namespace laparoscope_servo::servo

@@ -128,5 +128,13 @@ TEST(SlewLimiter, WhatIsNoNumberStaysNone) {
   }
 }
 
+TEST(SlewLimiter, ALimitThatIsNoNumberAllowsNothing) {
+  SlewLimiter limiter(limits());
+  EXPECT_EQ(limiter.apply({scope::Velocity{0.05, 0.01, 0.0, 0.0}}, 10.0, std::nan("")).vector(),
+            Eigen::Vector4d::Zero());
+  limiter.reset();
+  EXPECT_EQ(limiter.apply({scope::Velocity{0.05, 0.01, 0.0, 0.0}}, std::nan("")).vector(), Eigen::Vector4d::Zero());
+}
+
 }  // namespace
 }  // namespace laparoscope_servo::servo

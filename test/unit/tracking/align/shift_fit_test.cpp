@@ -178,16 +178,16 @@ TEST(DeformationCovariance, CountsWhatTheFitHasTakenUp) {
 TEST(DeformationMemory, KeepsWhatWasSeenUntilEnoughIsSeenAgain) {
   DeformationMemory memory;
   Matrix8d covariance = Matrix8d::Identity();
-  memory.complete(kTellingShifts - 1, covariance);
+  memory.complete(kDeformationShifts - 1, covariance);
   EXPECT_TRUE(covariance.isZero());  // there was none before
   covariance = 2.0 * Matrix8d::Identity();
-  memory.complete(kTellingShifts, covariance);
+  memory.complete(kDeformationShifts, covariance);
   EXPECT_TRUE(covariance.isApprox(2.0 * Matrix8d::Identity()));
   covariance.setZero();
   memory.complete(0, covariance);
   EXPECT_TRUE(covariance.isApprox(2.0 * Matrix8d::Identity()));
   covariance.setZero();
-  memory.complete(kTellingShifts, covariance);  // a plane that does not deform is seen
+  memory.complete(kDeformationShifts, covariance);  // a plane that does not deform is seen
   EXPECT_TRUE(covariance.isZero());
 }
 

@@ -1,0 +1,48 @@
+#include "ros/controller/position_input.h"
+
+#include "laparoscope_servo/servo/position_error.h"
+#include "ros/common/eigen_messages.h"
+
+namespace laparoscope_servo {
+
+void PositionInput::know(const TaskError& message) {
+  region_ = message.reference_stamp;
+  m_star_ = fromMessage(message.m_star);
+}
+
+servo::TaskErrorInput PositionInput::from(const Homography& message, const servo::DepthInput& depth) {
+  servo::TaskErrorInput input;
+  input.problem.clear();
+  input.region = message.reference_stamp.toSec();
+  if (message.state != Homography::TRACKING) return input;
+  if (message.has_intrinsics == 0) {
+    input.problem = "the homography of the region has no intrinsics: no usable camera_info reaches the tracker";
+    return input;
+  }
+  if (region_.isZero() || message.reference_stamp != region_ || !m_star_.allFinite() || !(m_star_.z() > 0.0)) {
+    input.problem = "the place of the region is not known: no task error of it was received";
+    return input;
+  }
+  if (message.reference_stamp != scope_of_ || !has_scope_) {
+    scope_of_ = message.reference_stamp;
+    scope_ = {depth.camera_R_shaft, depth.d2};
+    has_scope_ = depth.problem.empty() && depth.d2 > 0.0;
+  }
+  if (!has_scope_) {
+    input.problem = "depth d2 is unknown";
+    return input;
+  }
+  const Eigen::Matrix3d h = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(message.h.data());
+  const servo::PositionSeen seen = servo::positionError(h, m_star_, scope_, desired_depth_);
+  if (!seen.is_known) {
+    input.problem = "the homography of the region is of no plane before the camera";
+    return input;
+  }
+  input.valid = true;
+  input.error = seen.error;
+  input.visible_fraction = message.visible_fraction;
+  input.corner_error = message.corner_error;
+  return input;
+}
+
+}  // namespace laparoscope_servo
