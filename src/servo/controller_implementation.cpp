@@ -217,6 +217,8 @@ ControllerFigures Controller::Implementation::figures() const {
 std::string Controller::Implementation::caution(const SafetyOutput& safety, const std::string& stick) const {
   if (safety.state != ControllerState::kServo) return safety.caution;
   std::string text = safety.caution;
+  if (text.empty() && task_ == Task::kParallel && parallel_.stage() == ParallelStage::kSettles)
+    text = "the circle is done: the scope waits until the arm stands";
   if (text.empty() && servo_.atBound()) text = "the scope is at a bound of its range: depths or cone";
   if (text.empty() && servo_.blocked()) text = "the robot does not do what it is told";
   if (!stick.empty()) text += (text.empty() ? "" : "; ") + stick;

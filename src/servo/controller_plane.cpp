@@ -7,6 +7,7 @@ namespace laparoscope_servo::servo {
 void Controller::Implementation::watchPlane(const ControllerInput& input) {
   if (!input.clock_jump.empty()) parallel_.restart();
   if (task_ != Task::kParallel) return;
+  if (!engaged()) parallel_.leaveCircle();
   const DepthInput& depth = input.depth;
   const bool pose_counts = depth.problem.empty() && depth.insertion_point_T_tip && depth.pose_is_new &&
                            depth.d2 > 0.0 && depth.age <= config_.safety.max_depth_age;
@@ -31,6 +32,7 @@ std::string Controller::Implementation::planeProblem(const ControllerInput& inpu
 scope::Velocity Controller::Implementation::faceTissue(const ControllerInput& input, const SafetyOutput& safety) {
   const ServoInput servo = servoInput(input);
   if (parallel_.stage() == ParallelStage::kTurn) return servo_.command(servo, limits(safety, input.time));
+  if (parallel_.stage() == ParallelStage::kSettles) return servo_.drive(servo, scope::Velocity());
   if (parallel_.stage() == ParallelStage::kUnknown) parallel_.engage(input.time);  // selected while engaged
   const scope::Velocity round = parallel_.circle(safety.speed_scale * servo.period);
   return servo_.drive(servo, scope::Velocity::fromVector(safety.speed_scale * round.vector()));

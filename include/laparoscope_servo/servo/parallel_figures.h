@@ -8,7 +8,8 @@ namespace laparoscope_servo::servo {
 enum class ParallelStage {
   kUnknown,    // the normal is not known: engaging begins with the circle
   kCircle,     // the scope goes round
-  kAnnounced,  // the normal is known, and what the turn will do was said
+  kSettles,    // the normal is known, and the arm comes to rest
+  kAnnounced,  // what the turn will do from where the arm stands was said
   kTurn,       // the optical axis is turned onto the normal, and held there
 };
 

@@ -280,14 +280,17 @@ TEST(WriteRuns, AColumnForEachFigure) {
   run.evidence = 26.0;
   run.unconfirmed = 27.0;
   run.leash = 28.0;
+  run.faced = 29.0;
+  run.slant = 30.0;
+  run.normal_error = 31.0;
   std::ostringstream stream;
   writeRuns({run}, stream);
   EXPECT_EQ(stream.str(),
             "seed,start_pan,start_tilt,start_spin,start_insertion,refused_starts,settled,settled_centre,settled_scale,"
             "settled_orientation,left_image,centre_rms,scale_rms,orientation_rms,moving_share,reversals,"
             "max_commanded_lateral_speed,max_lateral_speed,max_lateral_offset,final_state,stopped,holds,"
-            "turned,inserted,turned_away,inserted_away,evidence,unconfirmed,leash\n"
-            "2,3,4,5,6,7,8,9,10,11,1,12,13,14,15,16,17,18,19,HOLD,20,21,22,23,24,25,26,27,28\n");
+            "turned,inserted,turned_away,inserted_away,evidence,unconfirmed,leash,faced,slant,normal_error\n"
+            "2,3,4,5,6,7,8,9,10,11,1,12,13,14,15,16,17,18,19,HOLD,20,21,22,23,24,25,26,27,28,29,30,31\n");
 }
 
 TEST(PrintRuns, NamesTheSeedsThatDidNotSettle) {

@@ -101,6 +101,7 @@ TEST(FollowAndPoints, OtherTasksInputsDoNotCount) {
     Controller controller(blind());
     controller.select(task);
     ControllerInput input = good(0.0);
+    input.depth.insertion_point_T_tip = Eigen::Isometry3d::Identity();  // PARALLEL needs it
     const TaskErrorInput seen = input.task_error;
     for (const Task other : kTasks) input.seenBy(other) = other == task ? TaskErrorInput() : seen;
     input.seenBy(task) = TaskErrorInput();

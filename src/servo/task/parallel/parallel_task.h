@@ -2,7 +2,7 @@
 // (survey, IV.B.2).
 //
 // 1. Somebody engages: the scope goes round a small circle through where it stands, until the normal is known.
-// 2. The engagement ends with an announcement of what the turn will do.
+// 2. Once the arm stands, the engagement ends with an announcement of what the turn will do from there.
 // 3. Somebody engages again: the optical axis is turned onto the normal, and held there.
 //
 // Where the normal does not become known on so many circles, or where the turn is not possible, the scope stands, with
@@ -45,6 +45,9 @@ class ParallelTask {
   // Somebody engages at `time` [s]. A normal that was found a while ago, or announced from elsewhere, is searched anew.
   void engage(double time);
 
+  // Nobody is engaged any more: a circle that is not over is not gone on with, and nothing comes of it.
+  void leaveCircle();
+
   // Takes a pose; `commands`, each executed `delay` [s] after it was given, tell what the scope did since the last one.
   void move(const ParallelPose& pose, const CommandHistory& commands, double delay);
 
@@ -76,6 +79,7 @@ class ParallelTask {
   };
 
   void measure(const Waiting& image, const Eigen::Isometry3d& base_T_shaft);
+  void settle();
   void announce();
   void compare(const Waiting& image, const Eigen::Isometry3d& base_T_shaft);
   void fail(const std::string& problem);
@@ -94,6 +98,7 @@ class ParallelTask {
   PlaneEstimate estimate_;  // of the circle that ended
   Eigen::Vector3d normal_in_anchor_ = Eigen::Vector3d::UnitZ();
   double phase_ = 0.0;                                             // s, of the circle
+  double settles_from_ = 0.0;                                      // s, end of the circle
   double since_ = 0.0;                                             // s, of the announcement
   Eigen::Vector3d announced_from_ = Eigen::Vector3d::UnitZ();      // the shaft then, in the base
   Eigen::Vector3d filtered_ = Eigen::Vector3d::UnitZ();            // the normal in the shaft's axes

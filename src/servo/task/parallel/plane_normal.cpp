@@ -55,6 +55,12 @@ Eigen::Matrix3d PlaneEstimate::corrected(const Eigen::Matrix3d& base_R_camera) c
   return base_R_first * geometry::so3Exp(turn_factor * geometry::so3Log(base_R_first.transpose() * base_R_camera));
 }
 
+Eigen::Vector3d PlaneEstimate::normalOfPoses() const {
+  const Eigen::Vector3d axis = Eigen::Vector3d::UnitZ(), there = base_R_first.transpose() * normal;
+  const Eigen::Vector3d turn = geometry::so3Log(Eigen::Quaterniond::FromTwoVectors(axis, there).toRotationMatrix());
+  return base_R_first * (geometry::so3Exp(turn / turn_factor) * axis);
+}
+
 PlaneNormal::PlaneNormal() {
   views_.reserve(kMostViews);
   scratch_.reserve(kMostViews);

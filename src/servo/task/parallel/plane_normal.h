@@ -39,6 +39,8 @@ struct PlaneEstimate {
   Eigen::Vector3d seenFrom(const Eigen::Matrix3d& base_R_camera) const {
     return corrected(base_R_camera).transpose() * normal;
   }
+  // Where the optical axis points by the arm's poses, with their factor on turns, once it is on the normal.
+  Eigen::Vector3d normalOfPoses() const;
 };
 
 class PlaneNormal {

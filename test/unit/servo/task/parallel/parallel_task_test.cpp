@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
+#include <deque>
 #include <string>
 
 #include "unit/servo/task/parallel/plane_scene.h"
@@ -23,24 +25,30 @@ class ParallelTaskTest : public testing::Test {
  protected:
   ParallelTaskTest() { scene_.normal = PlaneScene::slanted(20.0 * kDegree, 1.0); }
 
-  // An arm that does at once what it is told; `moving`: it does.
+  // An arm that does `late_` steps later what it is told, if it moves.
   void step() {
     const bool is_image = ++steps_ % 2 == 0;
     time_ += kStep;
     if (is_image) task_.see(time_, anchor_, scene_.view(), true);
-    task_.move({time_, scene_.tip(), scene_.scope()}, commands_, 0.0);
+    task_.move({time_, scene_.tip(), scene_.scope()}, commands_, kStep * static_cast<double>(late_));
     scope::Velocity velocity;
     if (task_.stage() == ParallelStage::kCircle) velocity = task_.circle(kStep);
     commands_.add(time_, velocity);
-    if (moving_) scene_.turn(kStep * velocity.pan, kStep * velocity.tilt);
+    told_.push_back(velocity);
+    if (told_.size() <= late_) return;
+    if (moving_) scene_.turn(kStep * told_.front().pan, kStep * told_.front().tilt);
+    told_.pop_front();
   }
   void pass(double seconds) {
     for (const double end = time_ + seconds; time_ < end;) step();
   }
-  // Until the circle has ended; s.
+  bool isOnItsWay() const {
+    return task_.stage() == ParallelStage::kCircle || task_.stage() == ParallelStage::kSettles;
+  }
+  // Until the circle has ended, and the arm stands; s.
   double goRound() {
     const double begun = time_;
-    while (task_.stage() == ParallelStage::kCircle && time_ < begun + kFarOff) step();
+    while (isOnItsWay() && time_ < begun + kFarOff) step();
     return time_ - begun;
   }
   void announce() {
@@ -55,6 +63,8 @@ class ParallelTaskTest : public testing::Test {
   ParallelTask task_{config_, range(), 0.08};
   CommandHistory commands_{5.0, 1.0};
   double time_ = 0.0, anchor_ = 1.0;
+  std::deque<scope::Velocity> told_;  // not yet done
+  std::size_t late_ = 0;              // steps
   int steps_ = 0;
   bool moving_ = true;
 };
@@ -77,6 +87,52 @@ TEST_F(ParallelTaskTest, GoesRoundAnnouncesAndTurnsOnlyWhenEngagedAgain) {
   step();
   EXPECT_TRUE(scene_.normalInCamera().isApprox(task_.figures().normal_in_camera, 5e-3));
   EXPECT_GT(task_.error().x * scene_.normalInCamera().x() + task_.error().y * scene_.normalInCamera().y(), 0.0);
+}
+
+// An arm that is late by 0.4 s goes on by 1.8 degrees after the circle.
+TEST_F(ParallelTaskTest, AnnouncesFromWhereTheArmStands) {
+  late_ = 20;
+  pass(0.5);
+  task_.engage(time_);
+  while (task_.stage() == ParallelStage::kCircle) step();
+  ASSERT_EQ(task_.stage(), ParallelStage::kSettles) << task_.problem();
+  const Eigen::Matrix3d ended = scene_.base_R_shaft;
+  goRound();
+  ASSERT_EQ(task_.stage(), ParallelStage::kAnnounced) << task_.problem();
+  EXPECT_GT(geometry::so3Log(ended.transpose() * scene_.base_R_shaft).norm(), 1.0 * kDegree);
+  const std::string said = "ready to turn by ";
+  ASSERT_EQ(task_.announcement().find(said), 0U) << task_.announcement();
+  EXPECT_NEAR(std::stod(task_.announcement().substr(said.size())), scene_.slant() / kDegree, 0.7);
+}
+
+TEST_F(ParallelTaskTest, AnArmThatGoesOnIsNotAnnounced) {
+  pass(0.5);
+  task_.engage(time_);
+  while (task_.stage() == ParallelStage::kCircle) step();
+  ASSERT_EQ(task_.stage(), ParallelStage::kSettles) << task_.problem();
+  for (int k = 0; k < 300; ++k) {
+    step();
+    EXPECT_NE(task_.stage(), ParallelStage::kAnnounced);
+    scene_.turn(0.04 * kStep, 0.0);
+  }
+  EXPECT_EQ(task_.problem(), "the arm does not come to rest after the circle");
+  EXPECT_EQ(task_.stage(), ParallelStage::kUnknown);
+}
+
+// What nobody was told is not turned to.
+TEST_F(ParallelTaskTest, ACircleThatWasLeftBeginsAnew) {
+  pass(0.5);
+  task_.engage(time_);
+  while (task_.stage() == ParallelStage::kCircle) step();
+  ASSERT_EQ(task_.stage(), ParallelStage::kSettles) << task_.problem();
+  task_.leaveCircle();
+  pass(2.0);
+  EXPECT_EQ(task_.stage(), ParallelStage::kUnknown);
+  task_.engage(time_);
+  EXPECT_EQ(task_.stage(), ParallelStage::kCircle);
+  announce();
+  task_.leaveCircle();
+  EXPECT_EQ(task_.stage(), ParallelStage::kAnnounced);
 }
 
 // It ends where it began, and is no larger than twice its radius.

@@ -171,5 +171,18 @@ TEST(PlaneNormal, TakesNoMoreThanItHasRoomForAndBeginsAnew) {
   EXPECT_FALSE(plane.estimate().is_known);
 }
 
+// Turned by the poses to where they have the normal, the camera sees it along its axis.
+TEST(PlaneEstimate, TellsTheNormalByThePoses) {
+  PlaneEstimate estimate;
+  estimate.base_R_first = geometry::so3Exp({0.3, -0.2, 0.5});
+  const Eigen::Vector3d turn(0.4, -0.3, 0.0);
+  estimate.normal = estimate.base_R_first * (geometry::so3Exp(turn) * Eigen::Vector3d::UnitZ());
+  EXPECT_TRUE(PlaneEstimate(estimate).normalOfPoses().isApprox(estimate.normal, 1e-12)) << "poses without a factor";
+  estimate.turn_factor = 1.1;
+  const Eigen::Matrix3d told = estimate.base_R_first * geometry::so3Exp(turn / 1.1);
+  EXPECT_TRUE(estimate.seenFrom(told).isApprox(Eigen::Vector3d::UnitZ(), 1e-12));
+  EXPECT_TRUE(estimate.normalOfPoses().isApprox(told.col(2), 1e-12));
+}
+
 }  // namespace
 }  // namespace laparoscope_servo::servo
