@@ -19,8 +19,8 @@ constexpr double kAgreement = 0.5;  // share of the way that the picture shows; 
 // rad: pan or tilt goes on alone until less of it is left, and begins alone only where more is.
 constexpr double kAloneUntil = 0.02, kAloneFrom = 0.04;
 // Of a circle: on less of it the scope has hardly left its way from rest, where a line through its poses errs. Measured
-// by 100 runs of config/scenarios/parallel.yaml: after half of a circle the normal is up to 0.49 degrees off, after this
-// up to 0.37.
+// by 100 runs of config/scenarios/parallel.yaml: after half of a circle the normal is up to 0.49 degrees off, after
+// this up to 0.37.
 constexpr double kLeastShare = 0.75;
 constexpr int kStrange = 5;  // images in a row
 // The arm stands when its shaft, kStoodFrom and kStoodTo ago [s], pointed to the same direction but for kStood [rad]:
