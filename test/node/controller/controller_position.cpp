@@ -24,6 +24,7 @@ class ControllerPosition : public ControllerFixture {
     ControllerFixture::SetUp();
     // Of the task error nothing counts but the region's place.
     cart_.set([](Feed& feed) { feed.message.reference_stamp = ros::Time(3); });
+    cart_.nextCommands(10);  // until the controller has it
     select(SelectTask::Request::POSITION);
   }
   void select(const std::string& task) {
