@@ -272,7 +272,9 @@ TEST_F(ControllerManual, RefusesATaskThatItDoesNotKnow) {
     bool success = true;
     const std::string message = select(task, success);
     EXPECT_FALSE(success);
-    EXPECT_NE(message.find("HOLD_VIEW, MANUAL, STABILISE, CENTRE_TIP, FOLLOW, POINTS, POSITION or PARALLEL"), std::string::npos) << message;
+    EXPECT_NE(message.find("HOLD_VIEW, MANUAL, STABILISE, CENTRE_TIP, FOLLOW, POINTS, POSITION or PARALLEL"),
+              std::string::npos)
+        << message;
   }
   EXPECT_GT(command().pan, 0.0);
   EXPECT_EQ(cart_.state().task, "MANUAL");
