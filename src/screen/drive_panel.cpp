@@ -1,6 +1,7 @@
 #include "screen/drive_panel.h"
 
 #include <QEvent>
+#include <QGridLayout>
 #include <QHBoxLayout>
 #include <QVBoxLayout>
 #include <QVariant>
@@ -12,6 +13,7 @@ namespace laparoscope_servo::screen {
 
 namespace {
 
+constexpr int kTasksInARow = 4;    // as many as their names have room for
 constexpr int kTaskHeight = 28;    // px
 constexpr int kLeastPromise = 42;  // px: three lines of the smallest font, on a display of 768 px
 constexpr int kMostPromise = 50;   // px: three lines of the largest one
@@ -23,7 +25,7 @@ DrivePanel::DrivePanel(RosLink& link, QWidget* parent) : QWidget(parent), link_(
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(2, 2, 2, 2);
   layout->setSpacing(2);
-  auto* tasks = new QHBoxLayout;
+  auto* tasks = new QGridLayout;
   tasks->setSpacing(4);
   for (const TaskWords& words : taskWords()) {
     // Without a tool tip, which would hide the line below that says more.
@@ -32,7 +34,8 @@ DrivePanel::DrivePanel(RosLink& link, QWidget* parent) : QWidget(parent), link_(
     button->setProperty("task", true);
     button->setFixedHeight(kTaskHeight);
     button->installEventFilter(this);
-    tasks->addWidget(button);
+    const int place = static_cast<int>(tasks_.size());
+    tasks->addWidget(button, place / kTasksInARow, place % kTasksInARow);
     tasks_.push_back(button);
   }
   layout->addLayout(tasks);
