@@ -14,7 +14,7 @@ namespace laparoscope_servo::screen {
 namespace {
 
 constexpr int kTasksInARow = 4;    // as many as their names have room for
-constexpr int kTaskHeight = 28;    // px
+constexpr int kTaskHeight = 20;    // px: two rows, on a display of 768 px
 constexpr int kLeastPromise = 42;  // px: three lines of the smallest font, on a display of 768 px
 constexpr int kMostPromise = 50;   // px: three lines of the largest one
 constexpr int kKeepWidth = 118;    // px
@@ -26,7 +26,8 @@ DrivePanel::DrivePanel(RosLink& link, QWidget* parent) : QWidget(parent), link_(
   layout->setContentsMargins(2, 2, 2, 2);
   layout->setSpacing(2);
   auto* tasks = new QGridLayout;
-  tasks->setSpacing(4);
+  tasks->setHorizontalSpacing(4);
+  tasks->setVerticalSpacing(2);
   for (const TaskWords& words : taskWords()) {
     // Without a tool tip, which would hide the line below that says more.
     QPushButton* button = makeButton(
