@@ -8,7 +8,7 @@ namespace laparoscope_servo::screen {
 namespace {
 
 constexpr int kNameWidth = 84;    // px
-constexpr int kLeastHeight = 24;  // px, on a display of 768 px
+constexpr int kLeastHeight = 22;  // px, on a display of 768 px
 
 }  // namespace
 
