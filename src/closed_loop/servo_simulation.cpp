@@ -194,11 +194,10 @@ class Loop {
     s.lateral_speed = scope::twistAtInsertionPoint(tip, s.d2).head<2>().norm();                       // eq. (9)
     s.commanded_lateral_speed = scope::twistAtInsertionPoint(tip, believedDepth()).head<2>().norm();  // eq. (9)
     s.lateral_offset = body_.lateralOffset();
-    const Eigen::Vector3d normal = normalInCamera(time);
-    s.slant = std::atan2(normal.head<2>().norm(), normal.z());
+    s.slant = geometry::angleBetween(normalInCamera(time), Eigen::Vector3d::UnitZ());
     const Eigen::Vector3d known = insertionPointAxes() * figures.parallel.normal;
     const Eigen::Vector3d there = patient_.tissueMotion(time).linear() * normalInWorld();
-    s.normal_error = figures.parallel.is_known ? std::atan2(known.cross(there).norm(), known.dot(there)) : std::nan("");
+    s.normal_error = figures.parallel.is_known ? geometry::angleBetween(known, there) : std::nan("");
     s.state = output.state;
     return s;
   }

@@ -2,9 +2,10 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+
+#include "laparoscope_servo/geometry/se3.h"
 
 namespace laparoscope_servo::geometry {
 
@@ -18,12 +19,6 @@ Eigen::Matrix3d columns(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   Eigen::Matrix3d m;
   m << a, b, a.cross(b);
   return m;
-}
-
-Eigen::Matrix3d nearestRotation(const Eigen::Matrix3d& m) {
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Eigen::Matrix3d u = svd.matrixU(), v = svd.matrixV();
-  return u * Eigen::Vector3d(1.0, 1.0, (u * v.transpose()).determinant()).asDiagonal() * v.transpose();
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "laparoscope_servo/geometry/se3.h"
 
+#include <Eigen/SVD>
 #include <cmath>
 
 namespace laparoscope_servo::geometry {
@@ -25,6 +26,16 @@ Eigen::Matrix3d so3Exp(const Eigen::Vector3d& w) {
 Eigen::Vector3d so3Log(const Eigen::Matrix3d& r) {
   const Eigen::AngleAxisd rotation(r);
   return rotation.angle() * rotation.axis();
+}
+
+Eigen::Matrix3d nearestRotation(const Eigen::Matrix3d& m) {
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::Matrix3d u = svd.matrixU(), v = svd.matrixV();
+  return u * Eigen::Vector3d(1.0, 1.0, (u * v.transpose()).determinant()).asDiagonal() * v.transpose();
+}
+
+double angleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
 Eigen::Isometry3d se3Exp(const Vector6d& twist) {

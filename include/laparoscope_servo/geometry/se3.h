@@ -23,6 +23,12 @@ Eigen::Matrix3d so3Exp(const Eigen::Vector3d& w);
 // The rotation vector, its norm in [0, pi] rad. `r` must be a rotation matrix.
 Eigen::Vector3d so3Log(const Eigen::Matrix3d& r);
 
+// The rotation R with the least |R - m|.
+Eigen::Matrix3d nearestRotation(const Eigen::Matrix3d& m);
+
+// In [0, pi] rad, exact for small angles, too; 0 where one of both is zero.
+double angleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
+
 // The motion of a frame that keeps the twist (v, w), expressed in the frame itself, for one unit of time: a_T_b becomes
 // a_T_b * se3Exp(twist * dt).
 Eigen::Isometry3d se3Exp(const Vector6d& twist);

@@ -5,6 +5,7 @@
 #include <limits>
 #include <sstream>
 
+#include "laparoscope_servo/geometry/se3.h"
 #include "laparoscope_servo/parameters/table.h"
 
 namespace laparoscope_servo::aesop {
@@ -18,10 +19,6 @@ constexpr double kMargin = 0.05;       // rad, beyond the cone
 constexpr double kDepthGain = 1.0;     // 1/s
 constexpr double kDepthSpeed = 0.005;  // m/s, at most
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-double angleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
 
 }  // namespace
 
@@ -62,7 +59,7 @@ double CalibrationPattern::lever(const Eigen::Isometry3d& base_T_end) const {
 
 std::string CalibrationPattern::doubt(const Eigen::Isometry3d& base_T_end, const JointMotion& last) const {
   std::ostringstream text;
-  const double turned = angleBetween(base_T_end.linear().col(2), start_);
+  const double turned = geometry::angleBetween(base_T_end.linear().col(2), start_);
   const double out = lever(base_T_end) - start_lever_;
   if (last.scale == 0.0) {
     text << last.reason;
@@ -79,7 +76,7 @@ CalibrationPattern::Step CalibrationPattern::step(const JointVector& q, const Jo
   const Eigen::Isometry3d base_T_end = kinematics_.endEffector(q);
   const Eigen::Vector3d axis = base_T_end.linear().col(2);
   end_.problem = doubt(base_T_end, last);
-  while (next_ < way_.size() && angleBetween(axis, way_[next_]) < kReached) {
+  while (next_ < way_.size() && geometry::angleBetween(axis, way_[next_]) < kReached) {
     ++next_;
     nearest_ = kInfinity;
   }
@@ -87,7 +84,7 @@ CalibrationPattern::Step CalibrationPattern::step(const JointVector& q, const Jo
   ended_ = end_.done || !end_.problem.empty();
   if (ended_) return end_;
 
-  const double angle = angleBetween(axis, way_[next_]);
+  const double angle = geometry::angleBetween(axis, way_[next_]);
   if (angle < nearest_ - kProgress) {
     nearest_ = angle;
     nearest_at_ = now;

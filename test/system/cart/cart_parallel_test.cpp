@@ -16,6 +16,7 @@
 #include <string>
 
 #include "laparoscope_servo/aesop/kinematics.h"
+#include "laparoscope_servo/geometry/se3.h"
 #include "laparoscope_servo/sim/emulator_control_client.h"
 #include "laparoscope_servo/sim/tissue.h"
 
@@ -77,7 +78,9 @@ class CartParallel : public testing::Test {
 
   Eigen::Isometry3d camera() { return kinematics_.optical(emulator_->state().q); }
   // rad, of the tissue against the image plane.
-  double slant() { return std::acos(std::min(1.0, sim::planeSeenFrom(camera(), tissue_).normal.z())); }
+  double slant() {
+    return geometry::angleBetween(sim::planeSeenFrom(camera(), tissue_).normal, Eigen::Vector3d::UnitZ());
+  }
 
   ros::NodeHandle node_;
   ControllerState state_;

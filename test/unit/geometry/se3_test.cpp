@@ -56,6 +56,32 @@ TEST(So3, ExponentialsAreRotations) {
   }
 }
 
+TEST(So3, TheNearestRotationOfARotationIsItselfAlsoWhenItIsScaledOrDisturbed) {
+  const Eigen::Matrix3d r = so3Exp({0.3, -1.2, 2.0});
+  Eigen::Matrix3d symmetric;
+  symmetric << 0.1, 0.02, -0.03, 0.02, -0.2, 0.05, -0.03, 0.05, 0.15;
+  EXPECT_TRUE(nearestRotation(2.5 * r).isApprox(r, 1e-14));
+  EXPECT_TRUE(nearestRotation(r * (Eigen::Matrix3d::Identity() + symmetric)).isApprox(r, 1e-14));
+}
+
+TEST(So3, TheNearestRotationOfAReflectionIsARotation) {
+  const Eigen::Vector3d axis = Eigen::Vector3d(1.0, 2.0, -0.5).normalized();
+  const Eigen::Matrix3d reflection = Eigen::Matrix3d::Identity() - 2.2 * axis * axis.transpose();
+  const Eigen::Matrix3d r = nearestRotation(reflection);
+  EXPECT_NEAR(r.determinant(), 1.0, 1e-14);
+  EXPECT_TRUE((r * r.transpose()).isApprox(Eigen::Matrix3d::Identity(), 1e-14));
+}
+
+TEST(So3, AnglesBetweenVectorsAreExactFromTheSmallestToAHalfTurn) {
+  const Eigen::Vector3d a(0.2, -0.4, 3.0), across = a.unitOrthogonal();
+  for (const double angle : {0.0, 1e-12, 1e-6, 0.3, 1.5, 3.0, M_PI}) {
+    const Eigen::Vector3d b = so3Exp(angle * across) * a;
+    EXPECT_NEAR(angleBetween(a, 0.1 * b), angle, 1e-15 + 1e-14 * angle) << angle;
+    EXPECT_EQ(angleBetween(a, b), angleBetween(b, a));
+  }
+  EXPECT_EQ(angleBetween(a, Eigen::Vector3d::Zero()), 0.0);
+}
+
 TEST(So3, LogarithmUndoesTheExponential) {
   for (const Vector6d& t : twists()) {
     const Eigen::Vector3d w = t.tail<3>();

@@ -17,10 +17,6 @@ Eigen::Vector3d opticalAxis(const scope::Geometry& scope) {
   return scope.camera_R_shaft.transpose() * Eigen::Vector3d::UnitZ();
 }
 
-double angleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
-
 }  // namespace
 
 // With oblique optics the axis is not the shaft: each step goes by the part of the turn that pan and tilt can do.
@@ -30,7 +26,7 @@ Eigen::Matrix3d turnTo(const Eigen::Vector3d& direction, const Eigen::Vector3d& 
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
   for (int step = 0; step < kMostSteps; ++step) {
     const Eigen::Vector3d there = turn * axis;
-    const double angle = angleBetween(there, direction);
+    const double angle = geometry::angleBetween(there, direction);
     if (angle < kReached) return turn;
     const Eigen::Vector3d about = there.cross(direction);
     if (!(about.norm() > 0.0)) break;
@@ -77,14 +73,14 @@ ParallelPlan planned(const TissuePlane& tissue, const Eigen::Isometry3d& base_T_
     return r.col(2) * scope.d2 + depthOf(r) * (r * axis);
   };
   ParallelPlan plan;
-  plan.turn = angleBetween(now * axis, tissue.normal);
+  plan.turn = geometry::angleBetween(now * axis, tissue.normal);
   plan.distance = depthOf(now);
   plan.remaining = depthOf(goal);
   plan.way = (meets(goal) - meets(now)).norm();
   const Eigen::Vector3d into = Eigen::Vector3d(range.axis[0], range.axis[1], range.axis[2]);
   if (!(plan.turn <= config.max_turn)) {
     plan.problem = "the tissue is slanted by more than parallel/max_turn";
-  } else if (!(angleBetween(goal.col(2), into) <= range.cone)) {
+  } else if (!(geometry::angleBetween(goal.col(2), into) <= range.cone)) {
     plan.problem = "the tissue's normal is outside of the workspace: the scope would leave the cone range/cone";
   } else if (!(plan.remaining >= config.min_distance) || !(plan.distance >= config.min_distance)) {
     plan.problem = "the lens would come nearer to the tissue than parallel/min_distance: draw the scope out first";

@@ -32,10 +32,6 @@ Eigen::Vector3d turnOf(const Eigen::Vector4d& displacement) {
   return scope::angularVelocity(scope::Velocity::fromVector(displacement));
 }
 
-double angleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
-
 }  // namespace
 
 ParallelTask::ParallelTask(const ParallelConfig& config, const Workspace& range, double desired_depth)
@@ -62,7 +58,7 @@ void ParallelTask::fail(const std::string& problem) {
 void ParallelTask::engage(double time) {
   problem_.clear();
   const bool is_recent = time - since_ <= config_.keep;
-  const bool is_here = pose_ && angleBetween(pose_->base_T_tip.linear().col(2), announced_from_) <= kMoved;
+  const bool is_here = pose_ && geometry::angleBetween(pose_->base_T_tip.linear().col(2), announced_from_) <= kMoved;
   if (stage() == ParallelStage::kTurn && is_recent) return;
   if (stage() == ParallelStage::kAnnounced && is_recent && is_here) {
     figures_.stage = ParallelStage::kTurn;
@@ -164,7 +160,7 @@ void ParallelTask::settle() {
   }
   if (now - settles_from_ < kStoodFrom) return;
   const std::optional<Eigen::Isometry3d> first = poses_.at(now - kStoodFrom), last = poses_.at(now - kStoodTo);
-  if (first && last && angleBetween(first->linear().col(2), last->linear().col(2)) <= kStood) announce();
+  if (first && last && geometry::angleBetween(first->linear().col(2), last->linear().col(2)) <= kStood) announce();
 }
 
 void ParallelTask::announce() {
@@ -193,7 +189,7 @@ void ParallelTask::announce() {
 void ParallelTask::compare(const Waiting& image, const Eigen::Isometry3d& base_T_shaft) {
   const Eigen::Vector3d seen = (image.motion.h.inverse().transpose() * normal_in_anchor_).normalized();
   const Eigen::Vector3d told = estimate_.seenFrom(base_T_shaft.linear() * pose_->scope.camera_R_shaft.transpose());
-  const double angle = angleBetween(seen.z() < 0.0 ? Eigen::Vector3d(-seen) : seen, told);
+  const double angle = geometry::angleBetween(seen.z() < 0.0 ? Eigen::Vector3d(-seen) : seen, told);
   strange_ = angle <= config_.max_change ? 0 : strange_ + 1;
   if (strange_ >= kStrange)
     fail("the tissue's normal is not where it was measured: the tissue has tilted, or is not flat enough");

@@ -4,7 +4,6 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -42,13 +41,6 @@ Eigen::Matrix<double, 3, 2> across(const Eigen::Vector3d& n) {
   return basis;
 }
 
-// The rotation that is nearest to a homography.
-Eigen::Matrix3d nearestRotation(const Eigen::Matrix3d& h) {
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(h, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Eigen::Matrix3d uv = svd.matrixU() * svd.matrixV().transpose();
-  return uv.determinant() < 0.0 ? Eigen::Matrix3d(-uv) : uv;
-}
-
 }  // namespace
 
 Eigen::Matrix3d PlaneEstimate::corrected(const Eigen::Matrix3d& base_R_camera) const {
@@ -79,8 +71,8 @@ void PlaneNormal::begin(const PlaneView& view) {
     const Eigen::Vector3d p = back * view.motion.corners[k].homogeneous();
     anchor_[k] = p / p.z();
   }
-  first_R_anchor_ = nearestRotation(view.motion.h);
-  if (first_R_anchor_.col(2).z() < 0.0) first_R_anchor_ = nearestRotation(-view.motion.h);
+  const double sign = view.motion.h.determinant() < 0.0 ? -1.0 : 1.0;  // a homography has none of its own
+  first_R_anchor_ = geometry::nearestRotation(sign * view.motion.h);
   normal_ = first_R_anchor_.transpose() * Eigen::Vector3d::UnitZ();
   turn_error_ = 0.0;
   scale_ = 1.0;

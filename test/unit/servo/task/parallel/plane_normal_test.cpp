@@ -18,10 +18,6 @@ constexpr double kRadius = 0.05;            // rad
 constexpr double kRate = 2.0 * M_PI / 4.0;  // rad/s: a circle takes 4 s
 constexpr double kNoise = 0.3 / 400.0;      // 0.3 px at a focal length of 400 px
 
-double angleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
-
 using Change = std::function<void(int image, PlaneScene& scene, PlaneView& view)>;
 
 // `images` on the circle; `before` changes the scene, `after` what is told of it.
@@ -48,12 +44,13 @@ TEST(PlaneNormal, IsExactWithoutNoise) {
       scene.normal = PlaneScene::slanted(slant, azimuth);
       const PlaneEstimate found = round(scene, 40);
       ASSERT_TRUE(found.is_known) << slant;
-      EXPECT_LT(angleBetween(found.normal, scene.normal), 1e-6) << slant << ", " << azimuth;
+      EXPECT_LT(geometry::angleBetween(found.normal, scene.normal), 1e-6) << slant << ", " << azimuth;
       EXPECT_NEAR(found.distance, scene.distance(), 1e-6);
       EXPECT_NEAR(found.turn_factor, 1.0, 1e-6);
       EXPECT_NEAR(found.agreement, 1.0, 1e-6);
-      EXPECT_LT(angleBetween(found.seenFrom(scene.cameraAt(scene.base_R_shaft).linear()), scene.normalInCamera()),
-                1e-6);
+      EXPECT_LT(
+          geometry::angleBetween(found.seenFrom(scene.cameraAt(scene.base_R_shaft).linear()), scene.normalInCamera()),
+          1e-6);
     }
   }
 }
@@ -66,7 +63,7 @@ TEST(PlaneNormal, BearsObliqueOpticsAndAnAnchorFromElsewhere) {
   scene.turn(0.1, -0.07);
   const PlaneEstimate found = round(scene, 40);
   ASSERT_TRUE(found.is_known);
-  EXPECT_LT(angleBetween(found.normal, scene.normal), 1e-6);
+  EXPECT_LT(geometry::angleBetween(found.normal, scene.normal), 1e-6);
   EXPECT_NEAR(found.distance, scene.distance(), 1e-6);
 }
 
@@ -78,7 +75,7 @@ TEST(PlaneNormal, BreathingTissueDoesNotDisturbIt) {
     s.tissue = 0.004 * std::sin(2.0 * M_PI * 0.25 * kImage * k) * Eigen::Vector3d(0.3, 0.8, 0.5);
   });
   ASSERT_TRUE(found.is_known);
-  EXPECT_LT(angleBetween(found.normal, scene.normal), 1e-6);
+  EXPECT_LT(geometry::angleBetween(found.normal, scene.normal), 1e-6);
   EXPECT_LT(found.agreement, 0.99) << "the distance is known less well, and that is said";
 }
 
@@ -94,7 +91,7 @@ TEST(PlaneNormal, FindsThatTheTurnsAreToldWrong) {
   });
   ASSERT_TRUE(found.is_known);
   EXPECT_NEAR(found.turn_factor, 1.0 / 1.05, 0.005);
-  EXPECT_LT(angleBetween(found.normal, scene.normal), 0.2 * kDegree);
+  EXPECT_LT(geometry::angleBetween(found.normal, scene.normal), 0.2 * kDegree);
 }
 
 // The standard deviation is that of the error in the worst direction: the error of both stays below about 2.5 of it.
@@ -111,7 +108,7 @@ TEST(PlaneNormal, TellsHowFarItIsOff) {
     });
     ASSERT_TRUE(found.is_known);
     EXPECT_LT(found.stddev, 0.5 * kDegree);
-    ratios.push_back(angleBetween(found.normal, scene.normal) / found.stddev);
+    ratios.push_back(geometry::angleBetween(found.normal, scene.normal) / found.stddev);
   }
   std::sort(ratios.begin(), ratios.end());
   EXPECT_LT(ratios[20], 1.6);
@@ -141,7 +138,7 @@ TEST(PlaneNormal, AFewViewsThatDoNotFitHaveNoSay) {
     if (k % 10 == 5) view.motion.h(2, 0) += 0.05;  // 3 px at the corners
   });
   ASSERT_TRUE(found.is_known);
-  EXPECT_LT(angleBetween(found.normal, scene.normal), 0.2 * kDegree);
+  EXPECT_LT(geometry::angleBetween(found.normal, scene.normal), 0.2 * kDegree);
 }
 
 TEST(PlaneNormal, IgnoresWhatIsNotFinite) {
@@ -153,7 +150,7 @@ TEST(PlaneNormal, IgnoresWhatIsNotFinite) {
     if (k % 11 == 3) view.motion.error = std::numeric_limits<double>::infinity();
   });
   ASSERT_TRUE(found.is_known);
-  EXPECT_LT(angleBetween(found.normal, scene.normal), 1e-6);
+  EXPECT_LT(geometry::angleBetween(found.normal, scene.normal), 1e-6);
 }
 
 TEST(PlaneNormal, TakesNoMoreThanItHasRoomForAndBeginsAnew) {

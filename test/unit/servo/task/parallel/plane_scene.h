@@ -49,7 +49,7 @@ struct PlaneScene {
   }
   Eigen::Vector3d normalInCamera() const { return cameraAt(base_R_shaft).linear().transpose() * (tilted * normal); }
   // rad
-  double slant() const { return std::acos(std::min(1.0, normalInCamera().z())); }
+  double slant() const { return geometry::angleBetween(normalInCamera(), Eigen::Vector3d::UnitZ()); }
 
   // By the velocities of pan and tilt, rad, in the shaft's axes.
   void turn(double pan, double tilt) { base_R_shaft = base_R_shaft * geometry::so3Exp({tilt, pan, 0.0}); }
