@@ -45,4 +45,15 @@ std::optional<Eigen::Vector2d> FeatureCamera::withLens(const Eigen::Vector2d& pi
   return lens_ ? lens_->toRaw(pixel) : pixel;
 }
 
+std::optional<Eigen::Vector2d> FeatureCamera::normalised(const Eigen::Vector2d& pixel) const {
+  if (!pixel.allFinite()) return std::nullopt;
+  const std::optional<Eigen::Vector2d> seen = withoutLens(pixel);
+  if (!seen || !seen->allFinite()) return std::nullopt;
+  return Eigen::Vector2d((camera_.inverseMatrix() * seen->homogeneous()).head<2>());
+}
+
+bool FeatureCamera::hasSizeOf(const TrackedFeatures& message) const {
+  return static_cast<int>(message.width) == size_.width && static_cast<int>(message.height) == size_.height;
+}
+
 }  // namespace laparoscope_servo

@@ -1,6 +1,7 @@
 // The camera behind the pixels of a tracker's features, by camera_info.
 #pragma once
 
+#include <laparoscope_servo/TrackedFeatures.h>
 #include <sensor_msgs/CameraInfo.h>
 
 #include <optional>
@@ -28,6 +29,10 @@ class FeatureCamera {
   // To pixels without the lens, and back; empty outside of what the lens shows.
   std::optional<Eigen::Vector2d> withoutLens(const Eigen::Vector2d& pixel) const;
   std::optional<Eigen::Vector2d> withLens(const Eigen::Vector2d& pixel) const;
+  // To the normalised place without the lens; empty outside of what the lens shows, and of what is not finite.
+  std::optional<Eigen::Vector2d> normalised(const Eigen::Vector2d& pixel) const;
+  // Whether its images are those that the message is of.
+  bool hasSizeOf(const TrackedFeatures& message) const;
 
  private:
   bool rectified_;

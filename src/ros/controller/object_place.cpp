@@ -56,20 +56,18 @@ servo::TaskErrorInput ObjectPlace::from(const TrackedFeatures& message, const Fe
     input.problem = camera.problem();
     return input;
   }
-  if (static_cast<int>(message.width) != camera.size().width ||
-      static_cast<int>(message.height) != camera.size().height) {
+  if (!camera.hasSizeOf(message)) {
     input.problem = "the motion of the object is of images of another size than camera_info says";
     return input;
   }
   const Eigen::Vector2d middle = middleOf(motion.outline);
   const std::optional<Eigen::Vector2d> place =
-      isInside(middle, camera.size()) ? camera.withoutLens(middle) : std::nullopt;  // false for NaN
+      isInside(middle, camera.size()) ? camera.normalised(middle) : std::nullopt;
   if (!place) {
     input.problem = "the object leaves: its middle is outside of the image, or not finite";
     return input;
   }
-  const Eigen::Vector2d seen = (camera.camera().inverseMatrix() * place->homogeneous()).head<2>();
-  input.error = servo::placeError(seen, {config_.x, config_.y});
+  input.error = servo::placeError(*place, {config_.x, config_.y});
   input.valid = true;
   input.visible_fraction = is_selection ? 1.0 : motion.share;
   input.corner_error = std::sqrt(variance_);

@@ -5,30 +5,19 @@
 
 namespace laparoscope_servo {
 
-namespace {
-
-// Normalised; empty where the lens shows nothing.
-std::optional<Eigen::Vector2d> placeOf(const std::vector<double>& pixel, const FeatureCamera& camera) {
-  const std::optional<Eigen::Vector2d> seen = camera.withoutLens({pixel[0], pixel[1]});
-  if (!seen || !seen->allFinite()) return std::nullopt;
-  return Eigen::Vector2d((camera.camera().inverseMatrix() * seen->homogeneous()).head<2>());
-}
-
-}  // namespace
-
 void PointsInput::take(const TrackedFeatures& message, const FeatureCamera& camera) {
   points_.clear();
   middle_.setZero();
   for (const TrackedFeature& feature : message.features) {
     if (feature.kind != TrackedFeature::POINT || feature.desired.size() != 2) continue;
-    const std::optional<Eigen::Vector2d> desired = placeOf(feature.desired, camera);
+    const std::optional<Eigen::Vector2d> desired = camera.normalised({feature.desired[0], feature.desired[1]});
     if (!desired) continue;
     servo::PointTask& point = points_.emplace_back();
     point.desired = *desired;
     point.weight = 0.0;
     middle_ += *desired;
     if (feature.state != TrackedFeatures::TRACKING || feature.parameters.size() != 2) continue;
-    const std::optional<Eigen::Vector2d> place = placeOf(feature.parameters, camera);
+    const std::optional<Eigen::Vector2d> place = camera.normalised({feature.parameters[0], feature.parameters[1]});
     if (!place) continue;
     point.point = *place;
     point.weight = 1.0;
@@ -42,8 +31,7 @@ servo::TaskErrorInput PointsInput::from(const TrackedFeatures& message, const Fe
   input.problem = camera.problem();
   input.region = message.selection_stamp.toSec();
   if (!input.problem.empty()) return input;
-  if (static_cast<int>(message.width) != camera.size().width ||
-      static_cast<int>(message.height) != camera.size().height) {
+  if (!camera.hasSizeOf(message)) {
     input.problem = "the points are of images of another size than camera_info says";
     return input;
   }
@@ -52,16 +40,12 @@ servo::TaskErrorInput PointsInput::from(const TrackedFeatures& message, const Fe
     input.problem = "fewer points than points/min_points have desired places: select them with 'desired' or 'stored'";
     return input;
   }
-  if (message.selection_stamp != selected_ || !has_scope_) {
-    selected_ = message.selection_stamp;
-    scope_ = {depth.camera_R_shaft, depth.d2};
-    has_scope_ = depth.problem.empty() && depth.d2 > 0.0;
-  }
-  if (!has_scope_) {
+  const std::optional<scope::Geometry>& scope = scope_.of(message.selection_stamp, depth);
+  if (!scope) {
     input.problem = "depth d2 is unknown";
     return input;
   }
-  const servo::PointsSeen seen = error_.from(points_, middle_, scope_);
+  const servo::PointsSeen seen = error_.from(points_, middle_, *scope);
   input.valid = seen.is_known;
   if (!input.valid) return input;
   input.error = seen.error;

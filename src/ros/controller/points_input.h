@@ -8,6 +8,7 @@
 #include "laparoscope_servo/servo/controller.h"
 #include "laparoscope_servo/servo/points_error.h"
 #include "ros/controller/feature_camera.h"
+#include "ros/controller/selection_scope.h"
 
 namespace laparoscope_servo {
 
@@ -28,11 +29,7 @@ class PointsInput {
   servo::PointsError error_;
   std::vector<servo::PointTask> points_;  // all that have a desired place; those that are not seen without weight
   Eigen::Vector2d middle_ = Eigen::Vector2d::Zero();  // normalised, of the desired places
-  ros::Time selected_;
-  // Where the points' error was told first since the selection, and kept: its digits must not change with the noise of
-  // the scope's pose, or a picture that repeats would not show (repeat_watch.h). An error of d2 changes the speed only.
-  scope::Geometry scope_;
-  bool has_scope_ = false;
+  SelectionScope scope_;
 };
 
 }  // namespace laparoscope_servo

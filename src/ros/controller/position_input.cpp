@@ -1,5 +1,7 @@
 #include "ros/controller/position_input.h"
 
+#include <optional>
+
 #include "laparoscope_servo/servo/position_error.h"
 #include "ros/common/eigen_messages.h"
 
@@ -23,17 +25,13 @@ servo::TaskErrorInput PositionInput::from(const Homography& message, const servo
     input.problem = "the place of the region is not known: no task error of it was received";
     return input;
   }
-  if (message.reference_stamp != scope_of_ || !has_scope_) {
-    scope_of_ = message.reference_stamp;
-    scope_ = {depth.camera_R_shaft, depth.d2};
-    has_scope_ = depth.problem.empty() && depth.d2 > 0.0;
-  }
-  if (!has_scope_) {
+  const std::optional<scope::Geometry>& scope = scope_.of(message.reference_stamp, depth);
+  if (!scope) {
     input.problem = "depth d2 is unknown";
     return input;
   }
   const Eigen::Matrix3d h = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(message.h.data());
-  const servo::PositionSeen seen = servo::positionError(h, m_star_, scope_, desired_depth_);
+  const servo::PositionSeen seen = servo::positionError(h, m_star_, *scope, desired_depth_);
   if (!seen.is_known) {
     input.problem = "the homography of the region is of no plane before the camera";
     return input;

@@ -4,8 +4,8 @@
 #include <laparoscope_servo/Homography.h>
 #include <laparoscope_servo/TaskError.h>
 
-#include "laparoscope_servo/scope/geometry.h"
 #include "laparoscope_servo/servo/controller.h"
+#include "ros/controller/selection_scope.h"
 
 namespace laparoscope_servo {
 
@@ -25,10 +25,7 @@ class PositionInput {
   double desired_depth_;  // m
   ros::Time region_;      // reference_stamp of the last task error
   Eigen::Vector3d m_star_ = Eigen::Vector3d::Zero();
-  // Where the error was told first since the selection, and kept: see PointsInput.
-  ros::Time scope_of_;
-  scope::Geometry scope_;
-  bool has_scope_ = false;
+  SelectionScope scope_;
 };
 
 }  // namespace laparoscope_servo

@@ -22,13 +22,8 @@ bool isSeen(const TrackedFeature& tip) {
   return tip.state == TrackedFeatures::TRACKING && tip.parameters.size() == 2;
 }
 
-// Normalised; empty where the lens shows nothing.
 std::optional<Eigen::Vector2d> placeOf(const TrackedFeature& tip, const FeatureCamera& camera) {
-  const Eigen::Vector2d pixel(tip.parameters[0], tip.parameters[1]);
-  if (!pixel.allFinite()) return std::nullopt;
-  const std::optional<Eigen::Vector2d> seen = camera.withoutLens(pixel);
-  if (!seen) return std::nullopt;
-  return Eigen::Vector2d((camera.camera().inverseMatrix() * seen->homogeneous()).head<2>());
+  return camera.normalised({tip.parameters[0], tip.parameters[1]});
 }
 
 }  // namespace

@@ -8,19 +8,10 @@
 #include <limits>
 #include <string>
 
+#include "unit/ros/controller/feature_inputs.h"
+
 namespace laparoscope_servo {
 namespace {
-
-FeatureCamera calibrated() {
-  sensor_msgs::CameraInfo info;
-  info.width = 640;
-  info.height = 480;
-  info.K = {500.0, 0.0, 310.0, 0.0, 500.0, 250.0, 0.0, 0.0, 1.0};
-  info.P = {500.0, 0.0, 310.0, 0.0, 0.0, 500.0, 250.0, 0.0, 0.0, 0.0, 1.0, 0.0};
-  FeatureCamera camera(false);
-  camera.take(info);
-  return camera;
-}
 
 // An object of 60 x 40 px whose middle is at (u, v), `k` images after it was selected.
 TrackedFeatures objectAt(double u, double v, int k, double error = 0.03) {

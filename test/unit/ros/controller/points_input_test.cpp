@@ -7,26 +7,10 @@
 #include <limits>
 #include <string>
 
+#include "unit/ros/controller/feature_inputs.h"
+
 namespace laparoscope_servo {
 namespace {
-
-FeatureCamera calibrated() {
-  sensor_msgs::CameraInfo info;
-  info.width = 640;
-  info.height = 480;
-  info.K = {500.0, 0.0, 310.0, 0.0, 500.0, 250.0, 0.0, 0.0, 1.0};
-  info.P = {500.0, 0.0, 310.0, 0.0, 0.0, 500.0, 250.0, 0.0, 0.0, 0.0, 1.0, 0.0};
-  FeatureCamera camera(false);
-  camera.take(info);
-  return camera;
-}
-
-servo::DepthInput depthOf(double d2) {
-  servo::DepthInput depth;
-  depth.problem.clear();
-  depth.d2 = d2;
-  return depth;
-}
 
 // 16 points, all seen (u, v) px away from where they shall be.
 TrackedFeatures pointsOff(double u, double v) {

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "laparoscope_servo/geometry/homography.h"
+#include "unit/ros/controller/feature_inputs.h"
 
 namespace laparoscope_servo {
 namespace {
@@ -20,13 +21,6 @@ TaskError regionOf(double stamp) {
   message.m_star.y = -0.01;
   message.m_star.z = 1.0;
   return message;
-}
-
-servo::DepthInput depthOf(double d2) {
-  servo::DepthInput depth;
-  depth.problem.clear();
-  depth.d2 = d2;
-  return depth;
 }
 
 // The camera has moved by `x` m to the side of tissue that is 0.08 m away.

@@ -7,19 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "unit/ros/controller/feature_inputs.h"
+
 namespace laparoscope_servo {
 namespace {
-
-FeatureCamera calibrated() {
-  sensor_msgs::CameraInfo info;
-  info.width = 640;
-  info.height = 480;
-  info.K = {500.0, 0.0, 310.0, 0.0, 500.0, 250.0, 0.0, 0.0, 1.0};
-  info.P = {500.0, 0.0, 310.0, 0.0, 0.0, 500.0, 250.0, 0.0, 0.0, 0.0, 1.0, 0.0};
-  FeatureCamera camera(false);
-  camera.take(info);
-  return camera;
-}
 
 TrackedFeature tip(const std::string& number, double u, double v) {
   TrackedFeature feature;
