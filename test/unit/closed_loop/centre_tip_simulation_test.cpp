@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
-#include <vector>
 
 #include "laparoscope_servo/closed_loop/servo_runs.h"
 #include "laparoscope_servo/closed_loop/servo_simulation.h"
@@ -58,18 +56,11 @@ TEST(CentreTipSimulation, AnInstrumentThatLeavesIsNotFollowed) {
 }
 
 TEST(CentreTipSimulation, AWrongPictureIsStopped) {
-  std::vector<Fault> faults(std::begin(kWrongPictures), std::end(kWrongPictures));
-  faults.push_back({"frozen from 0.6 s on", [](SimulationConfig& c) { c.picture.frozen_from = 0.6; }});
-  for (const Fault& fault : faults) {
-    for (unsigned seed = 1; seed <= 5; ++seed) {
-      SimulationConfig config = centring();
-      fault.apply(config);
-      const RunSummary summary = summariseRun(simulate(ControllerSetup(), config, seed, 10.0), config, RunBounds{});
-      EXPECT_GE(summary.stopped, 0.0) << fault.name << ", seed " << seed;
-      EXPECT_LT(summary.turned_away, 3.0 * kDegree) << fault.name << ", seed " << seed;
-      EXPECT_EQ(summary.inserted, 0.0) << fault.name;
-    }
-  }
+  const auto configOf = [](unsigned) { return centring(); };
+  expectStopped(wrongPicturesAndFreezing(), 5, 10.0, configOf, [](const RunSummary& summary) {
+    EXPECT_LT(summary.turned_away, 3.0 * kDegree);
+    EXPECT_EQ(summary.inserted, 0.0);
+  });
 }
 
 }  // namespace

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
-#include <vector>
 
 #include "laparoscope_servo/closed_loop/servo_runs.h"
 #include "laparoscope_servo/closed_loop/servo_simulation.h"
@@ -56,19 +54,15 @@ TEST(FollowSimulation, TheLeashEndsIt) {
 }
 
 TEST(FollowSimulation, AWrongPictureIsStopped) {
-  std::vector<Fault> faults(std::begin(kWrongPictures), std::end(kWrongPictures));
-  faults.push_back({"frozen from 0.6 s on", [](SimulationConfig& c) { c.picture.frozen_from = 0.6; }});
-  for (const Fault& fault : faults) {
-    for (unsigned seed = 1; seed <= 5; ++seed) {
-      SimulationConfig config = following(0.0);
-      config.start = {0.12, 0.08, 0.0, 0.0};
-      fault.apply(config);
-      const RunSummary summary = summariseRun(simulate(ControllerSetup(), config, seed, 10.0), config, RunBounds{});
-      EXPECT_GE(summary.stopped, 0.0) << fault.name << ", seed " << seed;
-      EXPECT_LT(summary.turned_away, 3.0 * kDegree) << fault.name << ", seed " << seed;
-      EXPECT_EQ(summary.inserted, 0.0) << fault.name;
-    }
-  }
+  const auto configOf = [](unsigned) {
+    SimulationConfig config = following(0.0);
+    config.start = {0.12, 0.08, 0.0, 0.0};
+    return config;
+  };
+  expectStopped(wrongPicturesAndFreezing(), 5, 10.0, configOf, [](const RunSummary& summary) {
+    EXPECT_LT(summary.turned_away, 3.0 * kDegree);
+    EXPECT_EQ(summary.inserted, 0.0);
+  });
 }
 
 }  // namespace

@@ -87,17 +87,11 @@ TEST(ParallelSimulation, ANormalOutsideOfTheConeIsNotGoneTo) {
 
 // The slant stays at 30 degrees: what goes wrong shows on the circle, which is small whatever happens.
 TEST(ParallelSimulation, AWrongPictureIsStopped) {
-  for (const Fault& fault : kWrongPictures) {
-    for (unsigned seed = 1; seed <= 3; ++seed) {
-      SimulationConfig config = slanted(seed);
-      fault.apply(config);
-      const auto samples = simulate(ControllerSetup(), config, seed, 10.0);
-      const RunSummary summary = summariseRun(samples, config, RunBounds());
-      EXPECT_GE(summary.stopped, 0.0) << fault.name << ", seed " << seed;
-      EXPECT_LT(summary.turned, 5.0 * kDegree) << fault.name << ", seed " << seed;
-      EXPECT_EQ(summary.inserted, 0.0) << fault.name;
-    }
-  }
+  const auto configOf = [](unsigned seed) { return slanted(seed); };
+  expectStopped(wrongPictures(), 3, 10.0, configOf, [](const RunSummary& summary) {
+    EXPECT_LT(summary.turned, 5.0 * kDegree);
+    EXPECT_EQ(summary.inserted, 0.0);
+  });
 }
 
 // Another camera's picture from the middle of the turn on.

@@ -40,17 +40,15 @@ TEST(PositionSimulation, ConvergesFromLargeStarts) {
 }
 
 TEST(PositionSimulation, AWrongPictureIsStopped) {
-  for (const Fault& fault : kWrongPictures) {
-    for (unsigned seed = 1; seed <= 5; ++seed) {
-      SimulationConfig config = positioning();
-      config.start = {0.12, 0.08, 0.1, 0.0};
-      fault.apply(config);
-      const RunSummary summary = summariseRun(simulate(ControllerSetup(), config, seed, 10.0), config, RunBounds{});
-      EXPECT_GE(summary.stopped, 0.0) << fault.name << ", seed " << seed;
-      EXPECT_LT(summary.turned_away, 3.0 * kDegree) << fault.name << ", seed " << seed;
-      EXPECT_LT(summary.inserted_away, 0.004) << fault.name << ", seed " << seed;
-    }
-  }
+  const auto configOf = [](unsigned) {
+    SimulationConfig config = positioning();
+    config.start = {0.12, 0.08, 0.1, 0.0};
+    return config;
+  };
+  expectStopped(wrongPictures(), 5, 10.0, configOf, [](const RunSummary& summary) {
+    EXPECT_LT(summary.turned_away, 3.0 * kDegree);
+    EXPECT_LT(summary.inserted_away, 0.004);
+  });
 }
 
 }  // namespace

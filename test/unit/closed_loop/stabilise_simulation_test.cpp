@@ -55,16 +55,11 @@ TEST(StabiliseSimulation, ComesBackFromWhereItWasPushed) {
 
 // Three degrees, beside what goes along the line of a mirror: there the motion is as it should be.
 TEST(StabiliseSimulation, AWrongPictureIsStopped) {
-  for (const Fault& fault : kWrongPictures) {
-    for (unsigned seed = 1; seed <= 5; ++seed) {
-      SimulationConfig config = stabilising();
-      fault.apply(config);
-      const RunSummary summary = run(config, seed, 8.0, 4.0);
-      EXPECT_GE(summary.stopped, 0.0) << fault.name << ", seed " << seed;
-      EXPECT_LT(summary.turned_away, 3.0 * kDegree) << fault.name << ", seed " << seed;
-      EXPECT_EQ(summary.inserted, 0.0) << fault.name;
-    }
-  }
+  const auto configOf = [](unsigned) { return stabilising(); };
+  expectStopped(wrongPictures(), 5, 8.0, configOf, [](const RunSummary& summary) {
+    EXPECT_LT(summary.turned_away, 3.0 * kDegree);
+    EXPECT_EQ(summary.inserted, 0.0);
+  });
 }
 
 TEST(StabiliseSimulation, KeepsOrientationAndDepthOnChoice) {
