@@ -1,56 +1,23 @@
 // The task STABILISE over topics: it goes by the motion of the view alone, and whatever that lacks is a HOLD.
-#include <laparoscope_servo/SelectTask.h>
-
 #include <atomic>
 
-#include "controller_fixture.h"
 #include "motion_feed.h"
 #include "system/aesop/child_process.h"
+#include "task_fixture.h"
 
 namespace laparoscope_servo {
 namespace {
 
 using test::ChildProcess;
 
-class ControllerStabilise : public ControllerFixture {
+class ControllerStabilise : public TaskFixture<MotionFeed> {
  protected:
-  static MotionFeed& motion() {
-    static MotionFeed instance;
-    return instance;
-  }
-  static void TearDownTestSuite() {
-    motion().end();
-    ControllerFixture::TearDownTestSuite();
-  }
-
-  void SetUp() override {
-    motion_.set([](MotionWords& words) { words = MotionWords{}, words.message = viewOff(40.0, -20.0); });
-    ControllerFixture::SetUp();
-    // The region of interest is silent: nothing of it is needed.
-    cart_.set([](Feed& feed) { feed.task_error = false; });
-    SelectTask call;
-    call.request.task = SelectTask::Request::STABILISE;
-    ASSERT_TRUE(ros::service::call("/controller/select_task", call) && call.response.success) << call.response.message;
-    ASSERT_TRUE(waitFor([this] { return cart_.state().task == ControllerState::STABILISE; }));
-  }
-
-  void engageAndStabilise() {
-    ASSERT_TRUE(cart_.engageWhenReady()) << cart_.answer();
-    // The controller may still have the camera_info of the test before, which ends the first engagement.
-    ASSERT_TRUE(waitFor([this] {
-      if (cart_.state().state == ControllerState::LOST) cart_.engageWhenReady();
-      return cart_.state().state == ControllerState::SERVO && cart_.moves();
-    })) << cart_.state().reason;
-  }
-  bool waitForReason(const std::string& reason) {
-    return waitFor([&] { return cart_.state().reason.find(reason) != std::string::npos; });
-  }
-
-  MotionFeed& motion_ = motion();
+  ControllerStabilise()
+      : TaskFixture("/motion_features", {SelectTask::Request::STABILISE}, [] { return viewOff(40.0, -20.0); }) {}
 };
 
 TEST_F(ControllerStabilise, PansAndTiltsByTheViewAlone) {
-  engageAndStabilise();
+  engageAgainAndMove();
   // What is seen to the right and above is brought back by a pan to the right and a tilt up.
   for (const ScopeVelocity& command : cart_.nextCommands(50)) {
     EXPECT_GT(command.pan, 0.0);
@@ -60,14 +27,8 @@ TEST_F(ControllerStabilise, PansAndTiltsByTheViewAlone) {
   }
 }
 
-struct Loss {
-  const char* name;
-  std::function<void(MotionWords&)> apply;
-  const char* reason;
-};
-
 TEST_F(ControllerStabilise, EachLossStopsIt) {
-  const Loss losses[] = {
+  eachLossHoldsIt({
       {"silent", [](MotionWords& w) { w.motion = false; }, "silent"},
       {"lost", [](MotionWords& w) { w.message.features[0].state = TrackedFeatures::LOST; }, "not valid"},
       {"nothing selected", [](MotionWords& w) { w.message.features.pop_back(); }, "no image was selected"},
@@ -78,39 +39,22 @@ TEST_F(ControllerStabilise, EachLossStopsIt) {
       {"not a number", [](MotionWords& w) { w.message.features[0].parameters[2] = std::nan(""); }, "not finite"},
       {"stamped ahead", [](MotionWords& w) { w.stamp_offset = 60.0; }, "future"},
       {"without a stamp", [](MotionWords& w) { w.without_stamp = true; }, "no stamp"},
-  };
-  for (const Loss& loss : losses) {
-    if (cart_.state().state != ControllerState::SERVO) engageAndStabilise();
-    motion_.set(loss.apply);
-    ASSERT_TRUE(waitForReason(loss.reason)) << loss.name << ": " << cart_.state().reason;
-    EXPECT_TRUE(cart_.stands()) << loss.name;
-    motion_.set([](MotionWords& w) { w = MotionWords{}, w.message = viewOff(40.0, -20.0); });
-    ASSERT_TRUE(waitFor([this] {
-      const std::string state = cart_.state().state;
-      return state == ControllerState::SERVO || state == ControllerState::LOST;
-    })) << loss.name;
-  }
+  });
 }
 
 TEST_F(ControllerStabilise, AnotherCalibrationEndsIt) {
-  engageAndStabilise();
-  motion_.set([](MotionWords& w) { w.focal_length = 600.0; });
-  ASSERT_TRUE(cart_.waitForState(ControllerState::LOST)) << cart_.state().reason;
-  EXPECT_TRUE(waitForReason("camera_info has another calibration")) << cart_.state().reason;
-  EXPECT_TRUE(cart_.stands());
+  engageAgainAndMove();
+  anotherCalibrationEndsIt(600.0);
 }
 
 TEST_F(ControllerStabilise, TimeThatJumpsBackIsAFault) {
-  engageAndStabilise();
-  motion_.set([](MotionWords& w) { w.stamp_offset = -1.0; });
-  ASSERT_TRUE(cart_.waitForState(ControllerState::FAULT)) << cart_.state().reason;
-  EXPECT_NE(cart_.state().reason.find("motion of the view jumped back"), std::string::npos) << cart_.state().reason;
-  EXPECT_TRUE(cart_.stands());
+  engageAgainAndMove();
+  timeThatJumpsBackIsAFault("motion of the view jumped back");
 }
 
 // Another node wants the opposite: nothing of it counts.
 TEST_F(ControllerStabilise, AStrangerMovesNothingAndKeepsNothingMoving) {
-  engageAndStabilise();
+  engageAgainAndMove();
   ChildProcess stranger("/proc/self/exe", {"publish", "__name:=stranger"});
   std::atomic<bool> heard{false};
   const boost::function<void(const ros::MessageEvent<TrackedFeatures const>&)> hear = [&heard](const auto& event) {
@@ -119,7 +63,7 @@ TEST_F(ControllerStabilise, AStrangerMovesNothingAndKeepsNothingMoving) {
   ros::Subscriber listener = ros::NodeHandle().subscribe<TrackedFeatures>("/motion_features", 100, hear);
   ASSERT_TRUE(waitFor([&heard] { return heard.load(); }));
   for (const ScopeVelocity& command : cart_.nextCommands(50)) EXPECT_GT(command.pan, 0.0);
-  motion_.set([](MotionWords& w) { w.motion = false; });
+  feed_.set([](MotionWords& w) { w.motion = false; });
   ASSERT_TRUE(waitForReason("silent")) << cart_.state().reason;
   EXPECT_TRUE(cart_.stands()) << "the stranger still speaks";
 }

@@ -4,11 +4,11 @@
 #include <laparoscope_servo/Homography.h>
 #include <ros/ros.h>
 
-#include <atomic>
-#include <chrono>
 #include <functional>
-#include <mutex>
-#include <thread>
+#include <string>
+#include <utility>
+
+#include "repeating_feed.h"
 
 namespace laparoscope_servo {
 
@@ -34,41 +34,24 @@ inline Homography regionOff(double x, double y) {
 
 class HomographyFeed {
  public:
-  HomographyFeed() : publisher_([this] { publishUntilEnd(); }) {}
-  ~HomographyFeed() { end(); }
-  void end() {
-    end_ = true;
-    if (publisher_.joinable()) publisher_.join();
-  }
-  void set(const std::function<void(PositionWords&)>& change) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    change(words_);
-  }
+  using Words = PositionWords;
+
+  explicit HomographyFeed(const std::string& topic) : homography_(node_.advertise<Homography>(topic, 1)) {}
+  void end() { repeating_.end(); }
+  void set(const std::function<void(PositionWords&)>& change) { repeating_.set(change); }
 
  private:
-  void publishUntilEnd() {
-    for (int k = 0; !end_; ++k) {
-      PositionWords words;
-      {
-        const std::lock_guard<std::mutex> lock(mutex_);
-        words = words_;
-      }
-      if (words.speaks) {
-        words.message.header.stamp = ros::Time::now() + ros::Duration(words.stamp_offset);
-        if (words.without_stamp) words.message.header.stamp = ros::Time();
-        words.message.h[2] += 1e-9 * k;  // no two pictures are the same
-        homography_.publish(words.message);
-      }
-      std::this_thread::sleep_for(std::chrono::milliseconds(40));
-    }
+  void publish(PositionWords words, int k) {
+    if (!words.speaks) return;
+    words.message.header.stamp = stampNow(words);
+    words.message.h[2] += 1e-9 * k;  // no two pictures are the same
+    homography_.publish(words.message);
   }
 
   ros::NodeHandle node_;
-  ros::Publisher homography_ = node_.advertise<Homography>("/homography", 1);
-  std::mutex mutex_;
-  PositionWords words_;
-  std::atomic<bool> end_{false};
-  std::thread publisher_;
+  ros::Publisher homography_;
+  RepeatingFeed<PositionWords> repeating_{
+      [this](PositionWords words, int k) { publish(std::move(words), k); }};  // ends before the rest does
 };
 
 }  // namespace laparoscope_servo

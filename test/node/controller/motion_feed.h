@@ -6,12 +6,11 @@
 #include <ros/ros.h>
 #include <sensor_msgs/CameraInfo.h>
 
-#include <atomic>
-#include <chrono>
 #include <functional>
-#include <mutex>
 #include <string>
-#include <thread>
+#include <utility>
+
+#include "repeating_feed.h"
 
 namespace laparoscope_servo {
 
@@ -93,60 +92,44 @@ inline TrackedFeatures pointsOff(double u, double v) {
 
 class MotionFeed {
  public:
+  using Words = MotionWords;
+
   explicit MotionFeed(const std::string& topic = "/motion_features")
-      : motion_(node_.advertise<TrackedFeatures>(topic, 1)), publisher_([this] { publishUntilEnd(); }) {}
-  ~MotionFeed() { end(); }
-  void end() {
-    end_ = true;
-    if (publisher_.joinable()) publisher_.join();
-  }
-  void set(const std::function<void(MotionWords&)>& change) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    change(words_);
-  }
+      : motion_(node_.advertise<TrackedFeatures>(topic, 1)) {}
+  void end() { repeating_.end(); }
+  void set(const std::function<void(MotionWords&)>& change) { repeating_.set(change); }
 
  private:
-  void publishUntilEnd() {
-    for (int k = 0; !end_; ++k) {
-      MotionWords words;
-      {
-        const std::lock_guard<std::mutex> lock(mutex_);
-        words = words_;
+  void publish(MotionWords words, int k) {
+    if (words.motion) {
+      words.message.header.stamp = stampNow(words);
+      // No two pictures are the same.
+      if (!words.message.features.empty()) {
+        TrackedFeature& first = words.message.features[0];
+        first.parameters[0] += 1e-9 * k;
+        if (!first.outline.empty()) first.outline[0] += 1e-9 * k;
       }
-      if (words.motion) {
-        words.message.header.stamp = ros::Time::now() + ros::Duration(words.stamp_offset);
-        if (words.without_stamp) words.message.header.stamp = ros::Time();
-        // No two pictures are the same.
-        if (!words.message.features.empty()) {
-          TrackedFeature& first = words.message.features[0];
-          first.parameters[0] += 1e-9 * k;
-          if (!first.outline.empty()) first.outline[0] += 1e-9 * k;
-        }
-        motion_.publish(words.message);
-      }
-      if (words.camera_info && k % 3 == 0) {
-        sensor_msgs::CameraInfo info;
-        info.header.stamp = ros::Time::now();
-        info.width = 640;
-        info.height = 480;
-        info.distortion_model = "plumb_bob";
-        info.D.assign(5, 0.0);
-        const double f = words.focal_length;
-        info.K = {f, 0.0, 319.5, 0.0, f, 239.5, 0.0, 0.0, 1.0};
-        info.P = {f, 0.0, 319.5, 0.0, 0.0, f, 239.5, 0.0, 0.0, 0.0, 1.0, 0.0};
-        camera_info_.publish(info);
-      }
-      std::this_thread::sleep_for(std::chrono::milliseconds(40));
+      motion_.publish(words.message);
+    }
+    if (words.camera_info && k % 3 == 0) {
+      sensor_msgs::CameraInfo info;
+      info.header.stamp = ros::Time::now();
+      info.width = 640;
+      info.height = 480;
+      info.distortion_model = "plumb_bob";
+      info.D.assign(5, 0.0);
+      const double f = words.focal_length;
+      info.K = {f, 0.0, 319.5, 0.0, f, 239.5, 0.0, 0.0, 1.0};
+      info.P = {f, 0.0, 319.5, 0.0, 0.0, f, 239.5, 0.0, 0.0, 0.0, 1.0, 0.0};
+      camera_info_.publish(info);
     }
   }
 
   ros::NodeHandle node_;
   ros::Publisher motion_;
   ros::Publisher camera_info_ = node_.advertise<sensor_msgs::CameraInfo>("/camera_info", 1);
-  std::mutex mutex_;
-  MotionWords words_;
-  std::atomic<bool> end_{false};
-  std::thread publisher_;
+  RepeatingFeed<MotionWords> repeating_{
+      [this](MotionWords words, int k) { publish(std::move(words), k); }};  // ends before the rest does
 };
 
 }  // namespace laparoscope_servo
