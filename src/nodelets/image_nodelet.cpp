@@ -13,6 +13,12 @@
 
 namespace laparoscope_servo::nodelets {
 
+namespace {
+
+constexpr double kTurnTimeout = 10.0;  // s: an image takes less, also on a busy machine
+
+}  // namespace
+
 void ImageNodelet::onInit() {
   // Exceptions must not leave onInit(); they would end the nodelet manager, with the camera driver in it.
   try {
@@ -23,6 +29,7 @@ void ImageNodelet::onInit() {
     // back.
     diagnostics_timer_ = getNodeHandle().createWallTimer(
         ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) { diagnostics_->force_update(); });
+    turn_.take(getName(), kTurnTimeout);
     const std::vector<std::string> errors = configure();
     if (!errors.empty()) return standAside(errorReport(errors));
     warnOfExposure();

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "ros/common/name_turn.h"
 #include "ros/tracker/feed_owner.h"
 #include "ros/tracker/feed_statistics.h"
 #include "ros/tracker/image_backlog.h"
@@ -61,6 +62,7 @@ class ImageNodelet : public nodelet::Nodelet {
   void refuse(const std::string& error, Refusal cause = Refusal::kData);
   void fillDiagnostics(diagnostic_updater::DiagnosticStatusWrapper& status);
 
+  NameTurn turn_;  // first: what is below ends before
   std::unique_ptr<diagnostic_updater::Updater> diagnostics_;
   bool started_ = false;
   std::string why_aside_;

@@ -6,9 +6,11 @@
 
 #include <atomic>
 #include <future>
+#include <memory>
 #include <thread>
 
 #include "camera_bench.h"
+#include "ros/common/name_turn.h"
 
 namespace laparoscope_servo {
 namespace {
@@ -61,7 +63,26 @@ TEST(TrackerReload, TheManagerSurvivesItAndTheNextOneTracks) {
     answer.wait();
   }
   ASSERT_TRUE(loader.load(kName, "laparoscope_servo/Tracker", {}, {}));
-  EXPECT_TRUE(bench.select(kRoi).get().success);
+  const SelectRoiResponse answer = bench.select(kRoi).get();
+  EXPECT_TRUE(answer.success) << answer.message;
+}
+
+// A nodelet that was unloaded lives until its running callback ends, and so do its services.
+TEST(TrackerReload, OneWaitsUntilTheOneOfItsNameBeforeHasEnded) {
+  CameraBench bench("reload");
+  const RunningCamera camera(bench);
+  auto before = std::make_unique<NameTurn>();
+  before->take(kName, 0.0);
+  nodelet::Loader loader(false);
+  std::future<bool> loaded =
+      std::async(std::launch::async, [&] { return loader.load(kName, "laparoscope_servo/Tracker", {}, {}); });
+  // Not a wait for a condition: one that does not wait has a moment to show it.
+  EXPECT_EQ(loaded.wait_for(std::chrono::milliseconds(500)), std::future_status::timeout);
+  EXPECT_FALSE(ros::service::exists(std::string(kName) + "/select_roi", false));
+  before.reset();
+  EXPECT_TRUE(loaded.get());
+  const SelectRoiResponse answer = bench.select(kRoi).get();
+  EXPECT_TRUE(answer.success) << answer.message;
 }
 
 }  // namespace
