@@ -16,11 +16,10 @@ namespace laparoscope_servo {
 namespace {
 
 using test_support::hands;
+using test_support::kOriginal;
 using test_support::moveTo;
 using test_support::ScreenWindow;
 using test_support::waitFor;
-
-const QSize kOriginal(1280, 720);
 
 TEST_F(ScreenWindow, ARegionIsDrawnWithinOnePixelOfTheScreenAtAnySize) {
   const QRect wanted(310, 170, 403, 287);
@@ -30,8 +29,7 @@ TEST_F(ScreenWindow, ARegionIsDrawnWithinOnePixelOfTheScreenAtAnySize) {
     ASSERT_TRUE(waitFor([&] { return screen_->size() == size && isColoured(); }));
     nodes_.forget();
     hands(moveTo(onDisplay(kOriginal, {100, 100})) + "click 1 click --repeat 2 1");
-    drag(onDisplay(kOriginal, wanted.topLeft()), onDisplay(kOriginal, wanted.topLeft() + QPoint(403, 287)));
-    ASSERT_TRUE(waitFor([this] { return !nodes_.regions().empty(); }));
+    ASSERT_TRUE(draws(wanted));
     ASSERT_EQ(nodes_.regions().size(), 1u) << "clicks draw nothing";
     const sensor_msgs::RegionOfInterest region = nodes_.regions()[0];
     const double pixel = std::max(1.0, pixelOfDisplay(kOriginal));
@@ -49,8 +47,7 @@ QSize roomLeft(const QPushButton& button) {
   option.text = button.text();
   const QRect contents = button.style()->subElementRect(QStyle::SE_PushButtonContents, &option, &button);
   const QFontMetrics font = button.fontMetrics();
-  return {contents.width() - font.size(Qt::TextShowMnemonic, button.text()).width(),
-          contents.height() - font.capHeight()};
+  return {contents.width() - font.size(Qt::TextShowMnemonic, button.text()).width(), contents.height() - font.height()};
 }
 
 TEST_F(ScreenWindow, NoNameOfAButtonIsCutAtAnySize) {
@@ -123,8 +120,7 @@ TEST_F(ScreenWindow, ARegionIsJudgedWhileItIsDrawnAndNothingIsSelectedByIt) {
 }
 
 TEST_F(ScreenWindow, ARegionThatTheTrackerOffersIsTakenByAClickInIt) {
-  drag(onDisplay(kOriginal, {300, 200}), onDisplay(kOriginal, {360, 400}));
-  ASSERT_TRUE(waitFor([this] { return nodes_.regions().size() == 1; }));
+  ASSERT_TRUE(draws({300, 200, 60, 200}));
   // To another place each time, for Qt tells of no other move.
   auto isOffered = [this, aside = 0]() mutable {
     aside = 4 - aside;
