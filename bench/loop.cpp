@@ -186,7 +186,7 @@ void measure(const Texture& texture, const std::string& task, int starts, const 
   std::mt19937 random(1);
   const auto within = [&](double spread) { return std::uniform_real_distribution<double>(-spread, spread)(random); };
   for (int k = 0; k < starts; ++k) {
-    std::printf("%-32s %-9s", texture.name.c_str(), task.c_str());
+    std::printf("%-32s %-10s", texture.name.c_str(), task.c_str());
     Run run;
     if (task == "POINTS") {
       const scope::Velocity start{within(0.1), within(0.07), within(0.2), within(0.01)};

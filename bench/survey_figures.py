@@ -98,7 +98,7 @@ def parallel(run, out):
     figure, axes = plt.subplots(1, 2, figsize=(12, 5))
     for axis, a, title in zip(axes, (current, desired), ("(a) current: measured on the circle, before tissue slanted by %.0f degrees" % run.rows[number]["slant"],
                                                          "(b) desired: of the same pan and tilt before parallel tissue")):
-        axis.quiver(*field(a, (width, height)), angles="xy", scale_units="xy", scale=0.15)
+        axis.quiver(*field(a, (width, height)), angles="xy", scale_units="xy", scale=0.15, width=0.0025)
         axis.set_xlim(0, width)
         axis.set_ylim(height, 0)
         axis.set_aspect("equal")
