@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "laparoscope_servo/image/warp.h"
+#include "laparoscope_servo/robust/median.h"
 #include "laparoscope_servo/robust/scale.h"
 #include "motion/square_weights.h"
 
@@ -35,6 +36,10 @@ constexpr double kSingular = 1e-9;
 // Px of the finest level, which bilinear sampling errs by where the whole image has one shift between pixels, however
 // little noise there is: bench_motion, constant motion, has 0.011 of an image of 640 x 480, 0.017 of a halved one.
 constexpr double kInterpolation = 0.015;
+// Px of the finest level along a column and a row, from one difference of which a block's offset is begun to the next,
+// and how few are too few: a block of an image of 640 x 480 has some 260.
+constexpr int kOffsetRows = 2, kOffsetColumns = 4;
+constexpr std::size_t kFewestDifferences = 16;
 constexpr double kDark = 0.5, kBright = 2.0;  // bounds of the gain between two images
 
 // Unknowns that are not estimated get a row of the identity, and 0.
@@ -90,6 +95,9 @@ void MotionAligner::setReference(const MotionImage& image) {
   steps_ = geometry::Sl3Steps(tracking::templateFromPixels(frame_));
   levels_.clear();
   for (int l = 0; l < image.pyramid.levels(); ++l) levels_.emplace_back(image.pyramid, frame_, l);
+  const EsmLevel& finest = levels_[0];
+  differences_.reserve(
+      static_cast<std::size_t>((finest.height / kOffsetRows + 1) * (finest.width / kOffsetColumns + 1)));
   all_usable_ = false;
 }
 
@@ -103,15 +111,65 @@ JointUse MotionAligner::setUsable(const MotionImage& reference, const MotionImag
   return use;
 }
 
-void MotionAligner::warp(const MotionImage& current, int l, const Alignment& at) {
+void MotionAligner::warpImage(const MotionImage& current, int l, const Eigen::Matrix3d& g) {
   EsmLevel& level = levels_[static_cast<std::size_t>(l)];
   tracking::EsmPlane& plane = level.planes[0];
-  level.all_valid =
-      image::warpBilinear(current.pyramid.level(l), current.pyramid.levelFromImage(l) * at.g * level.image_T_patch,
-                          plane.warped, level.valid);
+  level.all_valid = image::warpBilinear(
+      current.pyramid.level(l), current.pyramid.levelFromImage(l) * g * level.image_T_patch, plane.warped, level.valid);
   plane.warped.extrapolate();
   if (!level.all_valid) level.useValid();
-  std::fill(plane.bias.begin(), plane.bias.end(), at.offset);
+}
+
+void MotionAligner::setOffset(int l, double offset) {
+  std::vector<double>& bias = levels_[static_cast<std::size_t>(l)].planes[0].bias;
+  std::fill(bias.begin(), bias.end(), offset);
+}
+
+void MotionAligner::warp(const MotionImage& current, int l, const Alignment& at) {
+  warpImage(current, l, at.g);
+  setOffset(l, at.offset);
+}
+
+// The median of each block's differences: after one offset for all, Tukey's weights would drop whole blocks that are
+// brighter or darker than that. A block that shows too little has the offset of all.
+void MotionAligner::beginOffsets(int l, const Alignment& at) {
+  setOffset(l, at.offset);
+  EsmLevel& level = levels_[static_cast<std::size_t>(l)];
+  tracking::EsmPlane& plane = level.planes[0];
+  const image::Patch& weight = level.usedWeight();
+  const float gain = static_cast<float>(at.gain);
+  const std::vector<int>& columns = level.light_column_of_strip;
+  std::size_t block = 0;
+  for (std::size_t row = 0; row + 1 < level.light_row_begin.size(); ++row) {
+    for (std::size_t strip = 0; strip < columns.size(); ++block) {
+      const int begin = static_cast<int>(strip) * image::Patch::kStrip;
+      const int column = columns[strip];
+      while (strip < columns.size() && columns[strip] == column) ++strip;
+      const int end = std::min(level.width, static_cast<int>(strip) * image::Patch::kStrip);
+      differences_.clear();
+      for (int j = level.light_row_begin[row]; j < level.light_row_begin[row + 1]; j += kOffsetRows) {
+        for (int i = begin; i < end; i += kOffsetColumns) {
+          if (weight(j, i) > 0.0f) differences_.push_back(plane.value(j, i) - gain * plane.warped(j, i));
+        }
+      }
+      if (differences_.size() >= kFewestDifferences)
+        plane.bias[block] = static_cast<double>(robust::median(differences_));
+    }
+  }
+}
+
+// The blocks' offsets were eliminated from the equations: what the step `x` of all else leaves of the mean residual.
+void MotionAligner::stepOffsets(int l, const Vector10d& x, Alignment& at) {
+  std::vector<double>& bias = levels_[static_cast<std::size_t>(l)].planes[0].bias;
+  double sum = 0.0, weight = 0.0;
+  for (std::size_t k = 0; k < bias.size(); ++k) {
+    const tracking::LightBlockSums& block = equations_.blocks()[k];
+    if (!(block.weight > 0.0)) continue;
+    bias[k] -= (block.residual + block.jacobian.dot(x)) / block.weight;
+    sum += block.weight * bias[k];
+    weight += block.weight;
+  }
+  if (weight > 0.0) at.offset = sum / weight;
 }
 
 // By the median of all residuals, then of those that it keeps; bounded by what is expected.
@@ -121,12 +179,15 @@ double MotionAligner::scaleOf(int l, const tracking::ResidualScale& scale, doubl
   return expected > 0.0 ? std::min(found, std::max(kLeastBound, kMayGrow * expected)) : found;
 }
 
-bool MotionAligner::step(const MotionImage& current, int l, const Unknowns& unknowns, tracking::ResidualScale& scale,
-                         Alignment& at) {
-  warp(current, l, at);
+bool MotionAligner::step(const MotionImage& current, int l, const Unknowns& unknowns, Offsets offsets,
+                         tracking::ResidualScale& scale, Alignment& at) {
+  warpImage(current, l, at.g);
+  const bool local = offsets != Offsets::kOne;
+  if (offsets == Offsets::kOne) setOffset(l, at.offset);
+  if (offsets == Offsets::kBegin) beginOffsets(l, at);
   const EsmLevel& level = levels_[static_cast<std::size_t>(l)];
   at.sigma = scaleOf(l, scale, scale.of(level, at.gain));
-  equations_.sum(level, frame_, lightOf(config_), at.gain, robust::kTukey * at.sigma);
+  equations_.sum(level, frame_, local ? tracking::Light::kLocal : lightOf(config_), at.gain, robust::kTukey * at.sigma);
   ++at.iterations;
   Matrix10d a = equations_.matrix();
   Vector10d b = equations_.vector();
@@ -139,7 +200,11 @@ bool MotionAligner::step(const MotionImage& current, int l, const Unknowns& unkn
   at.g = steps_.plus(at.g, x.head<8>());
   at.g /= std::cbrt(at.g.determinant());
   at.gain = std::clamp(at.gain + x[8], kDark, kBright);
-  at.offset += x[9];
+  if (local) {
+    stepOffsets(l, x, at);
+  } else {
+    at.offset += x[9];
+  }
   at.last_step = geometry::cornerDistance(before, at.g, frame_);
   at.determined = at.g.allFinite() && std::isfinite(at.last_step);
   return at.determined;
@@ -171,7 +236,7 @@ Alignment MotionAligner::bestStart(const MotionImage& current, const std::vector
     at.g = g;
     for (int k = 0; k < kCoarseIterations; ++k) {
       const int motion = k < kShifts ? parametersOf(Model::kConstant) : parametersOf(config_.model);
-      if (!step(current, l, {motion, false, config_.light}, residuals, at)) break;
+      if (!step(current, l, {motion, false, config_.light}, Offsets::kOne, residuals, at)) break;
       if (k >= kShifts && at.last_step < kCoarseAccuracy * level.scale) break;
     }
     if (!at.determined) return;
@@ -239,11 +304,14 @@ void MotionAligner::judgeAgain(const MotionImage& current, int l, const Eigen::M
 // Until the way that is still to go, by how the steps shrink, is short.
 void MotionAligner::refine(const MotionImage& current, int l, Alignment& at) {
   const double scale = levels_[static_cast<std::size_t>(l)].scale;
+  // On coarser levels, where the motion may be far off yet, the offsets would take up what drives it.
+  const bool local = l == 0 && config_.light;
   const double accuracy = scale * (l == 0 ? kAccuracy : kCoarseAccuracy);
   double contraction = kContraction;
   for (int k = 0; k < kIterations; ++k) {
     const double before = at.last_step;
-    if (!step(current, l, all(), residuals_[0], at)) return;
+    const Offsets offsets = !local ? Offsets::kOne : k == 0 ? Offsets::kBegin : Offsets::kGoOn;
+    if (!step(current, l, all(), offsets, residuals_[0], at)) return;
     if (k > 0) contraction = std::min(at.last_step / std::max(before, 1e-9), kSlowest);
     if (at.last_step * contraction / (1.0 - contraction) < accuracy) break;
   }
