@@ -117,13 +117,13 @@ TEST(WirePrinter, SummaryCountsTurnsAndRoundTrips) {
   printed.add(WireEvent::kSent, 1.0, encode({1, Poll()}));
   printed.add(WireEvent::kReceived, 1.01, status(1));
   printed.add(WireEvent::kReceived, 1.5, status(1));  // again: no other round trip
-  printed.add(WireEvent::kSent, 1.25, encode({2, Poll()}));
-  printed.add(WireEvent::kSent, 2.0, encode({3, Poll()}));  // not answered
-  printed.add(WireEvent::kReceived, 1.28, status(2));
-  printed.add(WireEvent::kSent, 2.1, encode({4, Poll()}));
-  printed.add(WireEvent::kReceived, 2.12, status(4));
+  printed.add(WireEvent::kSent, 2.0, encode({2, Poll()}));
+  printed.add(WireEvent::kSent, 2.25, encode({3, Poll()}));  // not answered
+  printed.add(WireEvent::kReceived, 2.03, status(2));
+  printed.add(WireEvent::kSent, 2.35, encode({4, Poll()}));
+  printed.add(WireEvent::kReceived, 2.37, status(4));
   const std::string summary = printed.summary();
-  EXPECT_NE(summary.find("turns of the driver 4, longest time between two 0.75 s"), std::string::npos) << summary;
+  EXPECT_NE(summary.find("turns of the driver 4, longest time between two 1 s"), std::string::npos) << summary;
   EXPECT_NE(summary.find("round trips 3, median 0.02 s, longest 0.03 s"), std::string::npos) << summary;
   EXPECT_EQ(Printed().summary().find("round trips"), std::string::npos) << "without one";
 }
