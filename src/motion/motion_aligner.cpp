@@ -18,23 +18,23 @@ using tracking::Vector10d;
 
 constexpr int kLeastSide = 48;  // px of the coarsest level: enough for a quadratic motion
 constexpr int kCoarseIterations = 8;
-constexpr int kShifts = 2;            // the first of them
-constexpr int kIterations = 6;        // at most, on each further level
-constexpr double kContraction = 0.2;  // of steps, before it has been measured
-constexpr double kSlowest = 0.9;
+constexpr int kShifts = 2;               // of these, the first so many change the shift alone
+constexpr int kIterations = 6;           // at most, on each further level
+constexpr double kContraction = 0.2;     // ratio of a step to the one before, until it is measured
+constexpr double kSlowest = 0.9;         // largest ratio that is extrapolated
 constexpr double kCoarseAccuracy = 0.1;  // px of the level
 constexpr double kAccuracy = 0.01;       // px of the finest level
-constexpr double kApart = 0.5;           // px of the coarsest level, by which starts differ
-constexpr double kBetter = 0.98;         // of the cost that the expected motion has: another start has to have less
-constexpr double kFarther = 0.1;         // px of the level, by which the expected motion differs from the one found
-constexpr int kTrims = 3;
-constexpr int kMostJudged = 100000;   // px of a level: on one of 320 x 240 two motions that differ can be told apart
-constexpr double kAsExpected = 1.15;  // of the expected scale: no more is left than there was
-constexpr double kMayGrow = 1.3;      // of the expected scale
-constexpr double kLeastBound = 2.5;   // grey levels: a scale up to this is never bounded
+constexpr double kApart = 0.5;           // px of the coarsest level: starts nearer to each other are one
+constexpr double kBetter = 0.98;         // another start needs a cost below this share of that of the expected motion
+constexpr double kFarther = 0.1;         // px of the level: an expected motion nearer to the one found is the same
+constexpr int kTrims = 3;                // rounds in which the scale is computed anew without outliers
+constexpr int kMostJudged = 100000;      // px of a level: on one of 320 x 240 two motions that differ can be told apart
+constexpr double kAsExpected = 1.15;     // times the expected scale: larger residuals may be of a wrong motion
+constexpr double kMayGrow = 1.3;         // times the expected scale: the bound of the scale
+constexpr double kLeastBound = 2.5;      // grey levels: a scale up to this is never bounded
 constexpr double kSingular = 1e-9;
-// Px of the finest level, which bilinear sampling errs by where the whole image has one shift between pixels, however
-// little noise there is: bench_motion, constant motion, has 0.011 of an image of 640 x 480, 0.017 of a halved one.
+// px of the finest level: error of bilinear sampling where the whole image is shifted by a part of a pixel, without any
+// noise: bench_motion, constant motion, has 0.011 of an image of 640 x 480, 0.017 of a halved one.
 constexpr double kInterpolation = 0.015;
 // Px of the finest level along a column and a row, from one difference of which a block's offset is begun to the next,
 // and how few are too few: a block of an image of 640 x 480 has some 260.
@@ -42,7 +42,7 @@ constexpr int kOffsetRows = 2, kOffsetColumns = 4;
 constexpr std::size_t kFewestDifferences = 16;
 constexpr double kDark = 0.5, kBright = 2.0;  // bounds of the gain between two images
 
-// Unknowns that are not estimated get a row of the identity, and 0.
+// Fixes the unknowns that are not estimated at 0, by a row of the identity.
 void restrictTo(Matrix10d& a, Vector10d& b, int motion, bool gain, bool offset) {
   const auto fix = [&](int k) {
     a.row(k).setZero();
@@ -172,7 +172,7 @@ void MotionAligner::stepOffsets(int l, const Vector10d& x, Alignment& at) {
   if (weight > 0.0) at.offset = sum / weight;
 }
 
-// By the median of all residuals, then of those that it keeps; bounded by what is expected.
+// The robust scale of all residuals, then of those within its bound, and so on; bounded by the expected scale.
 double MotionAligner::scaleOf(int l, const tracking::ResidualScale& scale, double found) const {
   for (int k = 0; k < kTrims; ++k) found = scale.ofKept(found);
   const double expected = expected_[static_cast<std::size_t>(l)];
@@ -210,14 +210,15 @@ bool MotionAligner::step(const MotionImage& current, int l, const Unknowns& unkn
   return at.determined;
 }
 
-// What lies beyond the image counts as what does not fit. `most`: residuals that any start has in the image.
+// Mean cost of a pixel, 0 to 1. Pixels beyond the image count as outliers. `most`: the largest number of residuals in
+// the image that a start has.
 double MotionAligner::costOf(std::size_t start, double sigma, int most) const {
   const tracking::ResidualScale& residuals = residuals_[start];
   return 1.0 - residuals.count() * (1.0 - residuals.cost(sigma)) / std::max(1, most);
 }
 
-// From each start a few steps on the coarsest level, the first ones shifts, and all without the gain: between pixels
-// that do not correspond it would be too small. The start with the least cost goes on, at one scale for all.
+// Takes a few steps from each start on the coarsest level, and returns the result with the least cost; all costs are
+// computed with one scale. The gain is not estimated yet: while pixels do not correspond it would come out too small.
 Alignment MotionAligner::bestStart(const MotionImage& current, const std::vector<Eigen::Matrix3d>& starts) {
   const int l = levels() - 1;
   const EsmLevel& level = levels_[static_cast<std::size_t>(l)];
@@ -261,8 +262,8 @@ Alignment MotionAligner::bestStart(const MotionImage& current, const std::vector
 }
 
 // Two motions that are near each other look alike on coarse levels, and a fit to all pixels ends between them. So where
-// more is left than is expected, the motion that was found has to compete with the expected one, and each with what the
-// votes of the cells make of it.
+// residuals are larger than expected, four motions compete: the one that was found, the expected one, and each of them
+// corrected by the votes of the cells.
 void MotionAligner::judgeAgain(const MotionImage& current, int l, const Eigen::Matrix3d& predicted, Alignment& at) {
   const EsmLevel& level = levels_[static_cast<std::size_t>(l)];
   const double expected = expected_[static_cast<std::size_t>(l)];
@@ -301,7 +302,7 @@ void MotionAligner::judgeAgain(const MotionImage& current, int l, const Eigen::M
   at.g = candidates[best];
 }
 
-// Until the way that is still to go, by how the steps shrink, is short.
+// Iterates until the remaining way, extrapolated from how the steps shrink, is short.
 void MotionAligner::refine(const MotionImage& current, int l, Alignment& at) {
   const double scale = levels_[static_cast<std::size_t>(l)].scale;
   // On coarser levels, where the motion may be far off yet, the offsets would take up what drives it.

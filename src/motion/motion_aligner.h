@@ -59,13 +59,14 @@ class MotionAligner {
   // Allocates for the first image, and for one of another size.
   void setReference(const MotionImage& image);
 
-  // Of the reference and of `current`, where `g` takes it, what can be used: for the following alignments.
+  // Sets which pixels the following alignments use: those usable in the reference and, where `g` takes them, in
+  // `current`.
   JointUse setUsable(const MotionImage& reference, const MotionImage& current, const Eigen::Matrix3d& g,
                      const geometry::Quadrilateral* region);
 
   // `starts`: motions to start from, the expected one first; the one by the blocks' votes is added. `expected`: the
-  // residuals' scale at each level, by earlier images, 0 where it is not known; the scale is kept from exceeding it by
-  // much, so that what moves otherwise is not taken for noise.
+  // scale of the residuals at each level in earlier images; 0: not known. It bounds the scale, so that what moves
+  // otherwise is not taken for noise.
   Alignment align(const MotionImage& current, const std::vector<Eigen::Matrix3d>& starts, const Scales& expected);
 
   // Of the last alignment.

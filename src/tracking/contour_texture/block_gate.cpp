@@ -32,7 +32,7 @@ void BlockGate::forget() {
   of_reference_.view().copyTo(weights_);
 }
 
-// Of each block by itself.
+// Gives each block a verdict by itself, without its neighbours.
 void BlockGate::judge(const EsmLevel& level, double min_correlation) {
   const image::Patch* weight = &of_reference_;
   if (!level.all_valid) {
@@ -57,7 +57,8 @@ void BlockGate::judge(const EsmLevel& level, double min_correlation) {
   }
 }
 
-// Any of those around a block with texture is, most of those around a block without.
+// Whether the neighbours of a block are covered: for a block with texture one of them is enough, for a block without it
+// takes most of them.
 bool BlockGate::coveredAround(int block) const {
   const int row = block / grid_.columns(), column = block % grid_.columns();
   int told = 0, covered = 0;
