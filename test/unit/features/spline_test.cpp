@@ -254,7 +254,22 @@ TEST(SplinePrior, bendingIsStifferThanTheWhole) {
   EXPECT_NEAR(zigzag.dot(closed * zigzag), 12.0 / 4.0 + 12.0 * 4.0 / 0.25, 1e-9);
   const Spline::Matrix open = stiffness(12, false, {0.5, 2.0});
   EXPECT_NEAR(zigzag.dot(open * zigzag), 12.0 / 4.0 + 10.0 * 4.0 / 0.25, 1e-9);
-  EXPECT_NEAR((inverse(open) * open - Spline::Matrix::Identity(12, 12)).norm(), 0.0, 1e-9);
+}
+
+TEST(SplinePrior, modesAreFreedByTheirDeviationAndNothingElse) {
+  constexpr int kSize = 12;
+  Modes modes(kSize, 4);
+  for (int k = 0; k < kSize; ++k) {
+    const double angle = 2.0 * M_PI * k / kSize;
+    modes.row(k) << std::cos(angle), std::sin(angle), 1.0, 0.2 * std::cos(2.0 * angle);
+  }
+  for (const bool closed : {true, false}) {
+    const Eigen::MatrixXd stiff = stiffness(kSize, closed, {0.3, 0.8});
+    const Eigen::MatrixXd variance = stiff.inverse() + 50.0 * 50.0 * modes * modes.transpose();
+    const Eigen::MatrixXd found = freed(stiff, modes, 50.0);
+    EXPECT_LT((found * variance - Eigen::MatrixXd::Identity(kSize, kSize)).norm(), 1e-6) << closed;
+    EXPECT_LT((found - found.transpose()).norm(), 1e-12);
+  }
 }
 
 TEST(Spline, aChangeThatIsNotFiniteIsNotTakenForASmallOne) {
