@@ -76,7 +76,7 @@ bool BlockGate::coveredAround(int block) const {
 int BlockGate::look(const EsmLevel& level, double min_correlation) {
   judge(level, min_correlation);
   int fresh = 0;
-  bool changed = false;
+  changed_ = false;
   correlated_ = 0;
   for (int block = 0; block < grid_.count(); ++block) {
     const Verdict verdict = verdicts_[static_cast<std::size_t>(block)];
@@ -84,10 +84,10 @@ int BlockGate::look(const EsmLevel& level, double min_correlation) {
     if (verdict != kSilent && !covered) ++correlated_;
     char& before = covered_[static_cast<std::size_t>(block)];
     if (covered && !before) ++fresh;
-    changed = changed || covered != static_cast<bool>(before);
+    changed_ = changed_ || covered != static_cast<bool>(before);
     before = covered;
   }
-  if (!changed) return 0;
+  if (!changed_) return 0;
   of_reference_.view().copyTo(weights_);
   for (int block = 0; block < grid_.count(); ++block) {
     if (!covered_[static_cast<std::size_t>(block)]) continue;
