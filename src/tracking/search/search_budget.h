@@ -18,7 +18,7 @@ constexpr double kPairCompared = 25e-9;    // a point of the image with one of a
 constexpr double kMotionFitted = 1e-3;     // RANSAC, for one view
 constexpr double kPixelSlidOver = 60e-9;   // of the coarse image of the template search
 constexpr double kStartChecked = 0.6e-3;   // see StartCheck; besides the pixels taken
-constexpr double kPixelBuilt = 2e-9;       // of the image, for the pyramid of an alignment
+constexpr double kPixelBuilt = 2e-9;       // of the image, for the pyramid of an alignment; estimated
 constexpr double kPixelLookedAt = 60e-9;   // of the finest level, by an alignment besides its iterations
 constexpr double kPixelIterated = 5e-9;    // of a level, for an iteration
 
