@@ -34,6 +34,7 @@ from archive import programs  # noqa: E402: what is in the package has to be fou
 
 RATE, SIZE = 25.0, (320, 256)
 SHOTS = 8  # of a film
+NONE = ("jerks", "flashes", "smoke", "shaft")
 KINDS = ("other film", "same film", "mixture", "dark", "fade", "dissolve")
 NEAR = 2.0 / RATE  # s
 
@@ -189,13 +190,14 @@ def main():
     p.add_argument("--data", type=pathlib.Path, required=True, help="folder with films")
     p.add_argument("--films", type=int, default=6, help="of each kind")
     p.add_argument("--seed", type=int, default=1)
+    p.add_argument("--kinds", default=",".join((*KINDS, *NONE)), help="which of them are made")
     p.add_argument("--pictures", type=pathlib.Path, help="folder for what is told of the films as they are")
     a = p.parse_args()
     films = Films(a.data, np.random.RandomState(a.seed))
     with tempfile.TemporaryDirectory(prefix="cuts_") as folder:
         path = pathlib.Path(folder) / "film.mp4"
         total = collections.Counter()
-        for kind in KINDS:
+        for kind in filter(a.kinds.split(",").__contains__, KINDS):
             count = collections.Counter()
             for _ in range(a.films):
                 images, cuts = films.edited(kind)
@@ -204,7 +206,7 @@ def main():
                 count.update(cuts=len(cuts), found=len(found), right=right, told=told, images=len(images))
             print(f"{kind:>12}: {count['cuts']} cuts in {count['images']} images, {count['told']} told; {count['found'] - count['right']} told that are none", flush=True)
             total.update(count)
-        for kind in ("jerks", "flashes", "smoke", "shaft"):
+        for kind in filter(a.kinds.split(",").__contains__, NONE):
             count = collections.Counter()
             for _ in range(a.films):
                 images = getattr(films, kind)()

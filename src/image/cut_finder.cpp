@@ -62,13 +62,15 @@ std::optional<Cut> CutFinder::decideNext() {
 // Whether a scene begins with this entry, or behind it, when it is a mixture of two scenes as a change of rate leaves
 // it.
 std::optional<Cut> CutFinder::decide(std::size_t at) const {
-  if (at < kSmooth || !goesOn(at - kSmooth)) return std::nullopt;
+  if (at < kSmooth) return std::nullopt;
   std::size_t first = at;
+  double least = kSteady;
   if (seen_[at].likeness >= kOther) {
     if (!mayBeMixture(at)) return std::nullopt;
     first = at + 1;
+    least = kWhole;  // a mixture is like both scenes, so that they have to stand out from it
   }
-  if (!goesOn(first) || !isOther(at - 1, first)) return std::nullopt;
+  if (!goesOn(at - kSmooth, least) || !goesOn(first, least) || !isOther(at - 1, first)) return std::nullopt;
   return Cut{seen_[at - 1].number, seen_[first].number};
 }
 
@@ -79,11 +81,11 @@ bool CutFinder::mayBeMixture(std::size_t at) const {
          mixture(seen_[at - 1].sketch, between.sketch, after.sketch) >= kMixed;
 }
 
-// Whether the images from this entry on show something, and go on smoothly.
-bool CutFinder::goesOn(std::size_t at) const {
+// Whether the images from this entry on show something, and go on smoothly, each at least so like the one before.
+bool CutFinder::goesOn(std::size_t at, double least) const {
   if (at + kSmooth > seen_.size() || !seen_[at].sketch.tells()) return false;
   for (std::size_t next = at + 1; next < at + kSmooth; ++next) {
-    if (seen_[next].likeness < kSteady) return false;
+    if (seen_[next].likeness < least) return false;
   }
   return true;
 }

@@ -49,7 +49,7 @@ class CutFinder {
   std::optional<Cut> decideNext();
   std::optional<Cut> decide(std::size_t at) const;
   bool mayBeMixture(std::size_t at) const;
-  bool goesOn(std::size_t at) const;
+  bool goesOn(std::size_t at, double least) const;
   bool isOther(std::size_t last, std::size_t first) const;
 
   std::size_t after_;          // images

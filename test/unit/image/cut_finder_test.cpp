@@ -160,6 +160,23 @@ TEST(CutFinder, AMixtureBelongsToNoScene) {
   EXPECT_EQ(cutsOf(film), "19-21");
 }
 
+// A scope that is withdrawn into its tube: the opening shrinks by a fifth with each image, the tube stands.
+TEST(CutFinder, AWithdrawalThroughATubeIsNone) {
+  Film film = shot(0, 12, {0, 0});
+  double radius = 300.0;
+  for (int k = 0; k < 30; ++k) {
+    radius = std::max(0.8 * radius, 12.0);
+    const double scale = std::max(radius / 300.0, 0.1);
+    cv::Mat small, view = 0.3 * seenAt(2, kMiddle) + cv::Scalar::all(120.0), mask(kSize, CV_8U, cv::Scalar(0));
+    const cv::Matx23d shrink(scale, 0.0, 160.0 * (1.0 - scale), 0.0, scale, 128.0 * (1.0 - scale));
+    cv::warpAffine(seenAt(0, kMiddle), small, shrink, kSize, cv::INTER_AREA, cv::BORDER_REFLECT_101);
+    cv::circle(mask, {160, 128}, cvRound(radius), 255, cv::FILLED);
+    small.copyTo(view, mask);
+    film.push_back(view);
+  }
+  EXPECT_EQ(cutsOf(film), "");
+}
+
 TEST(CutFinder, ImagesThatCannotBeUsedCount) {
   CutFinder finder(25.0);
   std::optional<Cut> cut;
