@@ -66,12 +66,12 @@ class CartParallel : public testing::Test {
     return waitFor(
         [&] {
           if (condition()) return true;
-          const bool stands = state_.state == ControllerState::IDLE || state_.state == ControllerState::LOST;
-          if (stands && engage()) waitFor([] { return false; }, 0.2);
+          if (stands() && engage()) waitFor([this] { return !stands(); }, 2.0);  // until the state tells of it
           return false;
         },
         seconds);
   }
+  bool stands() const { return state_.state == ControllerState::IDLE || state_.state == ControllerState::LOST; }
   bool announced() const {
     return state_.state == ControllerState::IDLE && state_.reason.find("ready to turn by ") == 0;
   }
