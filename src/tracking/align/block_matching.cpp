@@ -26,6 +26,7 @@ constexpr int kAlike = 2;  // other blocks that must have moved alike
 // share of a block's side: blocks nearer to each other share so many pixels that their agreement proves nothing
 constexpr double kIndependent = 0.5;
 constexpr double kLeastValid = 0.6;
+constexpr double kLeastClear = 0.8;  // share of a block's pixels in the reference that the mask does not cover
 
 struct Products {
   float both = 0.0f;    // dot product of a block with a window
@@ -97,7 +98,8 @@ void BlockMatching::setReference(const image::RegionPyramid& reference, const ge
   for (const int top : begins(inner.height)) {
     for (const int left : begins(inner.width)) {
       const cv::Rect box(left, top, kSide, kSide);
-      if (!isValid(box.tl(), valid_)) continue;
+      if (!isValid(box.tl(), mask.empty() ? valid_ : in_image_)) continue;
+      if (!mask.empty() && cv::mean(valid_(box))[0] < kLeastClear * cv::mean(in_image_(box))[0]) continue;
       const double norm = cv::norm(reference_(box));
       if (norm * norm < kLeastEnergy * box.area()) continue;
       const Peak peak = find(box.tl());
