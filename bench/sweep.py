@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """How flat the choice of a constant is: what becomes of tracker and controller when each is taken 0.7 and 1.4 times.
 
-Works in a copy of the tree, in which each `constexpr double|float|int k... = NUMBER;` of src/tracking and src/servo, and each number of a
+Works in a copy of the tree, in which each number of a `constexpr double|float|int k... = NUMBER, k... = NUMBER;` of src/tracking and src/servo, and of a
 `constexpr TYPE k... = {NUMBERS};`, asks for its value when the program starts. So all variants but a few come of one build: a constant
 that has to be known when it is compiled (the size of an array) is built anew with another number. A count changes by at least one.
   tracker     bench_compare on the sequences that are given: images kept, lies, mean error of the worst corner; and bench_film on the regions of
@@ -28,7 +28,7 @@ import sys
 import numpy as np
 
 import footage  # beside this file, as the next one
-from constants import FOLDER, NUMBER, NUMBERS, numbers_of
+from constants import DECLARATION, FOLDER, NUMBER, NUMBERS, numbers_of
 
 TREE = pathlib.Path(__file__).resolve().parent.parent
 COPIED = ["CMakeLists.txt", "package.xml", "nodelet_plugins.xml", "rviz_plugins.xml", "LICENSE", "cmake", "src", "include", "bench",
@@ -82,14 +82,20 @@ class Source:
 
     def write(self, changed=None, value=None):
         def asked(m):
-            indent, kind, constant, number = m[1], m[2], m[3], m[4]
-            if constant in self.fixed:
-                return m[0][:m.start(4) - m.start()] + value + m[0][m.end(4) - m.start():] if constant == changed else m[0]
-            return f'{indent}static const {kind} {constant} = static_cast<{kind}>(sweptConstant("{self.label(constant)}", {number}));'
+            kind = m[2]
+            indent = m[1][:len(m[1]) - len(m[1].lstrip())]
+            statements = []
+            for constant, number in NUMBER.findall(m[3]):
+                if constant in self.fixed:
+                    statements.append(f"{m[1]} {constant} = {value if constant == changed else number};")
+                else:
+                    asks = f'sweptConstant("{self.label(constant)}", {number})'
+                    statements.append(f"{indent}static const {kind} {constant} = static_cast<{kind}>({asks});")
+            return " ".join(statements)  # in one line, so that errors name the lines of the source
         def each_asked(m):
             numbers = (f'sweptConstant("{self.label(f"{m[3]}[{k}]")}", {number.strip()})' for k, number in enumerate(m[4].split(",")))
             return f"{m[1]}static const {m[2]} {m[3]} = {{{', '.join(numbers)}}};"
-        text = NUMBERS.sub(each_asked, NUMBER.sub(asked, self.text))
+        text = NUMBERS.sub(each_asked, DECLARATION.sub(asked, self.text))
         first = text.index("\nnamespace ")  # behind what is included
         text = text[:first] + "\n" + ASKED + text[first:]
         self.file.parent.mkdir(parents=True, exist_ok=True)

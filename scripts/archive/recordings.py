@@ -4,12 +4,14 @@ import json
 import os
 import pathlib
 import subprocess
+import time
 
 from . import files, programs
 
 VIDEOS = {".mp4", ".m4v", ".mov", ".mkv", ".avi", ".mpg", ".mpeg", ".ts", ".m2ts", ".mts", ".vob", ".wmv", ".webm", ".mxf"}
 BAGS = {".bag"}
-FACTS = ("file", "image_topic", "bytes", "modified", "width", "height", "images", "rate", "roi", "error")
+FACTS = ("file", "image_topic", "bytes", "modified", "width", "height", "images", "rate", "roi", "scenes", "error")
+KEPT_EVERY = 10.0  # s: what is known is written so often, since looking for cuts takes long
 
 
 def find(folder):
@@ -30,8 +32,9 @@ def state_of(file):
     return str(sum(s.st_size for s in stats)), str(max((s.st_mtime_ns for s in stats), default=0))
 
 
-def describe(file, image_topic=""):
-    """Facts of one recording; `error` says why it cannot be tracked, and is empty otherwise."""
+def describe(file, image_topic="", cuts=False):
+    """Facts of one recording; `error` says why it cannot be tracked, and is empty otherwise. With `cuts`, all of it is read, and
+    `scenes` tells in JSON what lies between its cuts; see scenes()."""
     facts = dict.fromkeys(FACTS, "")
     facts.update(file=str(file), image_topic=image_topic)
     try:
@@ -39,11 +42,12 @@ def describe(file, image_topic=""):
     except OSError as error:
         facts["error"] = error.strerror
         return facts
-    command = [programs.program("describe_recording"), str(file), *programs.source_options(facts)]
+    command = [programs.program("describe_recording"), str(file), *programs.source_options(facts), *(["--cuts"] if cuts else [])]
     done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, check=False)
     if done.returncode == 0:
         told = json.loads(done.stdout)
         facts.update({name: str(told[name]) for name in ("width", "height", "images", "rate", "roi")})
+        facts["scenes"] = json.dumps(told["scenes"]) if cuts else ""
     else:
         words = done.stderr.decode(errors="replace").strip().splitlines()
         facts["error"] = words[-1].partition("describe_recording: ")[2] or words[-1] if words else f"ended by signal {-done.returncode}"
@@ -59,24 +63,38 @@ class Facts:
         self.known = {(row["file"], row["image_topic"]): row for row in rows}
         self.opened = 0
 
-    def of(self, recordings):
-        """Facts of (file, image topic), in a dictionary; the table is written when something was new."""
+    def of(self, recordings, cuts=False):
+        """Facts of (file, image topic), in a dictionary; with `cuts` also their scenes. The table is written when something was new."""
         wanted = list(dict.fromkeys(recordings))
-        stale = [key for key in wanted if not self.is_fresh(key)]
+        stale = [key for key in wanted if not self.is_fresh(key, cuts)]
+        kept = time.monotonic()
         with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
-            for key, facts in zip(stale, pool.map(lambda key: describe(*key), stale)):
-                self.known[key] = facts
-        self.opened += len(stale)
+            opened = {pool.submit(describe, *key, cuts): key for key in stale}
+            for done in concurrent.futures.as_completed(opened):
+                self.known[opened[done]] = done.result()
+                self.opened += 1
+                if time.monotonic() - kept > KEPT_EVERY:
+                    self.keep()
+                    kept = time.monotonic()
         if stale:
-            files.write_table(self.path, FACTS, [self.known[key] for key in sorted(self.known)])
+            self.keep()
         return {key: self.known[key] for key in wanted}
 
-    def is_fresh(self, key):
+    def keep(self):
+        files.write_table(self.path, FACTS, [self.known[key] for key in sorted(self.known)])
+
+    def is_fresh(self, key, cuts=False):
         facts = self.known.get(key)
         try:
-            return facts is not None and (facts["bytes"], facts["modified"]) == state_of(key[0])
+            return (facts is not None and (facts["bytes"], facts["modified"]) == state_of(key[0])
+                    and (not cuts or bool(facts.get("scenes") or facts["error"])))
         except OSError:
             return False
+
+
+def scenes(facts):
+    """Of a recording, each with `start` and `end` in s and `roi`: one, and neither start nor end, where no cut is known."""
+    return json.loads(facts.get("scenes") or "null") or [{"start": 0.0, "roi": facts["roi"]}]
 
 
 def seconds(facts):

@@ -3,7 +3,6 @@ import contextlib
 import os
 import pathlib
 import re
-import resource
 import signal
 import socket
 import subprocess
@@ -12,6 +11,8 @@ from . import files, programs
 
 MOST_REASONS = 5
 PROGRESS = re.compile(r"^image \d+( of \d+)?, [\d.]+ images/s")
+TOPIC = re.compile(r"^(\s+)\S+ (\(\w+/\w+\))$", re.MULTILINE)  # in track_bag's list of what a bag holds
+ABSOLUTE = re.compile(r"(?<![\w./-])/[^\s'\",;:()]+")  # a path or a topic
 
 
 class TrackingEnded(Exception):
@@ -23,8 +24,8 @@ class Stopped(Exception):
 
 
 def forbid_names(text, job):
-    """The text without the paths and names of the line's files, which may be a patient's."""
-    words = {}
+    """The text without paths, topics, and the names of the line's files, which may be a patient's."""
+    words = {job["image_topic"]: "TOPIC"} if job.get("image_topic") else {}
     for column in ("truth", "params", "camera_info", "file"):
         for path in {job[column], os.path.realpath(job[column])} if job.get(column) else ():
             word = "RECORDING" if column == "file" else column.upper()
@@ -32,13 +33,16 @@ def forbid_names(text, job):
     for name in sorted(words, key=len, reverse=True):
         if len(name) > 1:
             text = text.replace(name, words[name])
-    return text
+    return ABSOLUTE.sub("NAME", TOPIC.sub(r"\1TOPIC \2", text))
 
 
 def said(log, job):
-    """What track_bag had to say, without its progress."""
-    lines = pathlib.Path(log).read_text(encoding="utf-8", errors="replace").splitlines()
-    return [forbid_names(line, job).replace("track_bag: ", "") for line in lines if line and not PROGRESS.match(line)]
+    """What track_bag had to say, without its progress. No name stays in the log."""
+    text = pathlib.Path(log).read_text(encoding="utf-8", errors="replace")
+    told = forbid_names(text, job)
+    if told != text:
+        files.write_text(log, told, lasting=False)
+    return [line.replace("track_bag: ", "") for line in told.splitlines() if line and not PROGRESS.match(line)]
 
 
 def run(command, log):
@@ -52,14 +56,14 @@ def run(command, log):
 
         before = {number: signal.signal(number, stop) for number in (signal.SIGTERM, signal.SIGINT)}
         try:
-            process.wait()
+            _, status, usage = os.wait4(process.pid, 0)
+            process.returncode = os.waitstatus_to_exitcode(status)
         except Stopped as name:
             process.wait()
             raise TrackingEnded(f"ended by {name}") from None
         finally:
             for number, handler in before.items():
                 signal.signal(number, handler)
-    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
     return process.returncode, {"cpu_seconds": round(usage.ru_utime + usage.ru_stime, 2), "peak_mb": round(usage.ru_maxrss / 1024)}
 
 
@@ -87,5 +91,5 @@ def track_table(job, table, log, *options):
         return {"state": "failed", "reasons": words[-MOST_REASONS:] or [f"track_bag ended with status {status}"], **used}
     if status != 0:
         lost = [line for line in words if "is left out" in line or "could not be processed" in line or "damaged" in line]
-        return {"state": "damaged", "reasons": lost[:MOST_REASONS - 1] + words[-1:], **used}
+        return {"state": "damaged", "reasons": list(dict.fromkeys(lost[:MOST_REASONS - 1] + words[-1:])), **used}
     return {"state": "done", "reasons": [], **used}

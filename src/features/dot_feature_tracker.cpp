@@ -3,6 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "laparoscope_servo/features/selection_check.h"
 #include "laparoscope_servo/validation/error_report.h"
 
 namespace laparoscope_servo::features {
@@ -18,7 +19,11 @@ const TrackedFeatures& DotFeatureTracker::select(const cv::Mat& image, double st
   validation::throwErrors("selection", validate(selection, {FeatureKind::kPoint}));
   std::vector<Eigen::Vector2d> points;
   for (const SelectedFeature& feature : selection) points.push_back(feature.points.front());
-  tracker_.select(image, stamp, points);
+  try {
+    tracker_.select(image, stamp, points);
+  } catch (const RefusedFeature& error) {
+    throw std::invalid_argument(selection[error.index()].id + ": " + error.what());
+  }
   begin(told_, selection);
   for (TrackedFeature& told : told_.features) told.outline.resize(kOutlinePoints + 1);
   tell();

@@ -6,13 +6,14 @@
 #include <array>
 #include <cmath>
 
+#include "features/dot_outline.h"
+
 namespace laparoscope_servo::features {
 
 namespace {
 
 constexpr double kBand = 2.5;  // px either side of the outline: what blur and the pixel itself make of a step
 constexpr double kRing = 5.0;  // px: the background is read from the band's end to here
-constexpr int kSectors = 12;   // of the outline
 constexpr double kMinFlatness = 0.35;
 constexpr double kMaxFlatnessChange = 0.15;
 constexpr double kMinNoise = 1.0;  // grey levels: quantisation, and what is no noise but texture
@@ -29,7 +30,7 @@ struct Fit {
 DotFinder::DotFinder(const DotsConfig& config) : config_(config) {
   const double half = config.range + 3.0 * config.max_radius + kRing + 2.0;
   const std::size_t most = static_cast<std::size_t>((2.0 * half + 3.0) * (2.0 * half + 3.0));
-  pixels_.reserve(most);
+  for (std::vector<float>* values : {&pixels_, &outside_}) values->reserve(most);
   taken_.reserve(most);
   stack_.reserve(most);
 }
@@ -66,13 +67,12 @@ DotFinder::Blob DotFinder::grow(int u, int v, double threshold, bool bright, int
     const std::size_t k = static_cast<std::size_t>(j * window_.width + i);
     if (taken_[k] != 0 || !isInside(i, j, threshold, bright)) return;
     taken_[k] = 1;
-    stack_.push_back(static_cast<int>(k));
+    stack_.emplace_back(i, j);
   };
   take(u, v);
   while (!stack_.empty()) {
-    const int k = stack_.back();
+    const int i = stack_.back().x, j = stack_.back().y;
     stack_.pop_back();
-    const int i = k % window_.width, j = k / window_.width;
     ++blob.count;
     const double du = i - u, dv = j - v;
     su += du;
@@ -114,7 +114,7 @@ bool DotFinder::matches(const Blob& blob, const DotLooks& looks) const {
 
 // An ellipse has the second moments r^2 / 4 along its axes. Around its outline, pixels count by how far their level has
 // come from the background's to the dot's; further in they count whole, further out not at all.
-bool DotFinder::measure(const Blob& blob, double level, double background, DotMeasurement& result) const {
+bool DotFinder::measure(const Blob& blob, double level, double background, DotMeasurement& result) {
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
   axes.computeDirect(4.0 * blob.spread);
   if (!(axes.eigenvalues()[0] > 1.0)) return false;
@@ -127,17 +127,15 @@ bool DotFinder::measure(const Blob& blob, double level, double background, DotMe
   const cv::Rect box =
       cv::Rect(blob.box.x - margin, blob.box.y - margin, blob.box.width + 2 * margin, blob.box.height + 2 * margin) &
       cv::Rect(0, 0, window_.width, window_.height);
-  // How far outside of the outline, px: (t - 1) / |grad t| with t = 1 on it; exact for a circle.
-  const auto outside = [&](int i, int j) {
-    const Eigen::Vector2d d(i - blob.centre.x(), j - blob.centre.y());
-    const Eigen::Vector2d scaled = inverse * d;
-    const double t = std::sqrt(d.dot(scaled)), length = scaled.norm();
-    return length > 1e-9 ? (t - 1.0) * t / length : -minor;
-  };
+  const DotOutline outline(inverse, minor);
+  outside_.resize(static_cast<std::size_t>(box.area()));
+  for (int j = 0; j < box.height; ++j)
+    outline.distances(box.tl() + cv::Point(0, j), blob.centre, box.width, outside_.data() + j * box.width);
+  const float* outside = outside_.data();
   Fit fit;
   for (int j = box.y; j < box.y + box.height; ++j) {
     for (int i = box.x; i < box.x + box.width; ++i) {
-      const double d = outside(i, j), value = static_cast<double>(at(i, j));
+      const double d = static_cast<double>(*outside++), value = static_cast<double>(at(i, j));
       if (d < -kBand || (d < -1.0 && minor < kBand + 1.5)) {
         ++fit.inside;
         fit.inside_sum += value;
@@ -157,9 +155,10 @@ bool DotFinder::measure(const Blob& blob, double level, double background, DotMe
   const double noise = std::max(kMinNoise, ring_sigma) / std::abs(high - low);
   double sum = 0.0, su = 0.0, sv = 0.0, nuu = 0.0, nvv = 0.0, nuv = 0.0;
   std::array<double, kSectors> excess{}, length{};
+  outside = outside_.data();
   for (int j = box.y; j < box.y + box.height; ++j) {
     for (int i = box.x; i < box.x + box.width; ++i) {
-      const double d = outside(i, j);
+      const double d = static_cast<double>(*outside++);
       if (d > kBand) continue;
       const double du = i - blob.centre.x(), dv = j - blob.centre.y();
       double weight = 1.0;
@@ -168,9 +167,9 @@ bool DotFinder::measure(const Blob& blob, double level, double background, DotMe
         nuu += du * du;
         nuv += du * dv;
         nvv += dv * dv;
-        const int sector = static_cast<int>((std::atan2(dv, du) / (2.0 * M_PI) + 0.5) * kSectors) % kSectors;
-        excess[static_cast<std::size_t>(sector)] += weight - std::clamp(0.5 - d, 0.0, 1.0);
-        length[static_cast<std::size_t>(sector)] += 1.0 / (2.0 * kBand);
+        const std::size_t sector = static_cast<std::size_t>(sectorOf(du, dv));
+        excess[sector] += weight - std::clamp(0.5 - d, 0.0, 1.0);
+        length[sector] += 1.0 / (2.0 * kBand);
       }
       sum += weight;
       su += weight * du;

@@ -53,14 +53,15 @@ class DotFinder {
   Blob grow(int u, int v, double threshold, bool bright, int most);
   bool matches(const Blob& blob, const DotLooks& looks) const;
   // With the levels of the dot itself; false when it is no dot.
-  bool measure(const Blob& blob, double level, double background, DotMeasurement& result) const;
+  bool measure(const Blob& blob, double level, double background, DotMeasurement& result);
   DotMeasurement search(const Eigen::Vector2d& expected, const DotLooks& looks, double threshold);
 
   DotsConfig config_;
   cv::Rect window_;
-  std::vector<float> pixels_;  // of the window, luma
+  std::vector<float> pixels_;   // of the window, luma
+  std::vector<float> outside_;  // px, of a part of them: how far beyond an outline
   std::vector<unsigned char> taken_;
-  std::vector<int> stack_;
+  std::vector<cv::Point> stack_;
 };
 
 }  // namespace laparoscope_servo::features

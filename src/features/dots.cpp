@@ -9,6 +9,7 @@
 
 #include "features/dot_finder.h"
 #include "laparoscope_servo/features/image_sequence.h"
+#include "laparoscope_servo/features/selection_check.h"
 #include "laparoscope_servo/features/tracked_feature.h"
 #include "laparoscope_servo/geometry/homography.h"
 #include "laparoscope_servo/image/image_type.h"
@@ -83,16 +84,17 @@ class DotTracker::Implementation {
     image::checkImage(image, stamp);
     if (points.empty()) throw std::invalid_argument("0 dots, expected at least 1");
     std::vector<Dot> dots;
-    for (const Eigen::Vector2d& point : points) {
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const Eigen::Vector2d& point = points[k];
       Dot dot(config_.state);
       dot.measured = finder_.discover(image, point);
       if (!dot.measured.found) {
-        throw std::invalid_argument(refused(point,
-                                            "a round dot there, whole in the image, of the radius and contrast "
-                                            "that the parameters allow"));
+        throw RefusedFeature(k, refused(point,
+                                        "a round dot there, whole in the image, of the radius and contrast that the "
+                                        "parameters allow"));
       }
       for (const Dot& other : dots) {
-        if (isSame(dot, other)) throw std::invalid_argument(refused(point, "a dot that no other point is in"));
+        if (isSame(dot, other)) throw RefusedFeature(k, refused(point, "a dot that no other point is in"));
       }
       dot.looks = dot.measured.looks;
       dot.place = dot.measured.centre;

@@ -14,8 +14,8 @@ constexpr int kNeighbours = 4;
 constexpr double kLeastNeighbours = 0.33;
 constexpr double kMostNeighbours = 0.7;
 
-// The candidate with the largest weight, that of one at the end of the range being 0; -1 where none has any. The curve
-// lies `moved` px from the site.
+}  // namespace
+
 int bestOf(const WeightedCandidates& candidates, double range, double moved) {
   int best = -1;
   double best_value = 0.0;
@@ -31,13 +31,12 @@ int bestOf(const WeightedCandidates& candidates, double range, double moved) {
   return best;
 }
 
-}  // namespace
-
 double displacement(const Site& site, const Eigen::VectorXd& step) {
-  const int unknowns = static_cast<int>(step.size());
+  const Eigen::Index unknowns = step.size();
   double sum = 0.0;
   for (int k = 0; k < site.count; ++k) {
-    sum += site.jacobian[static_cast<std::size_t>(k)] * step[(site.first + k) % unknowns];
+    const Eigen::Index column = site.first + k;
+    sum += site.jacobian[static_cast<std::size_t>(k)] * step[column < unknowns ? column : column - unknowns];
   }
   return sum;
 }
@@ -76,7 +75,7 @@ void EdgeAssociation::choose(const std::vector<Site>& sites, const std::vector<W
     row.count = site.count;
     row.a = site.jacobian;
     row.b = static_cast<double>(candidate.offset) - left;
-    row.weight = site.probe || lonely_[static_cast<std::size_t>(site.slot)] ? 0.0 : 1.0;
+    row.weight = site.probe || isLonely(site.slot) ? 0.0 : 1.0;
     rows_.push_back(row);
     row_site_.push_back(i);
   }

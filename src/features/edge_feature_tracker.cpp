@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "features/tracked_curve.h"
+#include "laparoscope_servo/features/selection_check.h"
 #include "laparoscope_servo/validation/error_report.h"
 
 namespace laparoscope_servo::features {
@@ -24,6 +25,7 @@ const TrackedFeatures& EdgeFeatureTracker::select(const cv::Mat& image, double s
   for (const SelectedFeature& selected : selection) {
     curves.push_back(makeTrackedCurve(selected.kind, config_));
     try {
+      checkInImage(selected, image.size());
       curves.back()->select(image, stamp, selected);
     } catch (const std::invalid_argument& error) {
       throw std::invalid_argument(selected.id + ": " + error.what());

@@ -122,15 +122,16 @@ class EdgeFit::Implementation {
     curve.sites(config_.spacing, std::min(kCoarseSites, config_.max_sites), sites_);
     look(image, {range, kCoarseStep, 2}, false);
     // How many edges a site has to choose from.
-    int matching = 0, looking = 0;
+    int matching = 0;
+    looking_ = 0;
     for (std::size_t i = 0; i < sites_.size(); ++i) {
       if (sites_[i].probe || !candidates_[i].found.inside) continue;
-      ++looking;
+      ++looking_;
       for (int k = 0; k < candidates_[i].found.count; ++k) {
         matching += candidates_[i].weight[static_cast<std::size_t>(k)] > 0.0f ? 1 : 0;
       }
     }
-    matching_ = looking > 0 ? static_cast<double>(matching) / looking : 0.0;
+    matching_ = looking_ > 0 ? static_cast<double>(matching) / looking_ : 0.0;
     return coarse_.find(sites_, candidates_, range);
   }
 
@@ -140,7 +141,7 @@ class EdgeFit::Implementation {
     const CoarseResult coarse = searched(image, curve, range);
     jump_ = coarse.largest;
     if (!(coarse.score > 0.0)) {
-      report.reason = Reason::kTooFewSites;
+      report.reason = looking_ > 0 ? Reason::kTooFewSites : Reason::kOutside;
       association_.clear();
       return report;
     }
@@ -169,6 +170,7 @@ class EdgeFit::Implementation {
         return report;
       }
       if (moved < kSettled && !changed && fine < kFineRange[0]) break;
+      irls.start_sigma = std::min(irls.start_sigma, kSettled);  // what deformed has been followed
     }
     report.reason = Reason::kNone;
     return report;
@@ -201,6 +203,7 @@ class EdgeFit::Implementation {
   std::vector<WeightedCandidates> candidates_;
   Eigen::MatrixXd information_, covariance_;
   Eigen::VectorXd mean_;
+  int looking_ = 0;        // sites of the coarse stage in the image
   double matching_ = 0.0;  // edges per site, within the range, that could be the curve's
   double jump_ = 0.0;
 };

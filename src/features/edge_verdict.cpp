@@ -1,6 +1,7 @@
 #include "laparoscope_servo/features/edge_verdict.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 
@@ -23,15 +24,17 @@ constexpr double kCorrelation = 8.0;  // px along the curve, over which edges er
 // part of kAgreeDistance as in another, while the curve's own are nearer.
 constexpr double kTolerances[] = {kAgreeDistance, 0.5 * kAgreeDistance, 0.25 * kAgreeDistance};
 
-// px^2, of the curve's displacement along the site's normal.
+// px^2, of the curve's displacement along the site's normal: J C J', C being symmetric.
 double variance(const Site& site, const Eigen::MatrixXd& covariance) {
-  const int unknowns = static_cast<int>(covariance.rows());
+  const Eigen::Index unknowns = covariance.rows();
+  std::array<Eigen::Index, Site::kMostCoefficients> column{};
   double sum = 0.0;
   for (int k = 0; k < site.count; ++k) {
-    for (int l = 0; l < site.count; ++l) {
-      sum += site.jacobian[static_cast<std::size_t>(k)] * site.jacobian[static_cast<std::size_t>(l)] *
-             covariance((site.first + k) % unknowns, (site.first + l) % unknowns);
-    }
+    const std::size_t i = static_cast<std::size_t>(k);
+    column[i] = site.first + k < unknowns ? site.first + k : site.first + k - unknowns;
+    double row = 0.5 * site.jacobian[i] * covariance(column[i], column[i]);
+    for (std::size_t l = 0; l < i; ++l) row += site.jacobian[l] * covariance(column[l], column[i]);
+    sum += 2.0 * site.jacobian[i] * row;
   }
   return sum;
 }

@@ -11,7 +11,9 @@ namespace {
 constexpr double kLeastRange = 1.0;  // px
 constexpr double kMostRange = 100.0;
 constexpr int kAnyNumber = -1;
+constexpr double kFarthestPose = 1e3;  // m
 constexpr int kMostCorners = 500;
+constexpr double kFarthest = 1e5;  // px: of an image, and of whatever in or beside it
 
 // Of the parameters, see FeatureKind.
 int parametersOf(FeatureKind kind) {
@@ -53,14 +55,24 @@ class Judge {
     if (!std::isfinite(value)) refuse(what, value, "a finite number");
   }
 
+  void place(const std::string& what, double value) {
+    finite(what, value);
+    if (std::abs(value) >= kFarthest && std::isfinite(value)) refuse(what, value, "a number below 100000 px");
+  }
+
   void all() {
     for (const Eigen::Vector2d& point : feature_.points) {
-      if (!point.allFinite()) refuse("point", pointText(point), "two finite numbers, px");
+      if (!point.allFinite()) {
+        refuse("point", pointText(point), "two finite numbers, px");
+      } else if (!(point.lpNorm<Eigen::Infinity>() < kFarthest)) {
+        refuse("point", pointText(point), "two numbers below 100000 px");
+      }
     }
     if (!(feature_.range >= kLeastRange && feature_.range <= kMostRange))
       refuse("range", feature_.range, "1 to 100 px");
     number();
     shape();
+    pose();
     corners();
     const int wanted = parametersOf(feature_.kind);
     const Eigen::Index given = feature_.desired.size();
@@ -103,8 +115,8 @@ class Judge {
   void shape() {
     if (feature_.ellipse) {
       if (feature_.kind != FeatureKind::kEllipse) refuse("kind", kindName(feature_.kind), "ellipse beside radii");
-      finite("centre, x", feature_.ellipse->centre.x());
-      finite("centre, y", feature_.ellipse->centre.y());
+      place("centre, x", feature_.ellipse->centre.x());
+      place("centre, y", feature_.ellipse->centre.y());
       finite("angle", feature_.ellipse->angle);
       for (const double radius : {feature_.ellipse->a, feature_.ellipse->b}) {
         if (!(radius > 0.0 && std::isfinite(radius))) refuse("radius", radius, "a positive number, px");
@@ -117,6 +129,16 @@ class Judge {
     if (feature_.kind != FeatureKind::kEllipse) refuse("kind", kindName(feature_.kind), "ellipse beside an arc");
     finite("begin of the arc", feature_.arc->begin);
     finite("extent of the arc", feature_.arc->extent);
+  }
+
+  void pose() {
+    if (!feature_.pose) return;
+    if (feature_.kind != FeatureKind::kPose) refuse("kind", kindName(feature_.kind), "pose beside a pose");
+    for (const double value :
+         {feature_.pose->translation().x(), feature_.pose->translation().y(), feature_.pose->translation().z()}) {
+      if (!(std::abs(value) < kFarthestPose)) refuse("position", value, "a number below 1000 m");
+    }
+    if (!feature_.pose->linear().allFinite()) refuse("rotation", "nan", "a rotation vector of finite numbers, rad");
   }
 
   void corners() {

@@ -14,6 +14,7 @@ namespace {
 constexpr int kProbes = 4;           // sites beyond each end
 constexpr int kEndRun = 4;           // sites, of which all but one are seen where the line begins
 constexpr double kRemembered = 2.0;  // s
+constexpr double kFarthest = 1e5;    // px
 
 double turned(double angle) {
   return std::atan2(std::sin(angle), std::cos(angle));
@@ -23,10 +24,11 @@ double turned(double angle) {
 
 Line::Line(const Eigen::Vector2d& begin, const Eigen::Vector2d& end) {
   const Eigen::Vector2d along = end - begin;
-  if (!(along.norm() >= kMinLength && std::isfinite(along.norm()))) {
+  const double farthest = std::max(begin.lpNorm<Eigen::Infinity>(), end.lpNorm<Eigen::Infinity>());
+  if (!(along.norm() >= kMinLength && begin.allFinite() && end.allFinite() && farthest < kFarthest)) {
     std::ostringstream text;
     text << "line from (" << begin.x() << ", " << begin.y() << ") to (" << end.x() << ", " << end.y()
-         << "), expected finite ends at least " << kMinLength << " px apart";
+         << "), expected finite ends at least " << kMinLength << " px apart, below 100000 px";
     throw std::invalid_argument(text.str());
   }
   theta_ = std::atan2(-along.x(), along.y());
@@ -119,7 +121,7 @@ void Line::known(const Curve&, double range, Eigen::MatrixXd& information, Eigen
 }
 
 bool Line::isSound() const {
-  return std::isfinite(theta_) && anchor_.allFinite() && end_ - begin_ >= 0.5 * kMinLength && end_ - begin_ < 1e5;
+  return std::isfinite(theta_) && anchor_.allFinite() && end_ - begin_ >= 0.5 * kMinLength && end_ - begin_ < kFarthest;
 }
 
 // How much of it is seen is no change of the line.

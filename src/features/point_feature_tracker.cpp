@@ -2,9 +2,11 @@
 
 #include <array>
 #include <cstddef>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 
+#include "laparoscope_servo/features/selection_check.h"
 #include "laparoscope_servo/validation/error_report.h"
 
 namespace laparoscope_servo::features {
@@ -15,6 +17,20 @@ namespace {
 const std::array<Eigen::Vector2d, 5> kCorners = {Eigen::Vector2d(-1.0, -1.0), Eigen::Vector2d(1.0, -1.0),
                                                  Eigen::Vector2d(1.0, 1.0), Eigen::Vector2d(-1.0, 1.0),
                                                  Eigen::Vector2d(-1.0, -1.0)};
+
+[[noreturn]] void refuse(const SelectedFeature& feature, const cv::Size& picture) {
+  const cv::Rect& region = feature.corners->region;
+  std::ostringstream text;
+  text << feature.id << ": 0 corners in ";
+  if (region.empty()) {
+    text << "the picture";
+  } else {
+    text << "the region of " << region.width << " x " << region.height << " px at (" << region.x << ", " << region.y
+         << ')';
+  }
+  text << ", expected texture without highlights, within " << picture.width << " x " << picture.height << " px";
+  throw std::invalid_argument(text.str());
+}
 
 // Each point of a selection that also names corners: they are looked for in their picture.
 FeatureSelection single(const FeatureSelection& selection, const cv::Mat& image, const PointsConfig& config) {
@@ -27,8 +43,7 @@ FeatureSelection single(const FeatureSelection& selection, const cv::Mat& image,
     const cv::Mat& picture = feature.picture.empty() ? image : feature.picture;
     const std::vector<Eigen::Vector2d> corners =
         findCorners(picture, feature.corners->region, feature.corners->count, config);
-    if (corners.empty())
-      throw std::invalid_argument(feature.id + ": 0 corners, expected a region with texture, without highlights");
+    if (corners.empty()) refuse(feature, picture.size());
     for (std::size_t k = 0; k < corners.size(); ++k) {
       SelectedFeature point = feature;
       point.id += ' ' + std::to_string(k + 1);
@@ -73,7 +88,11 @@ const TrackedFeatures& PointFeatureTracker::select(const cv::Mat& image, double 
   validation::throwErrors("selection", validate(selection, {FeatureKind::kPoint}, true));
   Grouped chosen = grouped(single(selection, image, config_));
   validation::throwErrors("selection", validate(chosen.features, {FeatureKind::kPoint}, true));
-  tracker_.select(image, stamp, chosen.groups);
+  try {
+    tracker_.select(image, stamp, chosen.groups);
+  } catch (const RefusedFeature& error) {
+    throw std::invalid_argument(chosen.features[error.index()].id + ": " + error.what());
+  }
   for (SelectedFeature& feature : chosen.features) {
     if (!feature.picture.empty() && feature.desired.size() == 0) feature.desired = feature.points.front();
   }

@@ -23,13 +23,11 @@ constexpr double kUneven = 1.5;       // ratio of the longest piece to the short
 // Marchand and Chaumette (2004), II.B.3: a sum of control points, weighted by the basis of cubic B-splines. Of the four
 // of a piece, at u in [0, 1]: values, and first and second derivatives by u.
 struct Basis {
-  explicit Basis(double u) {
-    const double v = 1.0 - u;
-    value = {v * v * v / 6.0, (3.0 * u * u * u - 6.0 * u * u + 4.0) / 6.0,
-             (-3.0 * u * u * u + 3.0 * u * u + 3.0 * u + 1.0) / 6.0, u * u * u / 6.0};
-    slope = {-0.5 * v * v, 1.5 * u * u - 2.0 * u, -1.5 * u * u + u + 0.5, 0.5 * u * u};
-    bend = {v, 3.0 * u - 2.0, -3.0 * u + 1.0, u};
-  }
+  explicit constexpr Basis(double u)
+      : value{(1.0 - u) * (1.0 - u) * (1.0 - u) / 6.0, (3.0 * u * u * u - 6.0 * u * u + 4.0) / 6.0,
+              (-3.0 * u * u * u + 3.0 * u * u + 3.0 * u + 1.0) / 6.0, u * u * u / 6.0},
+        slope{-0.5 * (1.0 - u) * (1.0 - u), 1.5 * u * u - 2.0 * u, -1.5 * u * u + u + 0.5, 0.5 * u * u},
+        bend{1.0 - u, 3.0 * u - 2.0, -3.0 * u + 1.0, u} {}
   std::array<double, 4> value, slope, bend;
 };
 
@@ -81,12 +79,20 @@ Site Spline::site(double t, const Points& normals) const {
 
 // Up to each step, by chords.
 void Spline::lengths(Lengths& table) const {
-  table[0] = 0.0;
+  constexpr std::array<Basis, kSteps> kAt = {Basis(0.25), Basis(0.5), Basis(0.75), Basis(1.0)};
   Eigen::Vector2d before = at(0.0);
-  for (int k = 1; k <= pieces() * kSteps; ++k) {
-    const Eigen::Vector2d here = at(static_cast<double>(k) / kSteps);
-    table[static_cast<std::size_t>(k)] = table[static_cast<std::size_t>(k - 1)] + (here - before).norm();
-    before = here;
+  std::size_t k = 0;
+  table[0] = 0.0;
+  for (int piece = 0; piece < pieces(); ++piece) {
+    const int first = firstOf(piece);
+    const Eigen::Vector2d &a = controlPoint(first), &b = controlPoint(wrapped(first + 1)),
+                          &c = controlPoint(wrapped(first + 2)), &d = controlPoint(wrapped(first + 3));
+    for (const Basis& basis : kAt) {
+      const Eigen::Vector2d here = basis.value[0] * a + basis.value[1] * b + basis.value[2] * c + basis.value[3] * d;
+      table[k + 1] = table[k] + (here - before).norm();
+      before = here;
+      ++k;
+    }
   }
 }
 
@@ -146,7 +152,11 @@ void Spline::known(const Curve& expected, double range, Eigen::MatrixXd& informa
     mean[k] = normal(k).dot(similarity(there[static_cast<std::size_t>(k)]) - controlPoint(k));
   }
   // Points that a person has given lie anywhere in the range, one by one.
-  information = information_.size() > 0 ? information_ : stiffness(size_, closed_, {0.5 * range, range});
+  if (information_.size() > 0) {
+    information = information_;
+  } else {
+    information = stiffness(size_, closed_, {0.5 * range, range});
+  }
 }
 
 // Of what is covered, where it was expected is not forgotten with time: it would follow stray edges.
@@ -154,16 +164,13 @@ void Spline::settle(const std::vector<SiteFinding>&, const Eigen::MatrixXd&, dou
   const Extent extent(points_, size_);
   const double change = kChange * std::sqrt((passed > 0.0 ? passed : kChangeTime) / kChangeTime);
   deformation_ = kLeastChange + change * extent.radius;
-  Matrix variance = inverse(stiffness(size_, closed_, {kLeastChange + change * length() / pieces(), deformation_}));
-  for (int mode = 0; mode < 4; ++mode) {
-    Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostPoints, 1> moved(size_);
-    for (int k = 0; k < size_; ++k) {
-      const Eigen::Vector2d arm = (controlPoint(k) - extent.centre) / extent.radius, n = normal(k);
-      moved[k] = mode == 0 ? n.x() : mode == 1 ? n.y() : mode == 2 ? n.dot(arm) : n.y() * arm.x() - n.x() * arm.y();
-    }
-    variance += kAnywhere * kAnywhere * moved * moved.transpose();
+  Modes similarity(size_, 4);
+  for (int k = 0; k < size_; ++k) {
+    const Eigen::Vector2d arm = (controlPoint(k) - extent.centre) / extent.radius, n = normal(k);
+    similarity.row(k) << n.x(), n.y(), n.dot(arm), n.y() * arm.x() - n.x() * arm.y();
   }
-  information_ = inverse(variance);
+  const Deformation deformation = {kLeastChange + change * length() / pieces(), deformation_};
+  information_ = freed(stiffness(size_, closed_, deformation), similarity, kAnywhere);
   spaceEvenly();
 }
 

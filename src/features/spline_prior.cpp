@@ -1,6 +1,6 @@
 #include "features/spline_prior.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -22,9 +22,13 @@ Spline::Matrix stiffness(int size, bool closed, const Deformation& deformation) 
   return result;
 }
 
-Spline::Matrix inverse(const Spline::Matrix& matrix) {
-  Spline::Matrix result = Spline::Matrix::Identity(matrix.rows(), matrix.cols());
-  Eigen::LLT<Spline::Matrix>(matrix).solveInPlace(result);
+Spline::Matrix freed(const Spline::Matrix& stiffness, const Modes& modes, double deviation) {
+  const Modes pulled = stiffness.lazyProduct(modes);
+  Eigen::Matrix4d inner = modes.transpose().lazyProduct(pulled);
+  inner.diagonal().array() += 1.0 / (deviation * deviation);
+  const Modes weighted = pulled.lazyProduct(Eigen::Matrix4d(inner.inverse()));
+  Spline::Matrix result = stiffness;
+  result.noalias() -= weighted.lazyProduct(pulled.transpose());
   return result;
 }
 

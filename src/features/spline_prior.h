@@ -15,7 +15,12 @@ struct Deformation {
 
 // Inverse covariance of the displacements along normals, of `size` control points.
 Spline::Matrix stiffness(int size, bool closed, const Deformation& deformation);
-Spline::Matrix inverse(const Spline::Matrix& matrix);
+
+// Displacements of the control points along their normals, in four ways, one each column.
+using Modes = Eigen::Matrix<double, Eigen::Dynamic, 4, 0, Spline::kMostPoints, 4>;
+// The inverse covariance of a contour that is displaced by each mode besides, with this standard deviation: that of
+// stiffness^-1 + deviation^2 modes modes', by Woodbury's identity, which needs no inverse but one of 4 x 4.
+Spline::Matrix freed(const Spline::Matrix& stiffness, const Modes& modes, double deviation);
 
 // The similarity that takes the points `from` next to the points `to`, by least squares: linear part and translation.
 struct Similarity {

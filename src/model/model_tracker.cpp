@@ -1,6 +1,7 @@
 #include "laparoscope_servo/model/model_tracker.h"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -57,6 +58,7 @@ class ModelTracker::Implementation {
       throw std::invalid_argument("the model's centre is at z = " + std::to_string(found.centre().z()) +
                                   " m, expected it in front of the camera");
     }
+    checkInImage(found, image.size());
     features::EdgeFit fit(config_.edges);
     const StartResult start = ModelStart(config_).find(image, found, fit);
     if (start.report.reason != Reason::kNone) refuse(start);
@@ -110,6 +112,23 @@ class ModelTracker::Implementation {
   const geometry::PinholeCamera& camera() const { return camera_; }
 
  private:
+  // By the sphere around it.
+  void checkInImage(const Outline& outline, const cv::Size& size) const {
+    const Eigen::Vector3d centre = outline.centre();
+    const double depth = centre.z() - model_->radius;
+    if (!(depth > 0.0)) return;  // it may be anywhere
+    const Eigen::Vector2d place(camera_.cx + camera_.fx * centre.x() / centre.z(),
+                                camera_.cy + camera_.fy * centre.y() / centre.z());
+    const double reach = std::max(camera_.fx, camera_.fy) * model_->radius / depth * (1.0 + centre.norm() / centre.z());
+    if (place.x() + reach >= 0.0 && place.y() + reach >= 0.0 && place.x() - reach < size.width &&
+        place.y() - reach < size.height)
+      return;
+    std::ostringstream text;
+    text << "the model lies outside the image: its centre at (" << place.x() << ", " << place.y()
+         << ") px, expected a part of it in the image of " << size.width << " x " << size.height << " px";
+    throw std::invalid_argument(text.str());
+  }
+
   [[noreturn]] void refuse(const StartResult& start) const {
     std::ostringstream text;
     text.precision(3);

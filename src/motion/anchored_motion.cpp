@@ -20,7 +20,7 @@ constexpr double kMostDrift = 5.0;      // px: a larger expected error of what w
 constexpr double kSurprise = 2.0, kDeviations = 4.0;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-// Of points spread over the frame, those that g takes into it.
+// Share of points, spread over the frame, that g takes into it.
 double shareInView(const Eigen::Matrix3d& g, const geometry::Rectangle& frame) {
   constexpr int kAlong = 10;
   int seen = 0;
@@ -67,7 +67,7 @@ class AnchoredMotion::Implementation {
   MotionImage anchor_;
   geometry::Rectangle frame_;
   double anchored_stamp_ = 0.0;
-  // Of the last image, as far as it is known.
+  // The motion to the last image, and its covariance; valid if known_.
   bool known_ = false;
   Eigen::Matrix3d g_ = Eigen::Matrix3d::Identity();
   tracking::Matrix8d covariance_ = tracking::Matrix8d::Zero();

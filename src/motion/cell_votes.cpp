@@ -14,11 +14,11 @@ using geometry::Vector8d;
 using tracking::Matrix8d;
 
 constexpr int kMostVotes = 200;
-constexpr int kFewest = 12;
-constexpr double kSay = 0.25;       // px of the level, standard deviation of a vote in any direction
-constexpr double kFar = 1.5;        // px of the level: a vote that is further off is no shift any more
-constexpr double kTolerance = 0.4;  // px of the level: what votes that agree differ by
-constexpr int kDraws = 160;         // of four: with 60 % of the votes right one of eight is
+constexpr int kFewest = 12;           // votes
+constexpr double kMostStddev = 0.25;  // px of the level, of a vote in its worst direction
+constexpr double kFar = 1.5;          // px of the level: a longer shift is no vote, since its equations are linear
+constexpr double kTolerance = 0.4;    // px of the level: votes that agree differ by less
+constexpr int kDraws = 160;           // of four: with 60 % of the votes right one of eight is
 constexpr int kRefinements = 4;
 constexpr double kSingular = 1e-6;  // see tracking::Factors::conditioning
 
@@ -62,14 +62,14 @@ void CellVotes::gather(const tracking::EsmLevel& level, const std::vector<tracki
       const CellShift cell = shiftOf(cells[static_cast<std::size_t>(j * columns + i)]);
       Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver;
       solver.computeDirect(cell.matrix);
-      if (!(sigma < kSay * std::sqrt(std::max(0.0, solver.eigenvalues()[0])))) continue;
+      if (!(sigma < kMostStddev * std::sqrt(std::max(0.0, solver.eigenvalues()[0])))) continue;
       const Eigen::Vector2d shift = cell.matrix.inverse() * cell.vector;
       if (!(shift.norm() < kFar)) continue;
       const Eigen::Vector2d at(i * width + 0.5 * (width - 1), j * level.cell_rows + 0.5 * (level.cell_rows - 1));
       votes_.push_back({fieldJacobian(level.scale * (at - centre)), level.scale * shift});
     }
   }
-  // Every so manyth, all over the image.
+  // Keeps every n-th vote, all over the image.
   const std::size_t every = votes_.size() / kMostVotes + 1;
   std::size_t kept = 0;
   for (std::size_t k = 0; k < votes_.size(); k += every) votes_[kept++] = votes_[k];

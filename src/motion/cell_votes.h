@@ -1,5 +1,6 @@
-// The motion on which most cells of ESM's sums agree: each cell votes for the shift that its own sums ask for. Bears
-// that nearly half of the cells move otherwise, where a fit to all pixels would end between the two.
+// The motion on which most cells of ESM's sums agree: each cell votes for the shift that solves its own normal
+// equations. The result is right even if nearly half of the cells move otherwise; a fit to all pixels would end between
+// the two motions.
 #pragma once
 
 #include <Eigen/Core>
@@ -22,9 +23,9 @@ CellShift shiftOf(const tracking::CellSums& cell);
 
 class CellVotes {
  public:
-  // What is left of motion, as a field in px of the image about its centre, by the sums of the level without weights by
-  // residuals; empty when too few cells have a say. `sigma`: grey levels, of residuals where it is aligned.
-  // Deterministic. Does not allocate for a further image of the same size.
+  // The remaining motion, as a field in px of the image about its centre; empty when too few cells can vote. `cells`:
+  // the sums of the level, without robust weights. `sigma`: grey levels, standard deviation of residuals where the
+  // images are aligned. Deterministic. Does not allocate for a further image of the same size.
   std::optional<geometry::Vector8d> fit(const tracking::EsmLevel& level, const std::vector<tracking::CellSums>& cells,
                                         double sigma, Model model);
 

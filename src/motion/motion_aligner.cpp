@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "laparoscope_servo/image/warp.h"
+#include "laparoscope_servo/robust/median.h"
 #include "laparoscope_servo/robust/scale.h"
 #include "motion/square_weights.h"
 
@@ -17,27 +18,31 @@ using tracking::Vector10d;
 
 constexpr int kLeastSide = 48;  // px of the coarsest level: enough for a quadratic motion
 constexpr int kCoarseIterations = 8;
-constexpr int kShifts = 2;            // the first of them
-constexpr int kIterations = 6;        // at most, on each further level
-constexpr double kContraction = 0.2;  // of steps, before it has been measured
-constexpr double kSlowest = 0.9;
+constexpr int kShifts = 2;               // of these, the first so many change the shift alone
+constexpr int kIterations = 6;           // at most, on each further level
+constexpr double kContraction = 0.2;     // ratio of a step to the one before, until it is measured
+constexpr double kSlowest = 0.9;         // largest ratio that is extrapolated
 constexpr double kCoarseAccuracy = 0.1;  // px of the level
 constexpr double kAccuracy = 0.01;       // px of the finest level
-constexpr double kApart = 0.5;           // px of the coarsest level, by which starts differ
-constexpr double kBetter = 0.98;         // of the cost that the expected motion has: another start has to have less
-constexpr double kFarther = 0.1;         // px of the level, by which the expected motion differs from the one found
-constexpr int kTrims = 3;
-constexpr int kMostJudged = 100000;   // px of a level: on one of 320 x 240 two motions that differ can be told apart
-constexpr double kAsExpected = 1.15;  // of the expected scale: no more is left than there was
-constexpr double kMayGrow = 1.3;      // of the expected scale
-constexpr double kLeastBound = 2.5;   // grey levels: a scale up to this is never bounded
+constexpr double kApart = 0.5;           // px of the coarsest level: starts nearer to each other are one
+constexpr double kBetter = 0.98;         // another start needs a cost below this share of that of the expected motion
+constexpr double kFarther = 0.1;         // px of the level: an expected motion nearer to the one found is the same
+constexpr int kTrims = 3;                // rounds in which the scale is computed anew without outliers
+constexpr int kMostJudged = 100000;      // px of a level: on one of 320 x 240 two motions that differ can be told apart
+constexpr double kAsExpected = 1.15;     // times the expected scale: larger residuals may be of a wrong motion
+constexpr double kMayGrow = 1.3;         // times the expected scale: the bound of the scale
+constexpr double kLeastBound = 2.5;      // grey levels: a scale up to this is never bounded
 constexpr double kSingular = 1e-9;
-// Px of the finest level, which bilinear sampling errs by where the whole image has one shift between pixels, however
-// little noise there is: bench_motion, constant motion, has 0.011 of an image of 640 x 480, 0.017 of a halved one.
+// px of the finest level: error of bilinear sampling where the whole image is shifted by a part of a pixel, without any
+// noise: bench_motion, constant motion, has 0.011 of an image of 640 x 480, 0.017 of a halved one.
 constexpr double kInterpolation = 0.015;
+// Px of the finest level along a column and a row, from one difference of which a block's offset is begun to the next,
+// and how few are too few: a block of an image of 640 x 480 has some 260.
+constexpr int kOffsetRows = 2, kOffsetColumns = 4;
+constexpr std::size_t kFewestDifferences = 16;
 constexpr double kDark = 0.5, kBright = 2.0;  // bounds of the gain between two images
 
-// Unknowns that are not estimated get a row of the identity, and 0.
+// Fixes the unknowns that are not estimated at 0, by a row of the identity.
 void restrictTo(Matrix10d& a, Vector10d& b, int motion, bool gain, bool offset) {
   const auto fix = [&](int k) {
     a.row(k).setZero();
@@ -90,6 +95,9 @@ void MotionAligner::setReference(const MotionImage& image) {
   steps_ = geometry::Sl3Steps(tracking::templateFromPixels(frame_));
   levels_.clear();
   for (int l = 0; l < image.pyramid.levels(); ++l) levels_.emplace_back(image.pyramid, frame_, l);
+  const EsmLevel& finest = levels_[0];
+  differences_.reserve(
+      static_cast<std::size_t>((finest.height / kOffsetRows + 1) * (finest.width / kOffsetColumns + 1)));
   all_usable_ = false;
 }
 
@@ -103,30 +111,83 @@ JointUse MotionAligner::setUsable(const MotionImage& reference, const MotionImag
   return use;
 }
 
-void MotionAligner::warp(const MotionImage& current, int l, const Alignment& at) {
+void MotionAligner::warpImage(const MotionImage& current, int l, const Eigen::Matrix3d& g) {
   EsmLevel& level = levels_[static_cast<std::size_t>(l)];
   tracking::EsmPlane& plane = level.planes[0];
-  level.all_valid =
-      image::warpBilinear(current.pyramid.level(l), current.pyramid.levelFromImage(l) * at.g * level.image_T_patch,
-                          plane.warped, level.valid);
+  level.all_valid = image::warpBilinear(
+      current.pyramid.level(l), current.pyramid.levelFromImage(l) * g * level.image_T_patch, plane.warped, level.valid);
   plane.warped.extrapolate();
   if (!level.all_valid) level.useValid();
-  std::fill(plane.bias.begin(), plane.bias.end(), at.offset);
 }
 
-// By the median of all residuals, then of those that it keeps; bounded by what is expected.
+void MotionAligner::setOffset(int l, double offset) {
+  std::vector<double>& bias = levels_[static_cast<std::size_t>(l)].planes[0].bias;
+  std::fill(bias.begin(), bias.end(), offset);
+}
+
+void MotionAligner::warp(const MotionImage& current, int l, const Alignment& at) {
+  warpImage(current, l, at.g);
+  setOffset(l, at.offset);
+}
+
+// The median of each block's differences: after one offset for all, Tukey's weights would drop whole blocks that are
+// brighter or darker than that. A block that shows too little has the offset of all.
+void MotionAligner::beginOffsets(int l, const Alignment& at) {
+  setOffset(l, at.offset);
+  EsmLevel& level = levels_[static_cast<std::size_t>(l)];
+  tracking::EsmPlane& plane = level.planes[0];
+  const image::Patch& weight = level.usedWeight();
+  const float gain = static_cast<float>(at.gain);
+  const std::vector<int>& columns = level.light_column_of_strip;
+  std::size_t block = 0;
+  for (std::size_t row = 0; row + 1 < level.light_row_begin.size(); ++row) {
+    for (std::size_t strip = 0; strip < columns.size(); ++block) {
+      const int begin = static_cast<int>(strip) * image::Patch::kStrip;
+      const int column = columns[strip];
+      while (strip < columns.size() && columns[strip] == column) ++strip;
+      const int end = std::min(level.width, static_cast<int>(strip) * image::Patch::kStrip);
+      differences_.clear();
+      for (int j = level.light_row_begin[row]; j < level.light_row_begin[row + 1]; j += kOffsetRows) {
+        for (int i = begin; i < end; i += kOffsetColumns) {
+          if (weight(j, i) > 0.0f) differences_.push_back(plane.value(j, i) - gain * plane.warped(j, i));
+        }
+      }
+      if (differences_.size() >= kFewestDifferences)
+        plane.bias[block] = static_cast<double>(robust::median(differences_));
+    }
+  }
+}
+
+// The blocks' offsets were eliminated from the equations: what the step `x` of all else leaves of the mean residual.
+void MotionAligner::stepOffsets(int l, const Vector10d& x, Alignment& at) {
+  std::vector<double>& bias = levels_[static_cast<std::size_t>(l)].planes[0].bias;
+  double sum = 0.0, weight = 0.0;
+  for (std::size_t k = 0; k < bias.size(); ++k) {
+    const tracking::LightBlockSums& block = equations_.blocks()[k];
+    if (!(block.weight > 0.0)) continue;
+    bias[k] -= (block.residual + block.jacobian.dot(x)) / block.weight;
+    sum += block.weight * bias[k];
+    weight += block.weight;
+  }
+  if (weight > 0.0) at.offset = sum / weight;
+}
+
+// The robust scale of all residuals, then of those within its bound, and so on; bounded by the expected scale.
 double MotionAligner::scaleOf(int l, const tracking::ResidualScale& scale, double found) const {
   for (int k = 0; k < kTrims; ++k) found = scale.ofKept(found);
   const double expected = expected_[static_cast<std::size_t>(l)];
   return expected > 0.0 ? std::min(found, std::max(kLeastBound, kMayGrow * expected)) : found;
 }
 
-bool MotionAligner::step(const MotionImage& current, int l, const Unknowns& unknowns, tracking::ResidualScale& scale,
-                         Alignment& at) {
-  warp(current, l, at);
+bool MotionAligner::step(const MotionImage& current, int l, const Unknowns& unknowns, Offsets offsets,
+                         tracking::ResidualScale& scale, Alignment& at) {
+  warpImage(current, l, at.g);
+  const bool local = offsets != Offsets::kOne;
+  if (offsets == Offsets::kOne) setOffset(l, at.offset);
+  if (offsets == Offsets::kBegin) beginOffsets(l, at);
   const EsmLevel& level = levels_[static_cast<std::size_t>(l)];
   at.sigma = scaleOf(l, scale, scale.of(level, at.gain));
-  equations_.sum(level, frame_, lightOf(config_), at.gain, robust::kTukey * at.sigma);
+  equations_.sum(level, frame_, local ? tracking::Light::kLocal : lightOf(config_), at.gain, robust::kTukey * at.sigma);
   ++at.iterations;
   Matrix10d a = equations_.matrix();
   Vector10d b = equations_.vector();
@@ -139,20 +200,25 @@ bool MotionAligner::step(const MotionImage& current, int l, const Unknowns& unkn
   at.g = steps_.plus(at.g, x.head<8>());
   at.g /= std::cbrt(at.g.determinant());
   at.gain = std::clamp(at.gain + x[8], kDark, kBright);
-  at.offset += x[9];
+  if (local) {
+    stepOffsets(l, x, at);
+  } else {
+    at.offset += x[9];
+  }
   at.last_step = geometry::cornerDistance(before, at.g, frame_);
   at.determined = at.g.allFinite() && std::isfinite(at.last_step);
   return at.determined;
 }
 
-// What lies beyond the image counts as what does not fit. `most`: residuals that any start has in the image.
+// Mean cost of a pixel, 0 to 1. Pixels beyond the image count as outliers. `most`: the largest number of residuals in
+// the image that a start has.
 double MotionAligner::costOf(std::size_t start, double sigma, int most) const {
   const tracking::ResidualScale& residuals = residuals_[start];
   return 1.0 - residuals.count() * (1.0 - residuals.cost(sigma)) / std::max(1, most);
 }
 
-// From each start a few steps on the coarsest level, the first ones shifts, and all without the gain: between pixels
-// that do not correspond it would be too small. The start with the least cost goes on, at one scale for all.
+// Takes a few steps from each start on the coarsest level, and returns the result with the least cost; all costs are
+// computed with one scale. The gain is not estimated yet: while pixels do not correspond it would come out too small.
 Alignment MotionAligner::bestStart(const MotionImage& current, const std::vector<Eigen::Matrix3d>& starts) {
   const int l = levels() - 1;
   const EsmLevel& level = levels_[static_cast<std::size_t>(l)];
@@ -171,7 +237,7 @@ Alignment MotionAligner::bestStart(const MotionImage& current, const std::vector
     at.g = g;
     for (int k = 0; k < kCoarseIterations; ++k) {
       const int motion = k < kShifts ? parametersOf(Model::kConstant) : parametersOf(config_.model);
-      if (!step(current, l, {motion, false, config_.light}, residuals, at)) break;
+      if (!step(current, l, {motion, false, config_.light}, Offsets::kOne, residuals, at)) break;
       if (k >= kShifts && at.last_step < kCoarseAccuracy * level.scale) break;
     }
     if (!at.determined) return;
@@ -196,8 +262,8 @@ Alignment MotionAligner::bestStart(const MotionImage& current, const std::vector
 }
 
 // Two motions that are near each other look alike on coarse levels, and a fit to all pixels ends between them. So where
-// more is left than is expected, the motion that was found has to compete with the expected one, and each with what the
-// votes of the cells make of it.
+// residuals are larger than expected, four motions compete: the one that was found, the expected one, and each of them
+// corrected by the votes of the cells.
 void MotionAligner::judgeAgain(const MotionImage& current, int l, const Eigen::Matrix3d& predicted, Alignment& at) {
   const EsmLevel& level = levels_[static_cast<std::size_t>(l)];
   const double expected = expected_[static_cast<std::size_t>(l)];
@@ -236,14 +302,17 @@ void MotionAligner::judgeAgain(const MotionImage& current, int l, const Eigen::M
   at.g = candidates[best];
 }
 
-// Until the way that is still to go, by how the steps shrink, is short.
+// Iterates until the remaining way, extrapolated from how the steps shrink, is short.
 void MotionAligner::refine(const MotionImage& current, int l, Alignment& at) {
   const double scale = levels_[static_cast<std::size_t>(l)].scale;
+  // On coarser levels, where the motion may be far off yet, the offsets would take up what drives it.
+  const bool local = l == 0 && config_.light;
   const double accuracy = scale * (l == 0 ? kAccuracy : kCoarseAccuracy);
   double contraction = kContraction;
   for (int k = 0; k < kIterations; ++k) {
     const double before = at.last_step;
-    if (!step(current, l, all(), residuals_[0], at)) return;
+    const Offsets offsets = !local ? Offsets::kOne : k == 0 ? Offsets::kBegin : Offsets::kGoOn;
+    if (!step(current, l, all(), offsets, residuals_[0], at)) return;
     if (k > 0) contraction = std::min(at.last_step / std::max(before, 1e-9), kSlowest);
     if (at.last_step * contraction / (1.0 - contraction) < accuracy) break;
   }

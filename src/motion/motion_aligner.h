@@ -1,7 +1,9 @@
 // Estimates the dominant motion from one image to another: eq. (9) of Marchand and Chaumette (2004),
 //   minimise over the motion, gain a and offset b:  sum rho(a I(G x, t + 1) + b - I(x, t))
 // with Tukey's rho, from coarse to fine, by the residuals, weights, sums and steps of ESM (tracking/esm/esm.h): the
-// directions of sl(3) are the velocities of eq. (8), so a model with fewer parameters is a part of ESM's equations.
+// directions of sl(3) are the velocities of eq. (8), so a model with fewer parameters is a part of ESM's equations. On
+// the finest level each block of the image has an offset b of its own: the lamp of a scope goes along with it, so that
+// its shading stays in the image while the tissue moves, and one gain for all pixels would bias the motion.
 #pragma once
 
 #include <Eigen/Core>
@@ -57,13 +59,14 @@ class MotionAligner {
   // Allocates for the first image, and for one of another size.
   void setReference(const MotionImage& image);
 
-  // Of the reference and of `current`, where `g` takes it, what can be used: for the following alignments.
+  // Sets which pixels the following alignments use: those usable in the reference and, where `g` takes them, in
+  // `current`.
   JointUse setUsable(const MotionImage& reference, const MotionImage& current, const Eigen::Matrix3d& g,
                      const geometry::Quadrilateral* region);
 
   // `starts`: motions to start from, the expected one first; the one by the blocks' votes is added. `expected`: the
-  // residuals' scale at each level, by earlier images, 0 where it is not known; the scale is kept from exceeding it by
-  // much, so that what moves otherwise is not taken for noise.
+  // scale of the residuals at each level in earlier images; 0: not known. It bounds the scale, so that what moves
+  // otherwise is not taken for noise.
   Alignment align(const MotionImage& current, const std::vector<Eigen::Matrix3d>& starts, const Scales& expected);
 
   // Of the last alignment.
@@ -89,7 +92,13 @@ class MotionAligner {
     bool gain, offset;
   };
   Unknowns all() const { return {parametersOf(config_.model), config_.light, config_.light}; }
-  bool step(const MotionImage& current, int l, const Unknowns& unknowns, tracking::ResidualScale& scale, Alignment& at);
+  enum class Offsets { kOne, kBegin, kGoOn };  // one for all pixels; of each block, begun anew or as they are
+  bool step(const MotionImage& current, int l, const Unknowns& unknowns, Offsets offsets,
+            tracking::ResidualScale& scale, Alignment& at);
+  void warpImage(const MotionImage& current, int l, const Eigen::Matrix3d& g);
+  void setOffset(int l, double offset);
+  void beginOffsets(int l, const Alignment& at);
+  void stepOffsets(int l, const tracking::Vector10d& x, Alignment& at);
   double costOf(std::size_t start, double sigma, int most) const;
   void judgeAgain(const MotionImage& current, int l, const Eigen::Matrix3d& predicted, Alignment& at);
   Alignment bestStart(const MotionImage& current, const std::vector<Eigen::Matrix3d>& starts);
@@ -105,6 +114,7 @@ class MotionAligner {
   CellVotes cell_votes_;
   std::array<tracking::ResidualScale, kMostStarts> residuals_;  // of the starts
   tracking::LevelEquations equations_;
+  std::vector<float> differences_;  // of a block
   Scales expected_{};
   Scales scales_{};
 };

@@ -1,6 +1,7 @@
 #include "motion/motion_estimator.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace laparoscope_servo::motion {
 
@@ -8,8 +9,8 @@ namespace {
 
 using features::Reason;
 
-constexpr double kInView = 0.25;        // of the region's area, that has to be in the image
-constexpr double kLeastTexture = 0.02;  // of all cells, that have to have a say
+constexpr double kInView = 0.25;        // least share of the region's area that is in the image
+constexpr double kLeastTexture = 0.02;  // least share of the cells that have enough texture
 
 }  // namespace
 
@@ -43,7 +44,7 @@ Reason MotionEstimator::judge(const MotionImage& reference, const MotionImage& c
   return found_.expected_error <= config_.max_error ? Reason::kNone : Reason::kUncertain;
 }
 
-// What follows is all that may scatter in the next image, too.
+// The residuals of the next image are expected to be as large as those of the part that follows the motion in this one.
 void MotionEstimator::expectScales() {
   expected_ = aligner_.scales();
   const double found = expected_[static_cast<std::size_t>(support_.level())];
@@ -58,7 +59,7 @@ const MotionEstimate& MotionEstimator::estimate(const MotionImage& reference, co
   found_.why = judge(reference, current, starts, region, whole);
   if (found_.why == Reason::kNone) expectScales();
   if (found_.why == Reason::kNone && !knew) {
-    // Once more from there, now that the scale of what follows is known.
+    // Estimates once more from there: the scale of the residuals is known now.
     again_.assign(1, found_.at.g);
     found_.why = judge(reference, current, again_, region, whole);
   }

@@ -1,7 +1,8 @@
-// The motion from one image to another, with the reason why it is not believed.
+// Estimates the motion from one image to another, and judges whether the estimate may be used.
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <vector>
 
 #include "laparoscope_servo/features/feature_state.h"
@@ -11,7 +12,7 @@
 namespace laparoscope_servo::motion {
 
 struct MotionEstimate {
-  features::Reason why = features::Reason::kNone;  // kNone: it is believed, and all of the rest is known
+  features::Reason why = features::Reason::kNone;  // why it may not be used; kNone: it may, and all else is set
   Alignment at;
   tracking::Matrix8d covariance = tracking::Matrix8d::Zero();       // see MotionAligner::covariance()
   double usable = 0.0;                                              // see JointUse
@@ -28,7 +29,7 @@ class MotionEstimator {
   const MotionEstimate& estimate(const MotionImage& reference, const MotionImage& current,
                                  const std::vector<Eigen::Matrix3d>& starts, const geometry::Quadrilateral& region,
                                  bool whole);
-  // Nothing is known of the scale of residuals, nor of what follows.
+  // Forgets the expected scale of the residuals, and the support.
   void forget();
 
   const MotionSupport& support() const { return support_; }

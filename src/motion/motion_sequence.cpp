@@ -111,7 +111,7 @@ void MotionSequence::keep(const cv::Mat& image, const cv::Mat& mask) {
   }
 }
 
-// Of both images what lies about the region.
+// Takes the image as the current one. With a window, both images are cut to the part around the region.
 void MotionSequence::take(const cv::Mat& image, const cv::Mat& mask) {
   if (!window_) {
     current_.take(image, mask, config_);

@@ -70,7 +70,7 @@ void MotionSupport::judge(MotionAligner& aligner, const MotionImage& current, co
   if (level_scale_ != level.scale) {
     level_scale_ = level.scale;
     const image::LevelNoise white = image::levelNoise(static_cast<int>(level.scale));
-    // Of the residual's variance each image has half; the mean of two gradients has half of the variance of one.
+    // Each image contributes half of the residual's variance; the mean of two gradients has half the variance of one.
     noise_ = white.gradient / (8.0 * white.deviation * white.deviation);
   }
   double following = 0.0, saying = 0.0;

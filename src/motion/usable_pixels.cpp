@@ -113,7 +113,7 @@ JointUse jointlyUsable(const UsablePixels& reference, const UsablePixels& curren
       const double w = g(2, 0) * x + g(2, 1) * y + g(2, 2);
       const double u = (g(0, 0) * x + g(0, 1) * y + g(0, 2)) / w;
       const double v = (g(1, 0) * x + g(1, 1) * y + g(1, 2)) / w;
-      // What the current image does not show is left to the warp.
+      // Squares that lie outside the current image count here; the warp leaves them out.
       const bool shown = w > 0.0 && u >= 0.0 && v >= 0.0 && u < side * there.cols && v < side * there.rows;
       if (shown && there(static_cast<int>(v / side), static_cast<int>(u / side)) == 0) continue;
       joint(j, i) = 1;

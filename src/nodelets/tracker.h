@@ -49,6 +49,7 @@ class Tracker : public ImageNodelet {
   void diagnose(double now, const FeedPublishers& publishers,
                 diagnostic_updater::DiagnosticStatusWrapper& status) override;
   void publish(const Processed& processed);
+  void publishNotSeen(const std_msgs::Header& header);
   void publishState(const std::optional<TrackerState>& state);
   bool reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   // In a separate queue and thread, because it waits for an image.
@@ -72,6 +73,7 @@ class Tracker : public ImageNodelet {
   TrackerParameters parameters_;  // as read, then buffer for live_.take()
   std::unique_ptr<TrackerDiagnostics> statistics_;
   TrackerStateReport state_report_;
+  ros::Time reference_stamp_;  // of the last result
   Preview preview_;
 
   TrackerRequest request_;

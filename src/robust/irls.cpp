@@ -19,6 +19,30 @@ int column(const Row& row, int k, int unknowns) {
   return c < unknowns ? c : c - unknowns;
 }
 
+// Adds a row's part of A'WA, of which the lower triangle is used, and of A'Wb: coefficients side by side.
+void addBlock(const Row& row, double weight, Eigen::MatrixXd& normal, Eigen::VectorXd& right) {
+  for (int l = 0; l < row.count; ++l) {
+    const double scaled = weight * row.a[static_cast<std::size_t>(l)];
+    right[row.first + l] += scaled * row.b;
+    double* column = &normal(row.first, row.first + l);
+    for (int k = l; k < row.count; ++k) column[k] += scaled * row.a[static_cast<std::size_t>(k)];
+  }
+}
+
+// The same of coefficients that go on at the first column.
+void addRound(const Row& row, double weight, Eigen::MatrixXd& normal, Eigen::VectorXd& right) {
+  const int unknowns = static_cast<int>(right.size());
+  for (int k = 0; k < row.count; ++k) {
+    const double scaled = weight * row.a[static_cast<std::size_t>(k)];
+    const int r = column(row, k, unknowns);
+    right[r] += scaled * row.b;
+    for (int l = 0; l <= k; ++l) {
+      const int c = column(row, l, unknowns);
+      normal(std::max(r, c), std::min(r, c)) += scaled * row.a[static_cast<std::size_t>(l)];
+    }
+  }
+}
+
 double product(const Row& row, const Eigen::VectorXd& x) {
   const int unknowns = static_cast<int>(x.size());
   double sum = 0.0;
@@ -54,14 +78,10 @@ bool Irls::step(const std::vector<Row>& rows, double variance, const Eigen::Matr
     const Row& row = rows[i];
     const double weight = row.weight * weights_[i];
     if (!(weight > 0.0)) continue;
-    for (int k = 0; k < row.count; ++k) {
-      const double scaled = weight * row.a[static_cast<std::size_t>(k)];
-      const int r = column(row, k, unknowns);
-      right_[r] += scaled * row.b;
-      for (int l = 0; l <= k; ++l) {
-        const int c = column(row, l, unknowns);
-        normal_(std::max(r, c), std::min(r, c)) += scaled * row.a[static_cast<std::size_t>(l)];
-      }
+    if (row.first + row.count <= unknowns) {
+      addBlock(row, weight, normal_, right_);
+    } else {
+      addRound(row, weight, normal_, right_);
     }
   }
   solver_.compute(normal_);

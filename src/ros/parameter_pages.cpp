@@ -9,7 +9,7 @@
 #include "ros/controller/controller_parameters.h"
 #include "ros/features/feature_parameters.h"
 #include "ros/joystick/joystick_node.h"
-#include "ros/playback/video_player.h"
+#include "ros/playback/video_player_config.h"
 #include "ros/recording/recorder_config.h"
 #include "ros/simulation/demo_director.h"
 #include "ros/simulation/scope_markers.h"

@@ -103,7 +103,7 @@ BandText staleness(const Facts& facts, double now) {
           "Wait a moment: it will be said whether camera or tracker have stopped.", tracker.reason, Level::kWaiting};
 }
 
-// Of the feature that is known worst.
+// The expected error of the feature that is known worst, in words; empty when it is not known.
 std::string expectedError(const FeatureResult& result) {
   double worst = 0.0;
   for (const FeatureFact& feature : result.features) worst = std::max(worst, feature.expected_error);

@@ -39,7 +39,7 @@ void drawWords(QPainter& painter, const QRectF& area, const QString& words, cons
   painter.drawText(box.adjusted(0, 68, 0, -4), Qt::AlignCenter, detail);
 }
 
-// As far as they are drawn.
+// Whether both would be drawn alike.
 bool sameFeatures(const std::vector<FeatureTrackerFacts>& a, const std::vector<FeatureTrackerFacts>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
                     [](const FeatureTrackerFacts& x, const FeatureTrackerFacts& y) {
@@ -66,7 +66,7 @@ bool sameVerdict(const std::optional<Verdict>& a, const std::optional<Verdict>& 
          a->proposal == b->proposal;
 }
 
-// What is drawn of the region that the user draws, or is offered.
+// Whether the region that the user draws, or is offered, would be drawn alike.
 bool sameDrawing(const Facts& a, const Facts& b) {
   return stampOf(a.frozen) == stampOf(b.frozen) && sameVerdict(a.verdict, b.verdict) && offerOf(a) == offerOf(b);
 }

@@ -46,7 +46,7 @@ void drawTarget(QPainter& painter, const QPolygonF& polygon) {
   for (const QPointF& corner : polygon) painter.drawRect(QRectF(corner - QPointF(4, 4), QSizeF(8, 8)));
 }
 
-// What hides an area: each cause has a form of its own.
+// A cause that hides an area, and how it is drawn.
 struct Cause {
   std::uint8_t code;
   const char* words;

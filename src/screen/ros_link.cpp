@@ -45,7 +45,8 @@ std::optional<Limits> limitsOf(const ros::NodeHandle& node) {
   return limits;
 }
 
-// What a node said before it ended is not the silence of the one that comes in its place.
+// Forgets when a node was last heard, once another one has taken its place: the new node has not been silent since
+// then.
 template <class NodeFacts>
 void setConnected(NodeFacts& node, bool connected, double now) {
   constexpr double kOfTheNewOne = 0.5;  // s: its first message may come before its connection is seen

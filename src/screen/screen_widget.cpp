@@ -33,7 +33,7 @@ const char* const kStyle = R"(
   QPushButton:hover { background: #414a58; }
   QPushButton:pressed { background: #5b6678; }
   QPushButton[active="true"] { background: #1f5a36; border: 2px solid #2eb85c; }
-  QPushButton[task="true"] { font-size: 13px; padding: 2px; }
+  QPushButton[task="true"] { font-size: 13px; padding: 0 2px; border-width: 1px; }
   QLabel, QCheckBox { color: white; font-size: 14px; }
   QLabel#cart { font-size: 18px; font-weight: bold; }
   QScrollArea, QWidget#features { background: #10131a; }

@@ -85,7 +85,7 @@ void TrackerLink::takeOffer(const Offer& offer) {
 void TrackerLink::select(const QRect& pixels, std::int64_t stamp) {
   const std::string name = resolved_(stamp != 0 ? "tracker/select_frozen_roi" : "tracker/select_roi");
   if (name.empty()) return;
-  // What was drawn or frozen since then is not ended by the answer.
+  // The answer ends only what was drawn or frozen when the request was made, not what came after it.
   const auto taken = [this, drawn = keeper_.facts().drawn, holds = frozen_.present()](const auto&) {
     const bool ends_frozen = holds();
     if (ends_frozen) frozen_.end();

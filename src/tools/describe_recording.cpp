@@ -1,5 +1,4 @@
 // Prints what is known of a recording before it is tracked, its length, size and a region that would do: see --help.
-#include <algorithm>
 #include <boost/program_options.hpp>
 #include <cmath>
 #include <cstdlib>
@@ -14,29 +13,22 @@
 #include "ros/common/run_tool.h"
 #include "ros/playback/first_image.h"
 #include "ros/playback/offline_options.h"
+#include "ros/playback/scenes.h"
 
 namespace {
 
 namespace options = boost::program_options;
 using namespace laparoscope_servo;
 
-constexpr int kPictureSide = 480;     // px, the most of the picture that is written
-constexpr double kShare = 1.0 / 3.0;  // of the image's smaller side: side of the region that is looked at first
+constexpr int kPictureSide = 480;  // px, the most of the picture that is written
 
 struct Command {
   OfflineOptions offline;
   std::string parameters;
   std::string roi;
   std::string picture;
+  bool cuts = false;
 };
-
-// A square at the image's centre, or what the tracker would take near it; empty: there is none.
-std::optional<geometry::Rectangle> suggest(const FirstImage& first) {
-  const double side = std::floor(kShare * std::min(first.size().width, first.size().height));
-  const geometry::Rectangle centre{std::floor((first.size().width - side) / 2.0),
-                                   std::floor((first.size().height - side) / 2.0), side, side};
-  return first.refusal(centre).empty() ? centre : first.proposal(centre);
-}
 
 void writePicture(const FirstImage& first, const std::optional<geometry::Rectangle>& roi, const std::string& name) {
   cv::Mat picture = first.picture(kPictureSide).clone();
@@ -50,12 +42,24 @@ void writePicture(const FirstImage& first, const std::optional<geometry::Rectang
   if (!cv::imwrite(name, picture)) throw std::runtime_error("'" + name + "' cannot be written");
 }
 
+void writeScenes(const OfflineOptions& options, JsonWriter& json) {
+  json.beginArray("scenes");
+  for (const Scene& scene : findScenes(options)) {
+    json.beginObject();
+    json.value("start", scene.start);
+    if (std::isfinite(scene.end)) json.value("end", scene.end);
+    json.value("roi", scene.roi ? roiText(*scene.roi) : "");
+    json.end();
+  }
+  json.end();
+}
+
 void describe(Command& command) {
   const auto source = openImageSource(command.offline.inputs, command.offline.source);
   command.offline.parameters = readOfflineParameters(command.parameters);
   const FirstImage first(command.offline);
   const bool given = !command.roi.empty();
-  const std::optional<geometry::Rectangle> roi = given ? parseRoi(command.roi) : suggest(first);
+  const std::optional<geometry::Rectangle> roi = given ? parseRoi(command.roi) : first.suggestion();
   if (!command.picture.empty()) writePicture(first, roi, command.picture);
   JsonWriter json(std::cout);
   json.beginObject();
@@ -66,6 +70,7 @@ void describe(Command& command) {
   json.value("first_image", static_cast<int>(first.frame()));
   json.value("roi", roi ? roiText(*roi) : "");
   json.value("refusal", roi && given ? first.refusal(*roi) : "");
+  if (command.cuts) writeScenes(command.offline, json);
   json.end();
 }
 
@@ -79,12 +84,16 @@ int main(int argc, char** argv) {
   add("roi", options::value(&command.roi),
       "x,y,width,height: the region that is looked at, instead of a suggested one");
   add("picture", options::value(&command.picture), "file to write (.jpg, .png): the first image with the region");
+  add("cuts", options::bool_switch(&command.cuts),
+      "read all images, and print the scenes between the cuts of an edited film, each with a region that would do");
   describeInput(description, command.offline, command.parameters);
   const std::string usage =
       "describe_recording INPUT... [options]: opens a bag, a video or a folder, decodes the first image (of --start),\n"
       "and prints a JSON object: width and height in px, images by the file (0: it does not say), rate in Hz, the\n"
       "number of the first image, a region x,y,width,height that the tracker would take there (empty: it knows none),\n"
-      "and why it would refuse the one of --roi (empty: it would not).\n";
+      "and why it would refuse the one of --roi (empty: it would not). With --cuts \"scenes\", too: of each \"start\" "
+      "and\n"
+      "\"end\" in s, as track_bag takes them (the last has no end), and a region in its first image.\n";
   return runTool(argc, argv, "describe_recording", usage, description, "input", [&] {
     describe(command);
     return EXIT_SUCCESS;

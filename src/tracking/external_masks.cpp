@@ -13,9 +13,9 @@ namespace {
 
 constexpr int kCells = 320;  // across the reduced masks in which speed is measured
 
-// Of a silhouette's border, in widths of the image per second.
-constexpr double kUsualSpeed = 0.2;  // where it is not known: the mask before shows nothing
-constexpr double kMostSpeed = 1.0;   // what gained more has appeared, and did not move
+// Speed of a silhouette's border, in widths of the image per second.
+constexpr double kUsualSpeed = 0.2;  // assumed where the mask before shows nothing
+constexpr double kMostSpeed = 1.0;   // a silhouette that grows faster has appeared instead of moved
 constexpr double kReached = 0.95;    // share of the pixels gained that lie no further out than the border moved
 
 constexpr int kGrid = 24;  // points along each side of a region

@@ -155,22 +155,23 @@ Attempt RegionTracker::Implementation::follow(const cv::Mat& image, double stamp
   return attempt(image, stamp, start, &prior);
 }
 
-// With a prior when the ROI was tracked until the image before; without when it is searched for.
+// With a prior when the ROI was tracked until the image before; without, but at a place, when it is searched for.
 Attempt RegionTracker::Implementation::attempt(const cv::Mat& image, double stamp, const EsmState& start,
-                                               const MotionPrior* prior, bool confirming) {
+                                               const MotionPrior* prior, const SearchPlace* searched) {
   const geometry::Rectangle& roi = aligners_.usual().roi();
   const double reach = prior != nullptr
                            ? std::max(kLeastReach * lengthUnit(roi), kReach * history_.record().innovation())
                            : std::max(32.0, kSearchReach * std::max(roi.width, roi.height));
   if (prior == nullptr) aligners_.turnBright(image, start.g);
   const EsmState lit = aligners_.choose(image, start);
-  const Alignment found = aligners_.now().align(image, lit, prior, reach);
+  const AlignmentLimits limits = searched != nullptr ? searched->limits : AlignmentLimits();
+  const Alignment found = aligners_.now().align(image, lit, prior, reach, limits);
   Attempt result;
   Evidence& e = result.evidence;
   e.roi = roi;
   e.predicted = start.g;
   e.from_track = prior != nullptr;
-  e.confirming = confirming;
+  e.confirming = searched != nullptr && searched->by == Suggestion::kConfirmation;
   e.light_gain = aligners_.now().gates().lightGain();
   e.esm = found.esm;
   e.visible_fraction = found.visible_fraction;
@@ -188,8 +189,7 @@ Attempt RegionTracker::Implementation::search(const cv::Mat& image, double stamp
   search_.begin(history_.last(), carried_, confirmation_.awaited());
   while (const std::optional<SearchPlace> place = search_.next(image, aligners_.usual())) {
     aligners_.startAfresh();
-    const bool confirming = place->by == Suggestion::kConfirmation;
-    if (search_.judge(attempt(image, stamp, place->start, nullptr, confirming), aligners_.now())) break;
+    if (search_.judge(attempt(image, stamp, place->start, nullptr, &*place), aligners_.now())) break;
   }
   if (search_.suggestedBy() != Suggestion::kCarried) carried_.reset();
   return search_.best();

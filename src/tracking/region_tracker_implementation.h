@@ -46,7 +46,7 @@ class RegionTracker::Implementation {
   std::string whyAnotherSequence(const cv::Mat& image, double stamp) const;
   Attempt follow(const cv::Mat& image, double stamp, MotionPrior& prior);
   Attempt attempt(const cv::Mat& image, double stamp, const EsmState& start, const MotionPrior* prior,
-                  bool confirming = false);
+                  const SearchPlace* searched = nullptr);
   Attempt search(const cv::Mat& image, double stamp);
   void decide(const Attempt& best, const MotionPrior& prior, double stamp);
   // Of the image, px of the raw one: where the ROI is seen at `g`, with room for what it may move besides.

@@ -3,6 +3,7 @@ import contextlib
 import csv
 import os
 import pathlib
+import shutil
 import signal
 import subprocess
 import sys
@@ -13,6 +14,8 @@ import pytest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts"))
+from archive import files, tracking  # noqa: E402: what is in the package has to be found first
+
 ROI = "60,50,60,50"
 PATIENT = "Doe_Jane"  # part of each made recording's path: no result may have it
 
@@ -96,6 +99,13 @@ def run(archive, *options, status=0, profile="local"):
     return text
 
 
+def by_hand(archive):
+    """All lines one after the other, and the index: what the workflow does, without its decisions."""
+    for job in sorted((archive / "private" / "jobs").iterdir()):
+        tracking.Line(files.read_json(job), archive).track()
+    call("archive_report", "archive", archive)
+
+
 @pytest.fixture(scope="session")
 def clips(tmp_path_factory):
     """Recordings of a hospital: two whole ones, one that is none, one that is cut off."""
@@ -108,3 +118,40 @@ def clips(tmp_path_factory):
     (folder / "c" / "cut.avi").write_bytes(data[:len(data) // 2])
     (folder / "c" / "notes.txt").write_text("no recording", encoding="utf-8")
     return folder
+
+
+@pytest.fixture(scope="session")
+def sets(tmp_path_factory):
+    """A folder with each of the data sets, and a recording that is of none."""
+    from datasets import write_cholec80, write_pot, write_stir, write_surgt  # it draws its images with what is above
+    folder = tmp_path_factory.mktemp("sets")
+    write_surgt(folder / "surgt" / "validation" / "case_1" / "1")
+    write_stir(folder / "stir" / "7")
+    write_pot(folder / "pot")
+    write_cholec80(folder / "cholec80")
+    write_clip(folder / "other.avi", 20)
+    return folder
+
+
+@pytest.fixture(scope="session")
+def proposed(sets, tmp_path_factory):
+    """What was said of the data sets, and their manifest."""
+    manifest = tmp_path_factory.mktemp("proposed") / "manifest.csv"
+    return call("archive_manifest", "propose", sets, manifest), manifest
+
+
+@pytest.fixture(scope="session")
+def planned(proposed, tmp_path_factory):
+    """An archive of the data sets, for which nothing has run yet."""
+    archive = tmp_path_factory.mktemp("planned") / "archive"
+    call("archive_manifest", "plan", proposed[1], archive)
+    return archive
+
+
+@pytest.fixture(scope="session")
+def tracked(planned, tmp_path_factory):
+    """A copy of it, after a run on this machine; it is only read."""
+    archive = tmp_path_factory.mktemp("tracked") / "archive"
+    shutil.copytree(planned, archive)
+    run(archive)
+    return archive

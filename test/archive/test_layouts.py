@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 import yaml
 from archive import files, layouts, layouts_surgt, programs, truth
-from conftest import call, plan, run, write_clip, write_manifest
-from datasets import BOX, SIZE, box_at, shift, surgt_truth, views, write_cholec80, write_pot, write_spots, write_stir, write_surgt, write_video
+from conftest import by_hand, call, plan, write_manifest
+from datasets import BOX, SIZE, box_at, shift, surgt_truth, views, write_pot, write_spots, write_stir, write_surgt, write_video
 
 
 def problems_of(row, facts=None):
@@ -20,24 +20,6 @@ def problems_of(row, facts=None):
 
 def row_of(path, benchmark):
     return {"truth": str(path), "benchmark": benchmark}
-
-
-@pytest.fixture(scope="module")
-def sets(tmp_path_factory):
-    """A folder with each of the data sets, and a recording that is of none."""
-    folder = tmp_path_factory.mktemp("sets")
-    write_surgt(folder / "surgt" / "validation" / "case_1" / "1")
-    write_stir(folder / "stir" / "7")
-    write_pot(folder / "pot")
-    write_cholec80(folder / "cholec80")
-    write_clip(folder / "other.avi", 20)
-    return folder
-
-
-@pytest.fixture(scope="module")
-def proposed(sets, tmp_path_factory):
-    manifest = tmp_path_factory.mktemp("proposed") / "manifest.csv"
-    return call("archive_manifest", "propose", sets, manifest), manifest
 
 
 def test_each_layout_is_recognised(proposed):
@@ -61,14 +43,6 @@ def test_lines_with_truth_are_not_cut_into_pieces(proposed, tmp_path):
     benchmarks = {row["id"]: row["benchmark"] for row in files.read_table(tmp_path / "archive" / "private" / "key.csv")}
     cut = {(bool(benchmarks[row["id"]]), int(row["pieces"]) > 1) for row in files.read_table(tmp_path / "archive" / "plan.csv")}
     assert cut == {(True, False), (False, True)}
-
-
-@pytest.fixture(scope="module")
-def tracked(proposed, tmp_path_factory):
-    archive = tmp_path_factory.mktemp("tracked") / "archive"
-    call("archive_manifest", "plan", proposed[1], archive)
-    run(archive)
-    return archive
 
 
 def values(archive):
@@ -115,7 +89,7 @@ def test_a_failure_and_the_start_at_the_next_anchor(tmp_path):
     call("archive_manifest", "propose", tmp_path / "set", tmp_path / "m.csv")
     archive = tmp_path / "archive"
     call("archive_manifest", "plan", tmp_path / "m.csv", archive)
-    run(archive)
+    by_hand(archive)
     lines = {row["benchmark"].split()[2]: row["id"] for row in files.read_table(archive / "private" / "key.csv")}
     records = {anchor: files.read_json(archive / "results" / "records" / f"{identity}.json") for anchor, identity in lines.items()}
     first, second = records["anchor=0"]["benchmark"], records["anchor=50"]["benchmark"]
@@ -130,7 +104,7 @@ def test_a_line_that_the_tracker_refuses_counts_as_lost(tmp_path):
     write_pot(tmp_path / "other")
     gt = tmp_path / "other" / "annotation" / "V01_1_gt_points.txt"
     archive = plan(tmp_path, [{"case": "a", "file": black, "roi": "60,55,60,40", "truth": gt, "benchmark": "POT"}])
-    run(archive)
+    by_hand(archive)
     record = files.read_json(next((archive / "results" / "records").iterdir()))
     assert record["state"] == "failed" and values(archive)["POT", "", ""]["precision at 15 px"] == 0.0
 
@@ -140,7 +114,7 @@ def test_a_truth_that_is_gone_is_told_without_its_name(tmp_path):
     gt = tmp_path / "Doe_Jane" / "annotation" / "V01_1_gt_points.txt"
     archive = plan(tmp_path, [{"case": "a", "file": video, "roi": "60,55,60,40", "truth": gt, "benchmark": "POT"}])
     gt.write_text("no numbers\n", encoding="utf-8")
-    run(archive)
+    by_hand(archive)
     record = files.read_json(next((archive / "results" / "records").iterdir()))
     assert record["state"] == "failed" and "'no numbers', expected 8 numbers" in record["reasons"][0] and "Doe" not in str(record)
 

@@ -3,28 +3,51 @@ import os
 import stat
 
 import pytest
-from archive import files
+from archive import files, manifest
 from conftest import PATIENT, ROI, call, plan, write_clip, write_manifest
 
 
 def test_proposes_every_recording_and_names_the_broken_ones(clips, tmp_path):
-    manifest = tmp_path / "manifest.csv"
-    said = call("archive_manifest", "propose", clips, manifest)
-    rows = files.read_table(manifest)
+    table = tmp_path / "manifest.csv"
+    said = call("archive_manifest", "propose", clips, table)
+    rows = files.read_table(table)
     assert [row["case"] for row in rows] == ["a/whole", "b/other", "c/cut"]
     assert all(row["tracker"] == "region" and len(row["roi"].split(",")) == 4 for row in rows)
     assert "noise.avi" in said and "1 left out" in said
-    assert call("archive_manifest", "check", manifest).endswith("0 recordings were opened\n")
-    assert "exists" in call("archive_manifest", "propose", clips, manifest, status=1)
+    assert call("archive_manifest", "check", table).endswith("0 recordings were opened\n")
+    assert "exists" in call("archive_manifest", "propose", clips, table, status=1)
+
+
+def test_an_edited_film_has_a_line_for_each_scene(tmp_path):
+    folder = tmp_path / "films"
+    write_clip(folder / "edited.avi", 110, other_from=60)
+    write_clip(folder / "short.avi", 70, other_from=60)
+    write_clip(folder / "whole.avi", 30)
+    said = call("archive_manifest", "propose", folder, tmp_path / "m.csv")
+    rows = files.read_table(tmp_path / "m.csv")
+    assert [(row["case"], row["start"], row["end"]) for row in rows] == [("edited", "", "2.380"), ("edited", "2.380", ""), ("short", "", "2.380"), ("whole", "", "")]
+    assert all(len(row["roi"].split(",")) == 4 for row in rows)
+    assert "edited.avi has 1 cuts" in said and "the scene at 2.38 s of" in said and "whole.avi has" not in said
+    assert "nothing is wrong; 0 recordings were opened" in call("archive_manifest", "check", tmp_path / "m.csv")
+
+
+def test_cuts_are_looked_for_when_they_are_asked_for(tmp_path):
+    folder = tmp_path / "films"
+    write_clip(folder / "edited.avi", 110, other_from=60)
+    call("archive_manifest", "propose", folder, tmp_path / "m.csv", "--no-cuts")
+    assert len(files.read_table(tmp_path / "m.csv")) == 1
+    (tmp_path / "m.csv").unlink()
+    call("archive_manifest", "propose", folder, tmp_path / "m.csv")
+    assert len(files.read_table(tmp_path / "m.csv")) == 2, "that the film is known without its cuts is not enough"
 
 
 def test_a_changed_recording_is_opened_again(tmp_path):
     clip = write_clip(tmp_path / "a.avi", 10)
-    manifest = write_manifest(tmp_path / "m.csv", [("a", clip, ROI)])
-    assert "1 recordings were opened" in call("archive_manifest", "check", manifest)
-    assert "0 recordings were opened" in call("archive_manifest", "check", manifest)
+    table = write_manifest(tmp_path / "m.csv", [("a", clip, ROI)])
+    assert "1 recordings were opened" in call("archive_manifest", "check", table)
+    assert "0 recordings were opened" in call("archive_manifest", "check", table)
     write_clip(clip, 12)
-    assert "1 recordings were opened" in call("archive_manifest", "check", manifest)
+    assert "1 recordings were opened" in call("archive_manifest", "check", table)
 
 
 def test_all_that_is_wrong_is_told_at_once_with_its_line(clips, tmp_path):
@@ -56,7 +79,9 @@ def test_all_that_is_wrong_is_told_at_once_with_its_line(clips, tmp_path):
                                          ("case,file,roi,roi\n", "twice"), ("case,file,roi\n", "no recording"), ("case,file,roi\na,b\n", "2 cells")])
 def test_a_table_that_is_no_manifest(tmp_path, text, words):
     (tmp_path / "m.csv").write_text(text, encoding="utf-8")
-    assert words in call("archive_manifest", "check", tmp_path / "m.csv", status=1)
+    problems = manifest.Problems()
+    assert manifest.read(tmp_path / "m.csv", problems) == []
+    assert any(words in line for line in problems.lines("m.csv"))
 
 
 def test_a_quoted_line_break_does_not_shift_the_lines(clips, tmp_path):

@@ -10,33 +10,13 @@
 #include <string>
 #include <vector>
 
-#include "support/simulated_cart.h"
+#include "support/cart_source_faults.h"
 
 namespace laparoscope_servo::test {
 
-struct CartFault {
-  std::string name;
-  // The scope has to stand while it lasts; otherwise the loop may go on.
-  bool stops = true;
-  // And it must not go on before somebody has engaged it again. What another fault hides, nobody knows.
-  bool needs_somebody = false;
-  bool of_picture = false;  // only its effect shows it
-  bool blinds = false;      // takes away what an effect is judged by
-  Interference interference;
-  std::function<void(SimulatedCart&)> begin, end;  // of what the robot does
-  double from = 0.0;                               // s
-  double until = 0.0;                              // s
-
-  bool lasts(double time) const { return time >= from && time < until; }
-};
-
-class RandomCartFaults {
+class RandomCartFaults : public CartSourceFaults {
  public:
-  explicit RandomCartFaults(unsigned seed) : random_(seed) {}
-
-  double real(double from, double to) { return from + (to - from) * (static_cast<double>(random_()) / 4294967296.0); }
-  int whole(int count) { return static_cast<int>(random_() % static_cast<unsigned>(count)); }
-  double sign() { return whole(2) == 0 ? -1.0 : 1.0; }
+  using CartSourceFaults::CartSourceFaults;
 
   // Two faults that begin within 0.6 s of `now` and last for 0.3 to 2.5 s. `manual`: the task is MANUAL. Two mirrors
   // make a true picture, and who judges an effect has to know it.
@@ -61,48 +41,16 @@ class RandomCartFaults {
     static const std::vector<Maker> kinds{
         &RandomCartFaults::ofPicture, &RandomCartFaults::ofPicture, &RandomCartFaults::ofTracker,
         &RandomCartFaults::ofTracker, &RandomCartFaults::ofRobot,   &RandomCartFaults::ofPose,
-        &RandomCartFaults::ofDeadMan, &RandomCartFaults::ofTime,    &RandomCartFaults::ofManual};
+        &RandomCartFaults::ofDeadMan, &RandomCartFaults::ofTime,    &RandomCartFaults::ofSource,
+        &RandomCartFaults::ofArm,     &RandomCartFaults::ofManual};
     const bool of_manual = manual && whole(3) == 0;
-    const int kind = of_manual ? 8 : whole(8);
+    const int kind = of_manual ? 10 : whole(10);
     CartFault fault = (this->*kinds[static_cast<std::size_t>(kind)])();
     fault.of_picture = kind < 2;
     if (manual && kind < 4) fault.stops = false;  // nothing that comes from a camera counts
     return fault;
   }
 
-  static CartFault withInput(const std::string& name, const std::function<void(Input&, double)>& input) {
-    CartFault fault;
-    fault.name = name;
-    fault.interference.input = input;
-    return fault;
-  }
-  static CartFault withInput(const std::string& name, const std::function<void(Input&)>& input) {
-    return withInput(name, [input](Input& value, double) { input(value); });
-  }
-  static CartFault withTracker(const std::string& name, const std::function<void(servo::TaskErrorInput&)>& tracker) {
-    CartFault fault;
-    fault.name = name;
-    fault.interference.tracker = tracker;
-    return fault;
-  }
-  static CartFault withPicture(const std::string& name, const Eigen::Matrix3d& change) {
-    CartFault fault;
-    fault.name = name;
-    fault.interference.picture = [change](Eigen::Matrix3d& h) { h = change * h * change.inverse(); };
-    return fault;
-  }
-  static CartFault bearable(CartFault fault) {
-    fault.stops = false;
-    return fault;
-  }
-  static CartFault blinding(CartFault fault) {
-    fault.blinds = true;
-    return bearable(fault);
-  }
-  static CartFault forSomebody(CartFault fault) {
-    fault.needs_somebody = true;
-    return fault;
-  }
   double nonsense() {
     static const double values[] = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
                                     -std::numeric_limits<double>::infinity()};
@@ -111,12 +59,20 @@ class RandomCartFaults {
 
   // What is seen is not what is there. Old pictures in turn are the tracker's to notice.
   CartFault ofPicture() {
-    switch (whole(5)) {
-      case 0: {
+    switch (whole(6)) {
+      case 0:
+      case 5: {
+        // A grabber digitises even a still picture anew each time.
+        const double noise = whole(2) == 0 ? 0.0 : 0.3 / kFocalLength;
         const auto first = std::make_shared<std::vector<servo::TaskErrorInput>>();
-        return withTracker("frozen", [first](servo::TaskErrorInput& seen) {
+        const auto random = std::make_shared<std::mt19937>(static_cast<unsigned>(whole(1000000)));
+        return withTracker(noise > 0.0 ? "frozen, with noise" : "frozen", [=](servo::TaskErrorInput& seen) {
           if (first->empty()) first->push_back(seen);
           seen = first->front();
+          if (!(noise > 0.0)) return;
+          std::normal_distribution<double> normal(0.0, noise);
+          for (double* value : {&seen.error.x, &seen.error.y, &seen.error.log_depth, &seen.error.alpha})
+            *value += normal(*random);
         });
       }
       case 1:
@@ -304,8 +260,6 @@ class RandomCartFaults {
     return withInput("manual command " + std::to_string(age) + " s old",
                      [age](Input& input) { input.manual.age = age; });
   }
-
-  std::mt19937 random_;
 };
 
 }  // namespace laparoscope_servo::test

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <deque>
 #include <functional>
@@ -82,6 +83,8 @@ class SimulatedCart {
     return (geometry::apply(geometry::pixelsFromNormalised(homography(), camera_), roi_.centre()) - roi_.centre())
         .norm();
   }
+  // rad, of the shaft from where it has to be: by pan and tilt.
+  double aside() const { return std::acos(std::min(1.0, pose().linear()(2, 2))); }
   bool seesRegion() const {
     const auto corners = geometry::apply(geometry::pixelsFromNormalised(homography(), camera_), roi_.corners());
     if (!geometry::isConvex(corners)) return false;
@@ -105,7 +108,7 @@ class SimulatedCart {
     input.depth.lateral_offset = body_.lateralOffset();
     input.depth.age = 0.01;
     input.depth.insertion_point_T_tip = insertionPoint().inverse() * body_.pose();
-    input.robot_report = {true, 0.0, scope::Velocity::fromVector(executed_)};
+    input.robot_report = {true, 0.0, scope::Velocity::fromVector(says_what_it_is_told > 0 ? told_ : executed_)};
     if (interference.input) interference.input(input, time());
     return input;
   }
@@ -115,8 +118,12 @@ class SimulatedCart {
   Interference interference;
   int disabled = 0;           // causes, of the robot
   int controller_stalls = 0;  // causes
-  bool pressed = true;        // the dead-man switch
-  scope::Velocity manual;     // what somebody wants in MANUAL
+  // The robot moves by this factor of what it is told, and so much [s] later than it was.
+  Eigen::Vector4d gain = Eigen::Vector4d::Ones();
+  double lag = 0.0;
+  int says_what_it_is_told = 0;  // causes; otherwise it says what it does
+  bool pressed = true;           // the dead-man switch
+  scope::Velocity manual;        // what somebody wants in MANUAL
 
  private:
   static Eigen::Isometry3d startPose(const scope::Velocity& start) {
@@ -168,12 +175,15 @@ class SimulatedCart {
       output = controller.update(input());
       guard_.accept(output.command, kFirstStamp + time(), kFirstStamp + time(), time());
     }
-    if (disabled == 0) actuator_.command(time(), guard_.velocity(time()).vector());
+    if (disabled != 0) return;
+    commanded_for_ = std::max(commanded_for_, time() + lag);
+    actuator_.command(commanded_for_, guard_.velocity(time()).vector());
   }
 
   void execute() {
     if (disabled != 0) actuator_ = sim::ScopeActuator(sim::ScopeActuatorConfig());  // it brakes at once
-    executed_ = actuator_.velocity(time());
+    told_ = actuator_.velocity(time());
+    executed_ = gain.cwiseProduct(told_);
     const auto velocity = scope::Velocity::fromVector(executed_);
     sim::ScopeBody halfway = body_;
     halfway.move(scope::endEffectorTwist(velocity, kLength - body_.depth()), 0.5 * kTick);
@@ -185,6 +195,8 @@ class SimulatedCart {
   geometry::Rectangle roi_{270.0, 190.0, 100.0, 100.0};
   sim::ScopeBody body_;
   sim::ScopeActuator actuator_{sim::ScopeActuatorConfig()};
+  double commanded_for_ = 0.0;                      // s, of the last command, which the actuator delays
+  Eigen::Vector4d told_ = Eigen::Vector4d::Zero();  // by the command that is due
   Eigen::Vector4d executed_ = Eigen::Vector4d::Zero();
   servo::TaskErrorInput seen_;
   double seen_at_ = -1.0;

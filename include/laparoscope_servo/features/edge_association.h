@@ -22,6 +22,8 @@ class EdgeAssociation {
   void reserve(int slots, std::size_t sites);
   // No site counts as lonely: the curve has moved as a whole.
   void forgetLonely();
+  // Whether the last dropLonely() took the say from the sites of this slot.
+  bool isLonely(int slot) const { return lonely_[static_cast<std::size_t>(slot)] != 0; }
 
   // Of the edges near a site, the one that looks most like it, the nearer the better. `range`, px, was searched.
   // `moved`: px along its normal, how far the curve has left each site since; empty: the sites lie on it.
@@ -53,6 +55,10 @@ class EdgeAssociation {
   std::vector<char> lonely_;  // of each slot
   std::vector<int> seen_;     // sites up to each one that agree, and that lie in the image
 };
+
+// Of the candidates, the one with the largest weight, that of one at the end of the range being 0; -1 where none has
+// any. The curve lies `moved` px from the site.
+int bestOf(const WeightedCandidates& candidates, double range, double moved);
 
 // How far the curve moves at the site, px along its normal.
 double displacement(const Site& site, const Eigen::VectorXd& step);

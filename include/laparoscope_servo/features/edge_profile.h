@@ -34,16 +34,15 @@ class EdgeProfile {
  private:
   static constexpr int kMost = 256;  // samples
 
-  void addRow(const cv::Mat& image, const Eigen::Vector2f& start, const Eigen::Vector2f& along, float share);
-
   std::array<float, kMost> levels_{};
   int first_ = 0;
   int count_ = 0;
-  // Of one row of samples: upper left of the four neighbours, as a distance from the image's first byte; the place
-  // between them; their levels, a byte each.
-  std::array<std::int32_t, kMost> offset_{};
-  std::array<float, kMost> right_of_{}, below_{};
-  std::array<std::uint32_t, kMost> neighbours_{};
+  // Of every sample, row after row: upper left of the four neighbours, as a distance from the image's first byte; the
+  // place between them; their levels, a byte each.
+  static constexpr int kSamples = (2 * kHalfWidth + 1) * kMost;
+  std::array<std::int32_t, kSamples> offset_{};
+  std::array<float, kSamples> right_of_{}, below_{};
+  std::array<std::uint32_t, kSamples> neighbours_{};
 };
 
 }  // namespace laparoscope_servo::features

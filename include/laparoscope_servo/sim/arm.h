@@ -48,6 +48,8 @@ class Arm {
   void brake();
   // Makes a motor ignore its commands: index 0 to 6; -1 for none.
   void jam(int joint) { jammed_ = joint; }
+  // Makes a motor turn the other way than it is told: index 0 to 6; -1 for none.
+  void reverse(int joint) { reversed_ = joint; }
   // The joints move by this factor of their commands, negative: the other way.
   // Throws std::invalid_argument if it is not finite.
   void setGain(double gain);
@@ -88,6 +90,7 @@ class Arm {
   scope::Velocity hand_;
   double hand_left_ = 0.0;
   int jammed_ = -1;
+  int reversed_ = -1;
   double gain_ = 1.0;
   double lag_ = 0.0;  // s
   double moved_until_ = -std::numeric_limits<double>::infinity();

@@ -47,6 +47,8 @@ class Emulator {
   void setFaultCause(std::uint16_t bits, double now);
   // Makes a joint ignore its commands, without a fault: index 0 to 6; -1 for none.
   void jam(int joint, double now);
+  // See Arm::reverse.
+  void reverse(int joint, double now);
   // See Arm::setGain and Arm::setLag.
   void setGain(double gain, double now);
   void setLag(double lag, double now);

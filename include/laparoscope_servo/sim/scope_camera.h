@@ -23,10 +23,15 @@ class ScopeCamera {
   // Throws std::invalid_argument that lists every error of the configuration, std::runtime_error if the texture's file
   // cannot be read.
   ScopeCamera(const SceneConfig& config, const Eigen::Isometry3d& base_T_tissue);
+  // With this texture, CV_8UC3, in place of the configured one.
+  ScopeCamera(const SceneConfig& config, const cv::Mat& texture, const Eigen::Isometry3d& base_T_tissue);
 
   // The image from this pose at `time` [s], with the instrument's tip at `tip` (tissue's frame, m) if there is one.
   RenderedImage render(const Eigen::Isometry3d& base_T_camera, double time,
                        const std::optional<Eigen::Vector3d>& tip = std::nullopt);
+
+  // Another texture, CV_8UC3, from the next image on: of tissue on which something moves. Throws std::invalid_argument.
+  void setTexture(const cv::Mat& texture) { tissue_ = Tissue(texture, config_.tissue.width, tissue_.pose()); }
 
   const SceneConfig& config() const { return config_; }
   const Tissue& tissue() const { return tissue_; }

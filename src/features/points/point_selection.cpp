@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "laparoscope_servo/features/selection_check.h"
 #include "laparoscope_servo/image/image_type.h"
 
 namespace laparoscope_servo::features {
@@ -19,21 +20,23 @@ std::string refused(const Eigen::Vector2d& point, const std::string& expected) {
   return text.str();
 }
 
-TrackedPoint firstView(const PointImage& picture, const Eigen::Vector2d& place, const PointsConfig& config,
-                       PointComparer& comparer) {
+// `index`: which point of all of them this is.
+TrackedPoint firstView(const PointImage& picture, const Eigen::Vector2d& place, std::size_t index,
+                       const PointsConfig& config, PointComparer& comparer) {
   TrackedPoint point(config.state);
   point.pose.place = place;
   if (!place.allFinite() || !picture.holds(place) || !point.view.take(picture, place, config.window / 2)) {
-    throw std::invalid_argument(refused(place, "a window of " + std::to_string(config.window) +
+    throw RefusedFeature(index, refused(place, "a window of " + std::to_string(config.window) +
                                                    " px around it, in the picture and without highlights"));
   }
   comparer.compare(picture, point);
   if (!point.isSeen())
-    throw std::invalid_argument(refused(place, "texture around it that tells where it is in both directions"));
+    throw RefusedFeature(index, refused(place, "texture around it that tells where it is in both directions"));
   return point;
 }
 
-void find(PointPicture& picture, std::size_t source, const PointImage& now, PointComparer& comparer,
+// `before`: points of other pictures in front of these.
+void find(PointPicture& picture, std::size_t source, std::size_t before, const PointImage& now, PointComparer& comparer,
           std::vector<TrackedPoint>& points) {
   for (TrackedPoint& point : points) point.reason = Reason::kNotSeen;
   const std::size_t enough = std::min(kFewestPoints, points.size());
@@ -46,7 +49,7 @@ void find(PointPicture& picture, std::size_t source, const PointImage& now, Poin
   std::ostringstream text;
   text << "picture with " << points.size() << " points, of which " << matches
        << " matches of its texture lead to fewer than " << enough << ", expected one that the image shows";
-  throw std::invalid_argument(text.str());
+  throw RefusedFeature(before, text.str());
 }
 
 }  // namespace
@@ -79,15 +82,16 @@ PointChoice selectPoints(const PointImage& now, double stamp, const std::vector<
     const std::size_t source = choice.sources.size();
     std::vector<TrackedPoint> own;
     for (const Eigen::Vector2d& place : group.places) {
+      const std::size_t index = choice.points.size() + own.size();
       for (const TrackedPoint& point : own) {
         if ((point.view.place() - place).norm() < kSameSpot)
-          throw std::invalid_argument(refused(place, "a place where no other point is"));
+          throw RefusedFeature(index, refused(place, "a place where no other point is"));
       }
-      own.push_back(firstView(picture, place, config, comparer));
+      own.push_back(firstView(picture, place, index, config, comparer));
       own.back().group = source;
     }
     PointPicture reduced(picture);
-    if (!is_live) find(reduced, source, now, comparer, own);
+    if (!is_live) find(reduced, source, choice.points.size(), now, comparer, own);
     for (TrackedPoint& point : own) {
       point.keeper.select(stamp);
       point.keeper.step(point.reason, stamp);

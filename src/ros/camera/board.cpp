@@ -52,7 +52,7 @@ cv::Mat pattern(const Board& board) {
   return cells;
 }
 
-// By number, since the detector gives them in any order.
+// Sorts the corners by number: the detector gives them in any order.
 SeenCorners inOrder(const std::vector<int>& numbers, const std::vector<cv::Point2f>& points) {
   std::vector<std::size_t> order(numbers.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

@@ -24,7 +24,7 @@ constexpr double kWorstError = 1.5;   // px; a sharp picture of a flat board has
 constexpr double kWorstFocal = 0.02;  // share
 constexpr int kCells = 6;
 
-// By how much the corners that both show have moved, px on average; infinite when they share none.
+// Mean distance, px, between the two places of each corner that both show; infinite when they share none.
 double distance(const SeenCorners& a, const SeenCorners& b) {
   double sum = 0.0;
   std::size_t shared = 0;

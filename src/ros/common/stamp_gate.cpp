@@ -4,7 +4,7 @@ namespace laparoscope_servo {
 
 namespace {
 
-// As many in a row are no outliers.
+// So many stamps in a row are no outliers.
 constexpr int kLasting = 3;
 
 }  // namespace

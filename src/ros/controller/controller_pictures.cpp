@@ -37,6 +37,8 @@ void ControllerInputs::onTaskError(const ros::MessageEvent<TaskError const>& eve
   if (!takes(task_error_input_, task_error_, event, follows)) return;
   keep(task_error_, fromMessage(*event.getConstMessage()));
   position_input_.know(*event.getConstMessage());
+  // An image of another size has a task error, which is not valid, and no homography.
+  if (!task_error_.last.valid) position_.last.valid = false;
 }
 
 void ControllerInputs::onHomography(const ros::MessageEvent<Homography const>& event) {

@@ -146,7 +146,7 @@ class Reader {
     if (feature_.picture.empty()) refuse(node, "stored", "a picture that can be read: PNG, JPEG, ...");
   }
 
-  // As the parameters of TrackedFeature.
+  // In the order of the parameters of TrackedFeature.
   void readPose(const YAML::Node& node) {
     if (!node.IsSequence() || node.size() != 6)
       return refuse(node, "pose", "six numbers: [x, y, z, and a rotation vector], m and rad");

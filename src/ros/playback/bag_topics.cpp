@@ -28,6 +28,11 @@ Topics::const_iterator findTopic(const Topics& topics, const std::string& path, 
   return found;
 }
 
+std::string parent(const std::string& topic) {
+  const std::size_t slash = topic.rfind('/');
+  return slash == std::string::npos ? "" : topic.substr(0, slash);
+}
+
 }  // namespace
 
 std::string chooseImageTopic(const Topics& topics, const std::string& path, const std::string& wanted) {
@@ -53,15 +58,6 @@ std::string chooseImageTopic(const Topics& topics, const std::string& path, cons
   }
   return with_images.begin()->first;
 }
-
-namespace {
-
-std::string parent(const std::string& topic) {
-  const std::size_t slash = topic.rfind('/');
-  return slash == std::string::npos ? "" : topic.substr(0, slash);
-}
-
-}  // namespace
 
 std::string usualCameraInfoTopic(const Topics& topics, const std::string& image_topic) {
   const std::string raw_topic = topics.at(image_topic) == kCompressedType ? parent(image_topic) : image_topic;

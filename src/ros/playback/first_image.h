@@ -16,6 +16,8 @@ class FirstImage {
  public:
   // Throws as trackOffline does where the first image cannot be used.
   explicit FirstImage(const OfflineOptions& options);
+  // Of an image that was read already, with the camera_info that holds for it.
+  FirstImage(const OfflineOptions& options, const SourceImage& image);
 
   // 8UC1 or 8UC3, rectified where the tracker rectifies; at most `side` px wide and high.
   cv::Mat picture(int side) const;
@@ -26,6 +28,8 @@ class FirstImage {
   std::string refusal(const geometry::Rectangle& roi) const;
   // A region near a refused one that the tracker would take; empty: there is none.
   std::optional<geometry::Rectangle> proposal(const geometry::Rectangle& roi) const;
+  // A square at the image's centre, or what the tracker would take near it; empty: there is none.
+  std::optional<geometry::Rectangle> suggestion() const;
 
  private:
   TrackerParameters parameters_;

@@ -38,6 +38,11 @@ void PlaybackControl::begin(bool hold) {
   steps_ = hold ? 1 : 0;  // plays the image at which it holds
 }
 
+bool PlaybackControl::hasBegun() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return begun_;
+}
+
 void PlaybackControl::end() {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (!seek_) state_ = State::kEnded;

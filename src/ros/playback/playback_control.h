@@ -17,6 +17,7 @@ class PlaybackControl {
 
   // The functions below are for the player. begin(): call when the awaited subscribers are there.
   void begin(bool hold);  // no effect the second time
+  bool hasBegun() const;
   void end();
   void fail();  // the recording cannot be read, or not further
   // A region was selected.

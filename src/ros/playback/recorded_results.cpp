@@ -40,7 +40,8 @@ RecordedResults::RecordedResults(const std::vector<std::string>& paths, const st
   }
 }
 
-// Of several the one whose name begins most like that of the images; of two that are as like, none.
+// Chooses the topic whose name shares the most letters at its beginning with that of the images; none if two share as
+// many.
 void RecordedResults::choose(const std::string& image_topic) {
   std::set<std::string> topics;
   for (const auto& bag : bags_) {

@@ -34,9 +34,15 @@ std::vector<std::string> validate(const ScopeMarkersConfig& config) {
 ScopeMarkers::ScopeMarkers(ros::NodeHandle node, ros::NodeHandle private_node, const ScopeMarkersConfig& config)
     : config_(config),
       tf_listener_(tf_),
+      target_(config.frame_prefix + kBase, config.frame_prefix + config.camera_frame),
       publisher_(private_node.advertise<MarkerArray>("markers", 1)),
       camera_info_subscriber_(node.subscribe<sensor_msgs::CameraInfo>(
           "camera_info", 1, [this](const sensor_msgs::CameraInfoConstPtr& info) { camera_info_ = *info; })),
+      homography_subscriber_(node.subscribe<Homography>(
+          "homography", 1, [this](const HomographyConstPtr& message) { target_.take(*message, tf_); })),
+      state_subscriber_(node.subscribe<ControllerState>(
+          "controller/state", 1,
+          [this](const ControllerStateConstPtr& state) { has_target_ = state->task == ControllerState::POSITION; })),
       timer_(node.createWallTimer(ros::WallDuration(kPeriod), [this](const ros::WallTimerEvent&) { publish(); })) {}
 
 std::optional<Eigen::Vector3d> ScopeMarkers::origin(const std::string& frame) const {
@@ -56,6 +62,7 @@ void ScopeMarkers::publish() {
   addArm(array);
   addScope(array);
   addInsertionPoint(array);
+  addTarget(array);
   publisher_.publish(array);
 }
 
@@ -80,6 +87,14 @@ void ScopeMarkers::addScope(MarkerArray& array) const {
   const cv::Size size(static_cast<int>(camera_info_->width), static_cast<int>(camera_info_->height));
   array.markers.push_back(viewMarker(config_.frame_prefix + config_.camera_frame, camera, size, config_.view_depth));
   array.markers.back().frame_locked = static_cast<std::uint8_t>(true);
+}
+
+void ScopeMarkers::addTarget(MarkerArray& array) const {
+  if (!camera_info_) return;
+  const geometry::PinholeCamera camera = geometry::cameraFromRowMajor(camera_info_->K.data());
+  if (!camera.error().empty()) return;
+  const cv::Size size(static_cast<int>(camera_info_->width), static_cast<int>(camera_info_->height));
+  target_.addTo(array, has_target_, camera, size, config_.view_depth, origin(config_.camera_frame));
 }
 
 void ScopeMarkers::addInsertionPoint(MarkerArray& array) const {

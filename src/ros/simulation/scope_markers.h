@@ -1,8 +1,12 @@
-// The node `scope_markers`: draws the arm, the scope, its field of view and the insertion point in rviz, from tf.
+// The node `scope_markers`: draws the arm, the scope, its field of view and the insertion point in rviz, from tf; in
+// the task POSITION its target, too.
 //
-// Subscribes: camera_info, tf. Publishes: ~markers (visualization_msgs/MarkerArray), ten times a second.
+// Subscribes: camera_info, homography, controller/state, tf. Publishes: ~markers (visualization_msgs/MarkerArray), ten
+// times a second.
 #pragma once
 
+#include <laparoscope_servo/ControllerState.h>
+#include <laparoscope_servo/Homography.h>
 #include <ros/ros.h>
 #include <sensor_msgs/CameraInfo.h>
 #include <tf2_ros/buffer.h>
@@ -16,6 +20,7 @@
 
 #include "laparoscope_servo/geometry/camera.h"
 #include "laparoscope_servo/parameters/table.h"
+#include "ros/simulation/position_target.h"
 
 namespace laparoscope_servo {
 
@@ -40,6 +45,7 @@ class ScopeMarkers {
   void addArm(visualization_msgs::MarkerArray& array) const;
   void addScope(visualization_msgs::MarkerArray& array) const;
   void addInsertionPoint(visualization_msgs::MarkerArray& array) const;
+  void addTarget(visualization_msgs::MarkerArray& array) const;
   // Origin of a frame in the base; empty while tf does not know it.
   std::optional<Eigen::Vector3d> origin(const std::string& frame) const;
 
@@ -47,8 +53,10 @@ class ScopeMarkers {
   tf2_ros::Buffer tf_;
   tf2_ros::TransformListener tf_listener_;
   std::optional<sensor_msgs::CameraInfo> camera_info_;
+  PositionTarget target_;
+  bool has_target_ = false;  // the task is POSITION
   ros::Publisher publisher_;
-  ros::Subscriber camera_info_subscriber_;
+  ros::Subscriber camera_info_subscriber_, homography_subscriber_, state_subscriber_;
   ros::WallTimer timer_;
 };
 

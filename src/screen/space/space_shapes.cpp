@@ -45,7 +45,7 @@ std::optional<Corners3> regionInSpace(const geometry::PinholeCamera& camera, con
   const Eigen::Matrix3d k_inverse = camera.inverseMatrix();
   Eigen::Matrix3d h = k_inverse * Eigen::Map<const RowMajor>(g.data()) * camera.matrix();
   if (!h.allFinite()) return std::nullopt;
-  // Of a plane's homography that is rotation and translation the middle singular value is 1.
+  // The middle singular value of R + t n'/d is 1.
   const double scale = h.jacobiSvd().singularValues()[1];
   if (!(scale > 0.0)) return std::nullopt;
   h /= scale;

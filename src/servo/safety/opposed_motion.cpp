@@ -8,33 +8,46 @@ namespace {
 
 const char* const kAxes[] = {"pan", "tilt", "spin", "insertion"};
 constexpr double kLate = 0.1;    // s, by which the robot may be later than its delay; the effect guard allows 0.14 s
-constexpr double kLasts = 0.15;  // s, least time for which an axis must move in the wrong direction
+constexpr double kLasts = 0.15;  // s, least time for which an axis must move in the wrong direction, in all
 constexpr double kStep = 0.02;   // s, between the commands that are compared: the period of commands at 50 Hz
 
-// Whether the motion opposes all commands since before its delay.
-bool isOpposed(double time, double done, const CommandHistory& told, double delay, int axis) {
+enum class Sense { kWith, kAgainst, kUnclear };
+
+// Of the motion, by the commands since before its delay. Rest counts for nothing: the scope may have been held
+// meanwhile.
+Sense senseOf(double time, double done, const CommandHistory& told, double delay, int axis) {
+  if (told.velocity(time, delay)[axis] * done > 0.0) return Sense::kWith;
+  bool against = false;
   for (double age = 0.0; age <= delay + kLate; age += kStep) {
-    if (!(told.velocity(time, age)[axis] * done < 0.0)) return false;
+    const double agreement = told.velocity(time, age)[axis] * done;
+    if (agreement > 0.0) return Sense::kUnclear;
+    against |= agreement < 0.0;
   }
-  return true;
+  return against ? Sense::kAgainst : Sense::kUnclear;
 }
 
 }  // namespace
 
 void OpposedMotion::restart() {
   opposed_.fill(false);
+  opposed_for_.fill(0.0);
   words_.clear();
 }
 
 void OpposedMotion::report(double time, const scope::Velocity& done, const CommandHistory& told, double delay) {
   const Eigen::Vector4d velocity = done.vector();
   if (!words_.empty() || !velocity.allFinite() || !std::isfinite(time)) return;
+  const double step = time - last_time_;
+  const bool goes_on = step > 0.0 && step < 2.0 * kLasts;
+  last_time_ = time;
   for (int k = 0; k < 4; ++k) {
     const bool moves = std::abs(velocity[k]) > 2.0 * width_.vector()[k];
-    const bool opposed = moves && isOpposed(time, velocity[k], told, delay, k);
-    if (opposed && (!opposed_[k] || time < since_[k])) since_[k] = time;
+    const Sense sense = moves ? senseOf(time, velocity[k], told, delay, k) : Sense::kUnclear;
+    const bool opposed = sense == Sense::kAgainst;
+    if (sense == Sense::kWith) opposed_for_[k] = 0.0;
+    if (opposed && opposed_[k] && goes_on) opposed_for_[k] += step;
     opposed_[k] = opposed;
-    if (opposed && time - since_[k] > kLasts)
+    if (opposed_for_[k] > kLasts)
       words_ = std::string("the robot says that its ") + kAxes[k] + " goes against what it is told";
   }
 }

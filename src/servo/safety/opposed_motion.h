@@ -1,7 +1,8 @@
 // Detects that the robot reports motion opposite to its commands.
 //
 // The effect guard relies on the reported motion. If an axis is reversed and reports so, picture and report agree; only
-// the command does not.
+// the command does not. The time for which an axis moves in the wrong direction is summed up until it moves in the
+// right one: where the scope is held again and again, none of its motions may last long enough.
 #pragma once
 
 #include <array>
@@ -25,8 +26,9 @@ class OpposedMotion {
 
  private:
   scope::Velocity width_;
-  std::array<double, 4> since_{};  // s, since when the axis has moved in the wrong direction
-  std::array<bool, 4> opposed_{};
+  double last_time_ = 0.0;               // s, of the last report
+  std::array<double, 4> opposed_for_{};  // s, for which the axis has moved in the wrong direction
+  std::array<bool, 4> opposed_{};        // in the last report
   std::string words_;
 };
 

@@ -131,7 +131,8 @@ JointVector Arm::drivenVelocity(double dt) const {
     if (joint == jammed_) continue;
     const double dead = config_.dead_zone[joint];
     const double threshold = qdot_[joint] == 0.0 ? config_.breakaway * dead : dead;
-    const double wanted = std::abs(target_[k]) > threshold ? gain_ * target_[k] : 0.0;
+    const double gain = joint == reversed_ ? -gain_ : gain_;
+    const double wanted = std::abs(target_[k]) > threshold ? gain * target_[k] : 0.0;
     const double share = config_.time_constant > 0.0 ? 1.0 - std::exp(-dt / config_.time_constant) : 1.0;
     const double next = qdot_[joint] + share * (wanted - qdot_[joint]);
     const bool rests = wanted == 0.0 && std::abs(next) <= std::max(dead, kAtRest);  // held by friction

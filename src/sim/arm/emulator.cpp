@@ -129,6 +129,11 @@ void Emulator::jam(int joint, double now) {
   arm_.jam(joint);
 }
 
+void Emulator::reverse(int joint, double now) {
+  step(now);
+  arm_.reverse(joint);
+}
+
 void Emulator::setGain(double gain, double now) {
   step(now);
   arm_.setGain(gain);

@@ -35,6 +35,7 @@ constexpr Kind kKinds[] = {
     {"bits", Takes::kMask, false, true, "cause of a robot fault, until 0"},
     {"joint", Takes::kJoint, false, true, "the motor of a joint trips: it stands, and that is a robot fault"},
     {"stalled", Takes::kJoint, false, true, "a joint stands, and the controller does not notice"},
+    {"reversed", Takes::kJoint, false, true, "a joint moves the other way than it is told, and says so"},
     {"gain", Takes::kFactor, false, true, "the joints move by this factor of their commands"},
     {"lag", Takes::kDelay, false, true, "commands take effect later"},
     {"lie", Takes::kLie, false, true, "statuses that are not true"},
@@ -184,6 +185,7 @@ void Faults::set(const Fault& fault, double now) {
   if (fault.name == "bits") emulator_.setFaultCause(static_cast<std::uint16_t>(value), now);
   if (fault.name == "joint" || fault.name == "stalled") emulator_.jam(static_cast<int>(value) - 1, now);
   if (fault.name == "joint") emulator_.setFaultCause(value > 0.0 ? aesop::kFaultMotor : 0, now);
+  if (fault.name == "reversed") emulator_.reverse(static_cast<int>(value) - 1, now);
   if (fault.name == "gain") emulator_.setGain(value, now);
   if (fault.name == "lag") emulator_.setLag(value, now);
   if (fault.name == "lie") emulator_.lie(*lieNamed(fault.value), now);
@@ -206,6 +208,7 @@ void Faults::clear(double now) {
   if (wire_.isCut(now)) wire_.cut(now);
   emulator_.setFaultCause(0, now);
   emulator_.jam(-1, now);
+  emulator_.reverse(-1, now);
   emulator_.setGain(1.0, now);
   emulator_.setLag(0.0, now);
   emulator_.lie(Lie::kNone, now);

@@ -49,8 +49,11 @@ void applyLight(cv::Mat& image, const cv::Mat1f& light, double gain) {
 }  // namespace
 
 ScopeCamera::ScopeCamera(const SceneConfig& config, const Eigen::Isometry3d& base_T_tissue)
+    : ScopeCamera(config, texture(checked(config).tissue), base_T_tissue) {}
+
+ScopeCamera::ScopeCamera(const SceneConfig& config, const cv::Mat& texture, const Eigen::Isometry3d& base_T_tissue)
     : config_(checked(config)),
-      tissue_(texture(config.tissue), config.tissue.width, base_T_tissue),
+      tissue_(texture, config.tissue.width, base_T_tissue),
       lamp_(config.light, config.camera.intrinsics, {config.camera.width, config.camera.height},
             config.camera.border_radius),
       exposure_(config.exposure),

@@ -95,6 +95,7 @@ double leastBlocks(const BlockEvidence& blocks, double visible_fraction) {
 std::string doubt(const Evidence& e, const QualityConfig& q) {
   if (e.esm.status == EsmStatus::kOutOfView) return "the ROI's image crosses infinity";
   if (e.esm.status == EsmStatus::kIllConditioned) return "the pixels kept do not determine the motion";
+  if (e.esm.status == EsmStatus::kInterrupted) return "not aligned within the time of an image";
   const double unit = lengthUnit(e.roi);
   const BlockEvidence& blocks = e.blocks;
   const bool recognised =

@@ -131,7 +131,8 @@ int RegionAligner::observeStructure(const EsmResult& estimate) {
   return gates_.observeStructure(pairs.data(), count, level.valid, estimate.state.gain, estimate.sigma);
 }
 
-Alignment RegionAligner::align(const cv::Mat& image, const EsmState& start, const MotionPrior* prior, double reach) {
+Alignment RegionAligner::align(const cv::Mat& image, const EsmState& start, const MotionPrior* prior, double reach,
+                               const AlignmentLimits& limits) {
   Alignment result;
   result.esm.state = start;
   result.esm.status = EsmStatus::kOutOfView;
@@ -143,11 +144,15 @@ Alignment RegionAligner::align(const cv::Mat& image, const EsmState& start, cons
   // Where the prediction was off, so are masks that are drawn there; those of the image before move with the region.
   bool looked = prior == nullptr || surprise_ <= kGateShift * lengthUnit(roi());
   if (looked) look(image, start.g);
-  result.esm = esm_.align(pyramid_, start, prior, esm_.levels() - 1, 1);
+  esm_.allow(limits.most_work);
+  result.esm.status = EsmStatus::kMaxIterations;
+  if (limits.coarsest > 0) result.esm = esm_.align(pyramid_, start, prior, limits.coarsest, 1);
   int iterations = result.esm.iterations;
+  double work = result.esm.work;
   const auto refine = [&] {
     result.esm = esm_.align(pyramid_, result.esm.state, prior, 0);
     iterations += result.esm.iterations;
+    work += result.esm.work;
   };
   for (int k = 0; k < 2 && usable(result.esm); ++k) {
     const bool outdated =
@@ -163,6 +168,7 @@ Alignment RegionAligner::align(const cv::Mat& image, const EsmState& start, cons
     refine();
   }
   result.esm.iterations = iterations;
+  result.esm.work = work;
   if (usable(result.esm)) {
     const EsmLevel& level = esm_.level(0);
     result.visible_fraction = gates_.visibleFraction();

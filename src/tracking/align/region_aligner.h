@@ -12,6 +12,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <memory>
 #include <opencv2/core.hpp>
 #include <optional>
@@ -30,7 +31,7 @@
 namespace laparoscope_servo::tracking {
 
 struct Alignment {
-  EsmResult esm;                  // its `iterations` are those of all alignments together
+  EsmResult esm;                  // its `iterations` and its `work` are those of all alignments together
   bool in_image = true;           // false: the ROI is expected outside the image, nothing was aligned
   double visible_fraction = 0.0;  // 0 to 1, share of the ROI's pixels that were used
   double share_in_image = 1.0;    // 0 to 1, of the ROI's pixels
@@ -40,6 +41,11 @@ struct Alignment {
   // followed it.
   double corner_error = 0.0;
   double centre_error = 0.0;
+};
+
+struct AlignmentLimits {
+  double most_work = std::numeric_limits<double>::infinity();  // EsmResult::work
+  int coarsest = 1000;  // level to begin with; 1000: the coarsest, another one to go on after an interruption
 };
 
 struct ReferenceTexture {
@@ -60,8 +66,9 @@ class RegionAligner {
                     const std::optional<image::Channels>& channels = std::nullopt);
 
   // Aligns from `start`. `reach` [px]: how far a corner may be from there without leaving the crop of the image that is
-  // used.
-  Alignment align(const cv::Mat& image, const EsmState& start, const MotionPrior* prior, double reach);
+  // used. `limits`: where it begins, and from where on it is interrupted.
+  Alignment align(const cv::Mat& image, const EsmState& start, const MotionPrior* prior, double reach,
+                  const AlignmentLimits& limits = AlignmentLimits());
 
   // See RegionTracker::retune.
   void retune(const TrackerConfig& config) { gates_.setThreshold(config.occlusion.threshold); }

@@ -32,7 +32,7 @@ void BlockGate::forget() {
   of_reference_.view().copyTo(weights_);
 }
 
-// Of each block by itself.
+// Gives each block a verdict by itself, without its neighbours.
 void BlockGate::judge(const EsmLevel& level, double min_correlation) {
   const image::Patch* weight = &of_reference_;
   if (!level.all_valid) {
@@ -57,7 +57,8 @@ void BlockGate::judge(const EsmLevel& level, double min_correlation) {
   }
 }
 
-// Any of those around a block with texture is, most of those around a block without.
+// Whether the neighbours of a block are covered: for a block with texture one of them is enough, for a block without it
+// takes most of them.
 bool BlockGate::coveredAround(int block) const {
   const int row = block / grid_.columns(), column = block % grid_.columns();
   int told = 0, covered = 0;
@@ -75,7 +76,7 @@ bool BlockGate::coveredAround(int block) const {
 int BlockGate::look(const EsmLevel& level, double min_correlation) {
   judge(level, min_correlation);
   int fresh = 0;
-  bool changed = false;
+  changed_ = false;
   correlated_ = 0;
   for (int block = 0; block < grid_.count(); ++block) {
     const Verdict verdict = verdicts_[static_cast<std::size_t>(block)];
@@ -83,10 +84,10 @@ int BlockGate::look(const EsmLevel& level, double min_correlation) {
     if (verdict != kSilent && !covered) ++correlated_;
     char& before = covered_[static_cast<std::size_t>(block)];
     if (covered && !before) ++fresh;
-    changed = changed || covered != static_cast<bool>(before);
+    changed_ = changed_ || covered != static_cast<bool>(before);
     before = covered;
   }
-  if (!changed) return 0;
+  if (!changed_) return 0;
   of_reference_.view().copyTo(weights_);
   for (int block = 0; block < grid_.count(); ++block) {
     if (!covered_[static_cast<std::size_t>(block)]) continue;

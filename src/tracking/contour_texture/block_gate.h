@@ -22,6 +22,8 @@ class BlockGate {
   // less than `min_correlation`; beside a covered one, by less than the middle between that and 1. A block without
   // texture is covered where most of the blocks around it are. Returns how many blocks are newly covered.
   int look(const EsmLevel& level, double min_correlation);
+  // Whether the last look() changed the weights.
+  bool changed() const { return changed_; }
   // Nothing is covered.
   void forget();
 
@@ -45,6 +47,7 @@ class BlockGate {
   std::vector<Verdict> verdicts_;
   std::vector<char> covered_;
   int textured_ = 0, correlated_ = 0;
+  bool changed_ = false;
 };
 
 }  // namespace laparoscope_servo::tracking

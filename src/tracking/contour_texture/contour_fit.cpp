@@ -24,8 +24,9 @@ constexpr int kLeastBlocks = 6;      // with texture, to be believed by them alo
 // Share of the edges that has to agree where most blocks of texture do not correlate: with 0.3, edges of what covers
 // both halves were believed for two images of one sequence of eight (bench_contour).
 constexpr double kAgainstTexture = 0.5;
-constexpr double kAnother = 0.5;  // share of the sites that have to lie on edges for a start by them
-constexpr int kRounds = 2;        // alignments on the finest level, as what is covered is found out
+constexpr double kAnother = 0.5;    // share of the sites that have to lie on edges for a start by them
+constexpr double kManyFresh = 0.1;  // of the blocks that are shown: so many newly covered ones make another fit
+constexpr int kRounds = 2;          // alignments on the finest level, as what is covered is found out
 
 bool usable(const EsmResult& estimate) {
   return (estimate.status == EsmStatus::kConverged || estimate.status == EsmStatus::kMaxIterations) &&
@@ -102,7 +103,6 @@ ContourEstimate ContourFit::align(const cv::Mat& image, const EsmState& start, c
   }
   build(image, start.g);
   ExtraTerm* edges = edges_count_ ? &edges_ : nullptr;
-  edges_.forget();
   if (esm_.levels() > 1) {
     if (edges != nullptr) edges_.look(image, start.g, config_.edges.range, kCoarseSites);
     result.esm = esm_.align(pyramid_, start, prior, esm_.levels() - 1, 1, edges);
@@ -115,8 +115,8 @@ ContourEstimate ContourFit::align(const cv::Mat& image, const EsmState& start, c
     if (!usable(result.esm)) return result;
     bool changed = false;
     if (config_.texture) {
-      changed = blocks_.look(esm_.level(0), config_.min_correlation) > 0;
-      esm_.setWeights(blocks_.weights());
+      changed = blocks_.look(esm_.level(0), config_.min_correlation) > kManyFresh * blocks_.correlated();
+      if (blocks_.changed()) esm_.setWeights(blocks_.weights());
     }
     if (config_.contour) changed = (edges_.gate(result.esm.state.g) && edges != nullptr) || changed;
     judge(min_share, result);
@@ -165,6 +165,7 @@ void ContourFit::forget() {
   edges_count_ = config_.contour;
   esm_.forgetLight();
   blocks_.forget();
+  edges_.forget();
   esm_.setWeights(blocks_.weights());
 }
 

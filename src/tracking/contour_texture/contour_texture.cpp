@@ -7,6 +7,7 @@
 
 #include "laparoscope_servo/features/edge_fit.h"
 #include "laparoscope_servo/features/image_sequence.h"
+#include "laparoscope_servo/features/selection_check.h"
 #include "laparoscope_servo/features/spline.h"
 #include "laparoscope_servo/geometry/homography.h"
 #include "laparoscope_servo/image/image_type.h"
@@ -179,6 +180,7 @@ const features::TrackedFeatures& ContourTextureTracker::select(const cv::Mat& im
   if (!selection[0].closed)
     throw std::invalid_argument(selection[0].id + ": closed = false, expected true: a contour that has an inside");
   try {
+    features::checkInImage(selection[0], image.size());
     implementation_->select(image, stamp, selection[0]);
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument(selection[0].id + ": " + error.what());

@@ -35,6 +35,7 @@ void EdgeTerm::learn(const cv::Mat& image, const Outline& outline) {
   candidates_.resize(most);
   association_.reserve(Outline::kSlots, most);
   for (auto* values : {&moved_, &errors_, &weights_}) values->reserve(most);
+  equations_.reserve(most);
   coarse_.reserve(Outline::kSlots);
   look(image, Eigen::Matrix3d::Identity(), kLearnRange, config_.max_sites);
   choose(Eigen::Matrix3d::Identity());
@@ -70,45 +71,73 @@ void EdgeTerm::look(const cv::Mat& image, const Eigen::Matrix3d& g, double range
 
 void EdgeTerm::choose(const Eigen::Matrix3d& g) {
   moved_.clear();
-  for (const Site& site : sites_)
-    moved_.push_back(site.normal.dot(geometry::apply(g, outline_.point(site.slot)) - site.point));
+  for (const Site& site : sites_) moved_.push_back(movedFrom(site, g));
   association_.choose(sites_, candidates_, range_, moved_);
   errors_.clear();
   for (const robust::Row& row : association_.rows()) {
     if (row.weight > 0.0) errors_.push_back(std::abs(row.b));
   }
-  sigma_ = errors_.empty() ? kMinSigma
-                           : std::max(kMinSigma, robust::kMadToSigma * robust::median(errors_));  // (13), about 0
+  sigma_ = scaleOf(errors_);
   weights_.clear();
   for (const robust::Row& row : association_.rows()) weights_.push_back(robust::tukeyWeight(row.b / sigma_));  // (12)
 }
 
+double EdgeTerm::movedFrom(const Site& site, const Eigen::Matrix3d& g) const {
+  return site.normal.dot(geometry::apply(g, outline_.point(site.slot)) - site.point);
+}
+
+double EdgeTerm::scaleOf(std::vector<double>& magnitudes) {
+  if (magnitudes.empty()) return kMinSigma;
+  return std::max(kMinSigma, robust::kMadToSigma * robust::median(magnitudes));  // (13), about 0
+}
+
+// As choose(), but for what only gate() asks for: this is called in every iteration.
 void EdgeTerm::add(const Eigen::Matrix3d& g, double gain, Matrix10d& information, Vector10d& score) {
-  choose(g);
+  equations_.clear();
+  errors_.clear();
+  for (std::size_t i = 0; i < sites_.size(); ++i) {
+    if (association_.isLonely(sites_[i].slot)) continue;
+    const double moved = movedFrom(sites_[i], g);
+    const int best = features::bestOf(candidates_[i], range_, moved);
+    if (best < 0) continue;
+    const double away = static_cast<double>(candidates_[i].found.at[static_cast<std::size_t>(best)].offset) - moved;
+    equations_.push_back({i, away});
+    errors_.push_back(std::abs(away));
+  }
+  sigma_ = scaleOf(errors_);
   // Edges err alike over some length of the contour, which sites that are taken for independent do not know.
   const double spacing = outline_.length() / static_cast<double>(std::max<std::size_t>(1, sites_.size()));
   const double unit = 1.0 / (sigma_ * sigma_ * features::correlation(spacing));
-  for (std::size_t k = 0; k < weights_.size(); ++k) {
-    const robust::Row& equation = association_.rows()[k];
-    const double weight = unit * equation.weight * weights_[k];
+  Matrix8d sum = Matrix8d::Zero();
+  geometry::Vector8d right = geometry::Vector8d::Zero();
+  for (const Equation& equation : equations_) {
+    const double weight = unit * robust::tukeyWeight(equation.away / sigma_);  // (12)
     if (!(weight > 0.0)) continue;
-    const Eigen::Map<const geometry::Vector8d> row(equation.a.data());
-    information.topLeftCorner<8, 8>().noalias() += weight * row * row.transpose();
-    score.head<8>() -= weight * equation.b * row;
+    const Eigen::Map<const geometry::Vector8d> row(sites_[equation.site].jacobian.data());
+    const geometry::Vector8d scaled = weight * row;
+    sum.noalias() += scaled * row.transpose();
+    right += equation.away * scaled;
   }
+  information.topLeftCorner<8, 8>() += sum;
+  score.head<8>() -= right;
   information(8, 8) += 1.0 / (kGainChange * kGainChange);
   score[8] += (gain - expected_gain_) / (kGainChange * kGainChange);
   information(9, 9) += 1.0 / (kBiasChange * kBiasChange);
 }
 
 bool EdgeTerm::gate(const Eigen::Matrix3d& g) {
-  const auto agreeing = [&] {
-    return std::count_if(findings().begin(), findings().end(),
-                         [](const features::SiteFinding& site) { return site.weight >= features::kAgreeWeight; });
-  };
   choose(g);
+  // Of the sites that had a say.
+  const auto agreeing = [&] {
+    int count = 0;
+    for (std::size_t row = 0; row < association_.rows().size(); ++row) {
+      const bool agrees = findings()[association_.siteOf(row)].weight >= features::kAgreeWeight;
+      count += association_.rows()[row].weight > 0.0 && agrees ? 1 : 0;
+    }
+    return count;
+  };
   association_.settle(sites_, no_step_, weights_, sigma_);
-  const auto before = agreeing();
+  const int before = agreeing();
   association_.dropLonely(sites_, matching_, range_);
   return static_cast<double>(before - agreeing()) > kManyLost * static_cast<double>(before);
 }

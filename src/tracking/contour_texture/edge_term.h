@@ -56,7 +56,16 @@ class EdgeTerm : public ExtraTerm {
   double sigma() const { return sigma_; }  // px, robust scale of the last add() or gate()
 
  private:
+  struct Equation {
+    std::size_t site;
+    double away;  // px, of its edge from the contour along its normal
+  };
+
   void choose(const Eigen::Matrix3d& g);
+  // px, of the contour at `g` from the site along its normal.
+  double movedFrom(const features::Site& site, const Eigen::Matrix3d& g) const;
+  // px, robust; reorders the magnitudes.
+  static double scaleOf(std::vector<double>& magnitudes);
 
   features::EdgeConfig config_;
   Outline outline_;
@@ -68,9 +77,10 @@ class EdgeTerm : public ExtraTerm {
   double matching_ = 0.0;  // edges per site within it, that could be the contour's
   std::vector<features::Site> sites_;
   std::vector<features::WeightedCandidates> candidates_;
-  std::vector<double> moved_;    // px, of the contour from each site along its normal
-  std::vector<double> errors_;   // px, of the rows of the association that have a say
-  std::vector<double> weights_;  // Tukey's, of each row
+  std::vector<Equation> equations_;  // of the last add()
+  std::vector<double> moved_;        // px, of the contour from each site along its normal
+  std::vector<double> errors_;       // px, of the rows of the association that have a say
+  std::vector<double> weights_;      // Tukey's, of each row
   Eigen::VectorXd no_step_ = Eigen::VectorXd::Zero(8);
   Eigen::MatrixXd covariance_;
   double sigma_ = 0.0;

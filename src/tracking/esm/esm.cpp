@@ -219,12 +219,16 @@ EsmStatus Esm::iterate(const image::RegionPyramid& current, int l, const MotionP
                        EsmResult& result) {
   EsmLevel& level = levels_[l];
   if (!geometry::isConvex(geometry::apply(result.state.g, roi_.corners()))) return EsmStatus::kOutOfView;
+  if (!(allowed_ > 0.0)) return EsmStatus::kInterrupted;
   warp(current, level, l, result.state.g);
   if (how.match_mean) result.state.bias += matchMean(level, result.state.gain);
   light_ = how.light;
   result.sigma = residual_scale_.of(level, result.state.gain);
   equations_.sum(level, roi_, light_, result.state.gain, rejection(result.sigma));
   ++result.iterations;
+  const double share = static_cast<double>(level.width * level.height) / (levels_[0].width * levels_[0].height);
+  result.work += share;
+  allowed_ -= share;
   if (!solve(level, prior, how.shift_only, result)) return EsmStatus::kIllConditioned;
   return EsmStatus::kMaxIterations;
 }
@@ -245,6 +249,7 @@ EsmStatus Esm::approach(const image::RegionPyramid& current, int l, const Motion
     const int most = match ? config_.max_iterations : std::min(config_.max_iterations, kTrials);
     for (int k = 0; k < most; ++k) {
       status = iterate(current, l, prior, {Light::kConstant, l > 0 && k < kShifts, match}, result);
+      if (status == EsmStatus::kInterrupted) return status;
       if (status != EsmStatus::kMaxIterations) break;
       if (result.last_step > kFar * level.scale) continue;
       // Near, the mean is that of the reference; where it is not, the light has changed.
@@ -320,8 +325,9 @@ EsmResult Esm::align(const image::RegionPyramid& current, const EsmState& start,
     const bool newer_above = l + 1 < levels() && levels_[l + 1].aligned > levels_[l].aligned;
     if (newer_above && light_known_ && config_.light == Light::kLocal) inheritLight(levels_[l + 1], levels_[l]);
     levels_[l].aligned = ++alignments_;
+    result.level = l;
     result.status = alignLevel(current, l, l == first, prior, result);
-    if (result.status == EsmStatus::kOutOfView || result.status == EsmStatus::kIllConditioned) return result;
+    if (result.status != EsmStatus::kConverged && result.status != EsmStatus::kMaxIterations) return result;
     // Still far from converged on a coarse level: the start was too far away, finer levels would not help.
     if (result.status == EsmStatus::kMaxIterations && result.last_step > kFar * levels_[l].scale) return result;
   }

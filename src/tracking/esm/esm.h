@@ -20,6 +20,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <opencv2/core.hpp>
 #include <optional>
@@ -49,12 +50,15 @@ enum class EsmStatus {
   kMaxIterations,   // still moving by more than min_step; the state is the last iterate
   kIllConditioned,  // the pixels kept do not determine the eight parameters
   kOutOfView,       // the ROI's image crosses infinity, or too little of it is in the image
+  kInterrupted,     // what Esm::allow() allowed is used up; the state is the last iterate
 };
 
 struct EsmResult {
   EsmState state;
   EsmStatus status = EsmStatus::kMaxIterations;
   int iterations = 0;
+  double work = 0.0;                  // the iterations, each by its level's share of the pixels of level 0
+  int level = 0;                      // of the last iteration
   double last_step = 0.0;             // px, how far a corner moved in the last iteration
   double last_step_deviations = 0.0;  // last_step in standard deviations of the estimate, root mean square
   double sigma = 0.0;                 // grey levels, robust standard deviation of the residual at the finest level used
@@ -97,6 +101,9 @@ class Esm {
   // With Light::kLocal each alignment starts with the blocks' biases of the last one. After this call they are
   // estimated anew.
   void forgetLight();
+
+  // Allows this much EsmResult::work for all alignments until the next call. At first nothing limits it.
+  void allow(double work) { allowed_ = work; }
 
   // Aligns from level `coarsest` (by default the coarsest there is) down to level `finest`. The members of the result
   // on uncertainty are valid only if `finest` is 0. `extra`: minimised together with the residuals, null: nothing.
@@ -155,6 +162,7 @@ class Esm {
   ExtraTerm* extra_ = nullptr;  // of the present alignment
   Matrix10d extra_information_ = Matrix10d::Zero();
   Vector10d extra_score_ = Vector10d::Zero();
+  double allowed_ = std::numeric_limits<double>::infinity();  // work that is left
   bool light_known_ = false;
   std::uint64_t alignments_ = 0;  // number of alignments of a level so far
   // unknowns of the illumination in the equations of this iteration

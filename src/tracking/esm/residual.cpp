@@ -17,7 +17,7 @@ constexpr int kRun = 4;            // px side by side, which share a cache line
 constexpr double kBinsPerLevel = 8.0;
 constexpr int kBins = 1024;
 
-// By the median of the first `count` magnitudes.
+// The robust scale: 1.4826 times the median of the `count` magnitudes in the histogram.
 double scaleOf(const std::vector<int>& histogram, int count) {
   if (count == 0) return kMinSigma;
   // The median lies in the bin that reaches half of the samples, linearly interpolated within the bin.

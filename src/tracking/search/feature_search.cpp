@@ -76,6 +76,7 @@ void FeatureSearch::restart() {
   turn_ = 0;
   strip_ = strips_ = 0;
   asked_.clear();
+  view_.reset();
 }
 
 void FeatureSearch::begin(const CoarseImage& image, const image::ChannelWeights& weights, const Keyframes& keyframes) {
@@ -83,6 +84,7 @@ void FeatureSearch::begin(const CoarseImage& image, const image::ChannelWeights&
   seen_ = features::DescribedPoints();
   weights_ = weights;
   asked_.clear();
+  view_.reset();
   strip_ = strips_ = 0;
   coarse_ = image;
   if (keyframes.count() == 0 || coarse_.grey.empty()) return;
@@ -101,7 +103,7 @@ int FeatureSearch::stripsOf(const cv::Size& size, double cost, double most_cost)
 
 int FeatureSearch::stripsOf(const Keyframe& keyframe) const {
   const cv::Size size = coarseSize(keyframe);
-  return stripsOf(size, costOfPoints(size.area(), config_.max_features / 2), config_.budget);
+  return stripsOf(size, costOfPoints(size.area(), config_.max_features / 2), kStripShare * config_.budget);
 }
 
 double FeatureSearch::nextCost(const Keyframes& keyframes) const {
@@ -110,9 +112,13 @@ double FeatureSearch::nextCost(const Keyframes& keyframes) const {
     return costOfPoints((part.width + 2.0 * kOverlap) * part.height, config_.max_features / strips_);
   }
   const Keyframe& keyframe = keyframes.at(asked_.back());
+  if (!keyframe.described && !view_)
+    return static_cast<double>(keyframe.crop.total()) * (nominal_cost::kPixelTaken + nominal_cost::kPixelMasked);
   if (!keyframe.described) {
     const int strips = stripsOf(keyframe);
-    return costOfPoints(coarseSize(keyframe).area(), config_.max_features / 2) / strips;
+    const cv::Size size = coarseSize(keyframe);
+    const double overlap = strips > 1 ? 2.0 * kOverlap * size.height : 0.0;
+    return costOfPoints(size.area() / strips + overlap, config_.max_features / 2 / strips);
   }
   const double pairs = static_cast<double>(keyframe.features.points.size()) * static_cast<double>(seen_.points.size());
   return pairs * nominal_cost::kPairCompared + nominal_cost::kMotionFitted;
@@ -121,7 +127,7 @@ double FeatureSearch::nextCost(const Keyframes& keyframes) const {
 void FeatureSearch::work(Keyframes& keyframes) {
   if (strip_ < strips_) return drawStrip();
   Keyframe& keyframe = keyframes.at(asked_.back());
-  if (!keyframe.described) return describe(keyframe, keyframes.roi());
+  if (!keyframe.described) return view_ ? describe(keyframe) : takeView(keyframe, keyframes.roi());
   asked_.pop_back();
   match(keyframe, keyframes.roi());
 }
@@ -138,26 +144,32 @@ void FeatureSearch::drawStrip() {
 
 // Uses the whole crop except the covered parts of the ROI: the tissue around the ROI moves with it, and small or smooth
 // regions are found by their surroundings.
-void FeatureSearch::describe(Keyframe& keyframe, const geometry::Rectangle& roi) {
+void FeatureSearch::takeView(const Keyframe& keyframe, const geometry::Rectangle& roi) {
   Eigen::Matrix3d from_mask = Eigen::Matrix3d::Identity();
   from_mask.diagonal().head<2>() << roi.width / keyframe.trusted.cols, roi.height / keyframe.trusted.rows;
   from_mask.topRightCorner<2, 1>() << roi.x, roi.y;
   cv::Mat1b covered;
   image::drawMask(keyframe.trusted == 0, keyframe.g * from_mask, lens_.get(),
                   cv::Rect(keyframe.first, keyframe.crop.size()), covered);
-  const CoarseImage small = coarseImage(keyframe.crop, coarse_.scale, weights_, saturation_);
+  view_ = coarseImage(keyframe.crop, coarse_.scale, weights_, saturation_);
+  if (view_->grey.empty()) return;
+  cv::Mat1b mask;
+  cv::resize(covered, mask, view_->grey.size(), 0.0, 0.0, cv::INTER_NEAREST);
+  view_->usable.setTo(0, mask);
+}
+
+void FeatureSearch::describe(Keyframe& keyframe) {
+  const CoarseImage small = *view_;
   const int strips = stripsOf(keyframe);
   // Fewer strips than before when the budget was raised in between: nothing is left then.
   const cv::Rect own =
       strip(small.grey.size(), keyframe.strips_described++, strips) & cv::Rect(cv::Point(0, 0), small.grey.size());
   keyframe.described = keyframe.strips_described >= strips;
+  if (keyframe.described) view_.reset();
   if (own.empty()) return;
-  cv::Mat1b mask;
-  cv::resize(covered, mask, small.grey.size(), 0.0, 0.0, cv::INTER_NEAREST);
-  mask = (mask == 0) & small.usable;
   const cv::Point2f first(keyframe.first);
   drawPointsOf(
-      small.grey, mask, own, config_.max_features / 2 / strips,
+      small.grey, small.usable, own, config_.max_features / 2 / strips,
       [&](const cv::Point2f& p) { return rectified(lens_.get(), small.inImage(p) + first); }, keyframe.features);
 }
 

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <memory>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <vector>
 
 #include "laparoscope_servo/features/described_points.h"
@@ -34,8 +35,8 @@ class FeatureSearch {
   bool busy() const { return strip_ < strips_ || !asked_.empty(); }
   // Cost of the next piece [s], see nominal_cost.
   double nextCost(const Keyframes& keyframes) const;
-  // Does the next piece: detects the points of a strip of the image or, at its first use, of a keyframe, in strips if
-  // it would cost more than the budget of an image; or matches both.
+  // Does the next piece: detects the points of a strip of the image; at a keyframe's first use makes its coarse image,
+  // or detects the points of a strip of that; or matches both.
   void work(Keyframes& keyframes);
   // Places of the ROI by the keyframes matched in this pass, best first; empty if no matches agreed.
   std::vector<FeatureCandidate> found() const;
@@ -54,7 +55,8 @@ class FeatureSearch {
   int stripsOf(const Keyframe& keyframe) const;
   cv::Size coarseSize(const Keyframe& keyframe) const { return keyframe.crop.size() / coarse_.scale; }
   void drawStrip();
-  void describe(Keyframe& keyframe, const geometry::Rectangle& roi);
+  void takeView(const Keyframe& keyframe, const geometry::Rectangle& roi);
+  void describe(Keyframe& keyframe);
   void match(const Keyframe& keyframe, const geometry::Rectangle& roi);
   bool plausible(const Eigen::Matrix3d& g, const geometry::Rectangle& roi) const;
 
@@ -68,7 +70,8 @@ class FeatureSearch {
   CoarseImage coarse_;
   image::ChannelWeights weights_ = image::kLuma;
   int strip_ = 0, strips_ = 0;
-  std::vector<int> asked_;  // indices of the keyframes still to match, the next one last
+  std::vector<int> asked_;           // indices of the keyframes still to match, the next one last
+  std::optional<CoarseImage> view_;  // of the keyframe that is being described; not usable where it was covered
   features::DescribedPoints seen_;
   std::vector<FeatureCandidate> found_;
 };

@@ -13,8 +13,10 @@ namespace laparoscope_servo::tracking {
 
 namespace {
 
-constexpr int kUsualIterations = 40;    // iterations that suffice for nine of ten successful alignments
+constexpr double kUsualWork = 10.0;     // EsmResult::work of a usual alignment, which each gets in its image
+constexpr int kMostResumed = 2;         // further images in which an interrupted alignment goes on
 constexpr std::size_t kCandidates = 2;  // places that are tried from each stage of the search
+constexpr double kAround = 2.25;        // an alignment takes in so many times the ROI's pixels
 constexpr double kSlidingScale = 4.0;   // px of the image per px of the coarse image of the template search, about
 // Least correlation of a start that is worth an alignment. Of 4,800 alignments on eight films, one in 3,200 of those
 // from a lower correlation led to the true place; a half-covered ROI correlates with 0.3 or more (see bench_returns).
@@ -77,7 +79,8 @@ void RegionSearch::begin(const EsmState& last, const std::optional<Eigen::Matrix
   hungry_ = !worked_ && !awaited;
   worked_ = false;
   const auto stale = [&](const SearchPlace& place) {
-    return awaited || (place.by != Suggestion::kFeatures && place.by != Suggestion::kCorrelation);
+    const bool searched = place.by == Suggestion::kFeatures || place.by == Suggestion::kCorrelation;
+    return awaited || !(searched || place.resumed > 0);
   };
   suggested_.erase(std::remove_if(suggested_.begin(), suggested_.end(), stale), suggested_.end());
   if (awaited) suggested_.push_back({*awaited, Suggestion::kConfirmation});
@@ -117,7 +120,8 @@ std::optional<SearchPlace> RegionSearch::nextSuggested(const cv::Mat& image) {
   while (!suggested_.empty()) {
     SearchPlace place = suggested_.front();
     if (place.by != Suggestion::kConfirmation) {
-      if (!budget_.payCheap(nominal_cost::kStartChecked)) return std::nullopt;
+      const double pixels = start_check_.pixelsTaken(image.size(), place.start.g);
+      if (!budget_.payCheap(nominal_cost::kStartChecked + pixels * nominal_cost::kPixelTaken)) return std::nullopt;
       const CheckedStart checked = start_check_.look(image, place.start.g);
       likeliest_ = std::max(likeliest_, checked.correlation);
       if (!(checked.correlation >= kWorthAligning)) {
@@ -126,30 +130,48 @@ std::optional<SearchPlace> RegionSearch::nextSuggested(const cv::Mat& image) {
       }
       place.start.g = checked.g;
     }
-    if (!budget_.pay(alignmentCost(kUsualIterations))) return std::nullopt;
+    const double iteration = iterationCost();
+    if (!budget_.pay(lookCost(image.size(), place.start.g) + kUsualWork * iteration)) return std::nullopt;
+    place.limits.most_work = kUsualWork + std::max(0.0, budget_.left()) / iteration;
     suggested_.pop_front();
-    tried_ = place.by;
+    tried_ = place;
     return place;
   }
   return std::nullopt;
 }
 
-double RegionSearch::alignmentCost(int iterations) const {
+// Of an alignment, besides its iterations.
+double RegionSearch::lookCost(const cv::Size& image, const Eigen::Matrix3d& g) const {
+  const geometry::Quadrilateral corners = geometry::apply(g, keyframes_.roi().corners());
+  const double built = std::min(static_cast<double>(image.area()), kAround * geometry::signedArea(corners));
+  return built * nominal_cost::kPixelBuilt +
+         iterationCost() / nominal_cost::kPixelIterated * nominal_cost::kPixelLookedAt;
+}
+
+// Of an iteration on the finest level.
+double RegionSearch::iterationCost() const {
   const geometry::Rectangle& roi = keyframes_.roi();
   const double scale = finestScale(roi);
-  return roi.width * roi.height / (scale * scale) *
-         (nominal_cost::kPixelLookedAt + iterations * nominal_cost::kPixelIterated);
+  return roi.width * roi.height / (scale * scale) * nominal_cost::kPixelIterated;
 }
 
 bool RegionSearch::judge(const Attempt& attempt, const RegionAligner& aligner) {
-  // The actual number of iterations is known now.
-  budget_.charge(alignmentCost(attempt.evidence.esm.iterations) - alignmentCost(kUsualIterations));
+  const EsmResult& esm = attempt.evidence.esm;
+  budget_.charge((esm.work - kUsualWork) * iterationCost());  // what it took is known now
+  if (esm.status == EsmStatus::kInterrupted && tried_.resumed < kMostResumed) {
+    SearchPlace rest = tried_;
+    rest.start = esm.state;
+    rest.limits.coarsest = esm.level;
+    rest.by = tried_.by == Suggestion::kCarried ? Suggestion::kLast : tried_.by;
+    ++rest.resumed;
+    suggested_.push_front(rest);
+  }
   Attempt tried = attempt;
   if (tried.doubt.empty()) tried.doubt = doubtOf(tried, aligner);
   const bool found = tried.doubt.empty();
   if (found || !aligned_ || tried.evidence.zncc > best_.evidence.zncc) {
     best_ = std::move(tried);
-    best_by_ = tried_;
+    best_by_ = tried_.by;
   }
   aligned_ = true;
   if (found) suggested_.clear();

@@ -39,6 +39,8 @@ enum class Suggestion {
 struct SearchPlace {
   EsmState start;
   Suggestion by = Suggestion::kLast;
+  AlignmentLimits limits = {};  // of an alignment there
+  int resumed = 0;              // times that it was interrupted, and goes on in the next image
 };
 
 class RegionSearch {
@@ -64,7 +66,8 @@ class RegionSearch {
   void begin(const EsmState& last, const std::optional<Eigen::Matrix3d>& carried,
              const std::optional<EsmState>& awaited = std::nullopt);
   // The next place at which to align `aligner`'s reference with the image, likely places first; empty if no place or no
-  // budget is left. Call again after each attempt until one is accepted.
+  // budget is left. Call again after each attempt until one is accepted. What is left of the budget limits the work of
+  // the alignment; if it does not suffice, the alignment goes on in the next image from where it is then.
   std::optional<SearchPlace> next(const cv::Mat& image, const RegionAligner& aligner);
   // Takes the result of the alignment at the place that next() returned last; `aligner` must be as that alignment left
   // it. Returns true if the result is accepted.
@@ -80,7 +83,8 @@ class RegionSearch {
   std::optional<SearchPlace> nextSuggested(const cv::Mat& image);
   bool work(const cv::Mat& image, const RegionAligner& aligner);
   void suggest(const Eigen::Matrix3d& g, Suggestion by);
-  double alignmentCost(int iterations) const;
+  double lookCost(const cv::Size& image, const Eigen::Matrix3d& g) const;
+  double iterationCost() const;
   double slideCost() const;
   void slide(const RegionAligner& aligner);
 
@@ -103,7 +107,7 @@ class RegionSearch {
   bool began_ = false;                 // a pass has begun in this image; a second one would find the same places
   bool worked_ = true;                 // a piece of a pass was done in this image
   bool hungry_ = false;                // no piece was done in the last image: this image begins with one
-  Suggestion tried_ = Suggestion::kLast;
+  SearchPlace tried_;
   double likeliest_ = 0.0;  // largest correlation of the places that were checked
   bool aligned_ = false;    // an alignment was tried in this image
   Attempt best_;

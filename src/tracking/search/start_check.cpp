@@ -54,18 +54,34 @@ void StartCheck::setReference(const cv::Mat& image, const geometry::Rectangle& r
   weights_ = weights;
   step_ = std::max(1.0, std::max(roi.width, roi.height) / kSide);
   size_ = cv::Size(std::max(1, static_cast<int>(roi.width / step_)), std::max(1, static_cast<int>(roi.height / step_)));
+  margin_ = static_cast<int>(kReach * std::max(size_.width, size_.height));
   reference_ = contrast(image, Eigen::Matrix3d::Identity(), 0);
+}
+
+// The ROI and `margin` [px of the compared patch] around it.
+geometry::Rectangle StartCheck::widened(int margin) const {
+  const double grow = margin * step_;
+  return {roi_.x - grow, roi_.y - grow, roi_.width + 2.0 * grow, roi_.height + 2.0 * grow};
+}
+
+// The part of the image where `g` puts widened(margin); empty if there is none.
+cv::Rect StartCheck::boxOf(const cv::Size& image, const Eigen::Matrix3d& g, int margin) const {
+  const geometry::Quadrilateral corners = geometry::apply(g, widened(margin).corners());
+  if (!geometry::isConvex(corners)) return {};
+  return image::seenBox(lens_.get(), corners, 2.0) & cv::Rect(cv::Point(0, 0), image);
+}
+
+double StartCheck::pixelsTaken(const cv::Size& image, const Eigen::Matrix3d& g) const {
+  return boxOf(image, g, margin_).area();
 }
 
 // Local contrast of the image where `g` puts the ROI and `margin` [px of the compared patch] around it; empty if no
 // part of that is in the image.
 cv::Mat1f StartCheck::contrast(const cv::Mat& image, const Eigen::Matrix3d& g, int margin) const {
-  const double grow = margin * step_;
-  const geometry::Rectangle wide = {roi_.x - grow, roi_.y - grow, roi_.width + 2.0 * grow, roi_.height + 2.0 * grow};
-  const geometry::Quadrilateral corners = geometry::apply(g, wide.corners());
-  if (!geometry::isConvex(corners)) return {};
-  const cv::Rect box = image::seenBox(lens_.get(), corners, 2.0) & cv::Rect(cv::Point(0, 0), image.size());
+  const cv::Rect box = boxOf(image.size(), g, margin);
   if (box.empty()) return {};
+  const geometry::Rectangle wide = widened(margin);
+  const geometry::Quadrilateral corners = geometry::apply(g, wide.corners());
   const double zoom = std::sqrt(geometry::signedArea(corners) / geometry::signedArea(wide.corners()));
   const int scale = std::max(1, std::min({static_cast<int>(step_ * zoom), box.width, box.height}));
   cv::Mat small;
@@ -92,8 +108,7 @@ cv::Mat1f StartCheck::contrast(const cv::Mat& image, const Eigen::Matrix3d& g, i
 }
 
 CheckedStart StartCheck::look(const cv::Mat& image, const Eigen::Matrix3d& g) const {
-  const int margin = static_cast<int>(kReach * std::max(size_.width, size_.height));
-  const cv::Mat1f seen = contrast(image, g, margin);
+  const cv::Mat1f seen = contrast(image, g, margin_);
   if (seen.empty()) return {g, 0.0};
   cv::Mat1f score;
   cv::matchTemplate(seen, reference_, score, cv::TM_CCORR_NORMED);
@@ -101,7 +116,7 @@ CheckedStart StartCheck::look(const cv::Mat& image, const Eigen::Matrix3d& g) co
   cv::Point place;
   cv::minMaxLoc(score, nullptr, &best, nullptr, &place);
   if (!std::isfinite(best)) return {g, 0.0};
-  const Eigen::Matrix3d moved = g * shift(step_ * (place.x - margin), step_ * (place.y - margin));
+  const Eigen::Matrix3d moved = g * shift(step_ * (place.x - margin_), step_ * (place.y - margin_));
   return {geometry::normaliseDeterminant(moved), std::clamp(best, -1.0, 1.0)};
 }
 

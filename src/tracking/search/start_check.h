@@ -28,10 +28,14 @@ class StartCheck {
   // The place of highest correlation within kReach of `g`; `g` itself with correlation 0 if the ROI is not in the image
   // there.
   CheckedStart look(const cv::Mat& image, const Eigen::Matrix3d& g) const;
+  // Pixels of an image of this size that look() takes at `g`.
+  double pixelsTaken(const cv::Size& image, const Eigen::Matrix3d& g) const;
 
   static constexpr double kReach = 0.25;  // share of the ROI's larger side
 
  private:
+  geometry::Rectangle widened(int margin) const;
+  cv::Rect boxOf(const cv::Size& image, const Eigen::Matrix3d& g, int margin) const;
   cv::Mat1f contrast(const cv::Mat& image, const Eigen::Matrix3d& g, int margin) const;
 
   std::shared_ptr<const image::Lens> lens_;
@@ -39,6 +43,7 @@ class StartCheck {
   image::ChannelWeights weights_ = image::kLuma;
   double step_ = 1.0;  // px of the reference per px of the compared patch
   cv::Size size_;      // px, of the compared patch
+  int margin_ = 0;     // px of the compared patch, kReach
   cv::Mat1f reference_;
 };
 

@@ -119,6 +119,12 @@ class VideoPlayer : public testing::Test {
   }
   std::string log() const { return folder_.file("player.log"); }
   ros::Time stamp(std::size_t k) const { return images_->all[k]->header.stamp; }
+  static bool control(const std::string& command, double position = 0.0) {
+    ControlPlayback call;
+    call.request.command = command;
+    call.request.position = position;
+    return ros::service::call("player/control", call) && call.response.success;
+  }
 
   test_support::TemporaryFolder folder_;
   ros::NodeHandle node_;
@@ -177,6 +183,32 @@ TEST_F(VideoPlayer, TimeJumpsBackAtALoopUnlessItIsToGoOn) {
     player_->kill(SIGINT);
     player_->exitStatus(5.0);
   }
+}
+
+// Where playback was paused on the way, too: the stamps go on behind the last image.
+TEST_F(VideoPlayer, TimeGoesOnAtALoopAfterAPauseToo) {
+  parameters_["loop"] = true;
+  parameters_["restart_time"] = false;
+  parameters_["fps"] = 100.0;
+  start(folder());
+  ASSERT_NO_FATAL_FAILURE(listen());
+  ASSERT_TRUE(spinUntil([this] { return !images_->all.empty(); }));
+  control("PAUSE");
+  const auto number = [this] { return numberOf(*images_->all.back()); };
+  std::size_t on_the_way = 0;
+  do {
+    on_the_way = images_->all.size();
+  } while (spinUntil([&] { return images_->all.size() > on_the_way; }, 0.2));
+  for (int k = 0; k < 2 * kImages && number() != 3; ++k) {
+    const std::size_t before = images_->all.size();
+    control("STEP");
+    ASSERT_TRUE(spinUntil([&] { return images_->all.size() > before; }));
+  }
+  ASSERT_EQ(number(), 3);
+  const std::size_t paused = images_->all.size();
+  control("PLAY");
+  ASSERT_TRUE(spinUntil([&] { return images_->all.size() > paused + kImages; }));
+  for (std::size_t k = 1; k < images_->all.size(); ++k) EXPECT_NEAR((stamp(k) - stamp(k - 1)).toSec(), 0.01, 1e-8) << k;
 }
 
 TEST_F(VideoPlayer, InLockstepWaitsForTheTracker) {
@@ -249,12 +281,6 @@ TEST_F(VideoPlayer, HoldsItsFirstImageUntilARegionIsSelectedAndGoesOnAsItIsTold)
   EXPECT_NEAR(states.all.back()->duration, kImages / 50.0, 1e-9);
   EXPECT_NEAR(states.all.back()->period, 0.04, 1e-9) << "in real time";
 
-  const auto control = [&](const std::string& command, double position = 0.0) {
-    ControlPlayback call;
-    call.request.command = command;
-    call.request.position = position;
-    return ros::service::call("player/control", call) && call.response.success;
-  };
   EXPECT_FALSE(control("PLAY")) << "it has ended";
   EXPECT_TRUE(control("SEEK", 2.0 / 50.0));
   EXPECT_TRUE(spinUntil([&] { return state() == PlaybackState::PAUSED && number() == 2; })) << number();
@@ -283,11 +309,6 @@ TEST_F(VideoPlayer, SaysOnItsStateWhatCannotBeReadAndTriesAgain) {
   };
   ASSERT_TRUE(is(PlaybackState::FAILED)) << contents(log());
   EXPECT_NE(states.all.back()->reason.find("cut.bag' breaks off"), std::string::npos) << states.all.back()->reason;
-  const auto control = [&](const std::string& command) {
-    ControlPlayback call;
-    call.request.command = command;
-    return ros::service::call("player/control", call) && call.response.success;
-  };
   EXPECT_FALSE(control("PLAY"));
   const std::size_t before = states.all.size();
   EXPECT_TRUE(control("AGAIN"));

@@ -195,7 +195,11 @@ TEST_F(TrackerNodelet, TellsTheClientWhatIsWrongWithTheImages) {
 TEST_F(TrackerNodelet, RefusesAnOddSizeAndForgetsTheRoiWhenItLasts) {
   ASSERT_TRUE(selectWhileRunning(image_, kRoi).success);
   const cv::Mat other = test_support::texture(cv::Size(160, 120));
-  left().send(other, nextStamp());
+  const ros::Time stamp = nextStamp();
+  left().send(other, stamp);
+  const TaskErrorConstPtr error = left().task_errors.waitFor(stamp);
+  ASSERT_TRUE(error) << "the scope goes on by the image before";
+  EXPECT_FALSE(error->valid);
   EXPECT_EQ(left().track(image_, nextStamp())->state, Homography::TRACKING);
   for (int k = 0; k < 2; ++k) left().send(other, nextStamp());
   const HomographyConstPtr homography = trackUntilAnswered(left(), other);

@@ -21,6 +21,9 @@ constexpr double kCalm = 0.6;      // s of rest that are taken for standing: lon
 constexpr double kLongCalm = 2.0;  // s, the same where a fault grows: the scope may rest before it shows
 constexpr double kWatched = 4.0;   // s; nothing that stops the arm takes so long
 constexpr double kGoingOn = 1.5;   // s, for which one that may go on is watched
+// degrees/s and mm/s, of the arm at limits/velocity.
+constexpr double kFastest = 5.8;
+constexpr double kFastestInsertion = 20.0;
 
 struct Case {
   const FaultRow* row;
@@ -192,8 +195,10 @@ void tryPair(FaultCart& cart, unsigned seed) {
   print(both, situation, reaction);
   if (!stops && rows[1]->outcome != Outcome::kStands) return;
   EXPECT_LT(reaction.stood, kWatched - kCalm) << "it goes on";
-  EXPECT_LE(reaction.travel.degrees, std::max(rows[0]->degrees, rows[1]->degrees));
-  EXPECT_LE(reaction.travel.millimetres, std::max(rows[0]->millimetres, rows[1]->millimetres));
+  const double later = rows[0]->later + rows[1]->later;
+  EXPECT_LE(reaction.travel.degrees, std::max(rows[0]->degrees, rows[1]->degrees) + later * kFastest);
+  EXPECT_LE(reaction.travel.millimetres,
+            std::max(rows[0]->millimetres, rows[1]->millimetres) + later * kFastestInsertion);
 }
 
 TEST(CartFaultPairs, AreNoWorse) {

@@ -1,5 +1,6 @@
 #include "delivery_faults.h"
 
+#include <cmath>
 #include <deque>
 #include <functional>
 #include <memory>
@@ -93,6 +94,52 @@ ImageRelay::Fault repeatedEvery(int period) {
     Image out = image;
     if (++*count % period == 0) out.data = before->data;
     *before = image;
+    publish(out);
+  };
+}
+
+ImageRelay::Fault only(int period) {
+  const auto count = std::make_shared<int>(0);
+  return [=](const Image& image, const Publish& publish) {
+    if (++*count % period == 0) publish(image);
+  };
+}
+
+ImageRelay::Fault laterAndLater(double rate) {
+  const auto waiting = std::make_shared<std::deque<Image>>();
+  const auto first = std::make_shared<ros::Time>();
+  return [=](const Image& image, const Publish& publish) {
+    if (first->isZero()) *first = image.header.stamp;
+    waiting->push_back(image);
+    const ros::Duration late = (image.header.stamp - *first) * rate;
+    while (!waiting->empty() && image.header.stamp - waiting->front().header.stamp >= late) {
+      publish(waiting->front());
+      waiting->pop_front();
+    }
+  };
+}
+
+ImageRelay::Fault oldBetween(std::size_t pictures) {
+  const auto kept = std::make_shared<std::deque<Image>>();
+  const auto count = std::make_shared<int>(0);
+  return [=](const Image& image, const Publish& publish) {
+    kept->push_back(image);
+    if (kept->size() > pictures + 1) kept->pop_front();
+    Image out = ++*count % 2 == 0 ? kept->front() : image;
+    out.header = image.header;
+    publish(out);
+  };
+}
+
+ImageRelay::Fault stuttering(double share) {
+  const auto standing = std::make_shared<Image>();
+  const auto first = std::make_shared<ros::Time>();
+  return [=](const Image& image, const Publish& publish) {
+    if (first->isZero()) *first = image.header.stamp;
+    const double second = std::fmod((image.header.stamp - *first).toSec(), 1.0);
+    if (second >= share || standing->data.empty()) *standing = image;
+    Image out = *standing;
+    out.header = image.header;
     publish(out);
   };
 }

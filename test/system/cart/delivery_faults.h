@@ -17,6 +17,14 @@ ImageRelay::Fault inBursts(std::size_t count);
 ImageRelay::Fault doubled();
 // Every `period`-th picture is the one before it.
 ImageRelay::Fault repeatedEvery(int period);
+// One of `period` comes.
+ImageRelay::Fault only(int period);
+// Ever later: by `rate` times what has passed since the first one, with the stamps of the exposure.
+ImageRelay::Fault laterAndLater(double rate);
+// Every second picture is the one of `pictures` before, as of a buffer that a driver forgets to give back.
+ImageRelay::Fault oldBetween(std::size_t pictures);
+// In each second the pictures stand for a while, `share` of it, and their stamps go on.
+ImageRelay::Fault stuttering(double share);
 // In one of `period` a block of bytes got lost: what follows moves up, also within the line.
 ImageRelay::Fault blockLost(int period);
 // mono8, from one picture to the next.

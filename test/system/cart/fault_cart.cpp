@@ -60,6 +60,7 @@ FaultCart::FaultCart() {
   bench.master_ = "/controller";
   bench.startNode();
   relay = std::make_unique<ImageRelay>("image_raw", "relayed/image_raw");
+  info_relay = std::make_unique<CameraInfoRelay>("camera_info", "relayed/camera_info");
   subscribers_ = {
       node_.subscribe<ControllerState>("controller/state", 10, [this](const auto& message) { state_ = *message; }),
       node_.subscribe<Homography>("tracker/homography", 10, [this](const auto& message) { homography_ = *message; })};
@@ -89,11 +90,12 @@ void FaultCart::startController() {
 }
 
 std::vector<std::string> FaultCart::trackerArguments() {
-  return {"__name:=tracker", "image:=relayed/image_raw"};
+  return {"__name:=tracker", "image:=relayed/image_raw", "camera_info:=relayed/camera_info"};
 }
 
 std::vector<std::string> FaultCart::controllerArguments() {
   return {"__name:=controller",
+          "camera_info:=relayed/camera_info",
           "task_error:=tracker/task_error",
           "operating_state:=aesop/operating_state",
           "measured_cv:=aesop/measured_cv",
@@ -155,6 +157,7 @@ std::string FaultCart::stand() {
   operating.push(0.0);
   operating.press(false);
   relay->end();
+  info_relay->end();
   bench.truth().request("forget");
   bench.truth().fault("none");
   if (!ros::service::waitForService("controller/engage", 10000)) return "the controller does not start";

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "camera_info_relay.h"
 #include "feature_task.h"
 #include "image_relay.h"
 #include "laparoscope_servo/ControllerState.h"
@@ -79,6 +80,7 @@ class FaultCart {
   AesopBench bench{false};
   Operator operating;
   std::unique_ptr<ImageRelay> relay;
+  std::unique_ptr<CameraInfoRelay> info_relay;
   std::unique_ptr<ChildProcess> camera, tracker, controller;
 
  private:

@@ -1,5 +1,7 @@
 #include "fault_table.h"
 
+#include <cmath>
+
 #include "fault_rows.h"
 #include "reported_faults.h"
 
@@ -91,7 +93,7 @@ std::vector<FaultRow> ofInputs() {
       stranger("measured velocity: another's", 0, kServo, Outcome::kEither, kDoubted, "aesop/measured_cv", "measured",
                50.0),
       alsoInOtherTasks(stranger("camera_info: another's, of twice the focal length", 0, kServo, Outcome::kGoesOn, "",
-                                "camera_info", "intrinsics", 25.0)),
+                                "relayed/camera_info", "intrinsics", 25.0)),
       byFeatures(Situation::kFollow, "motion/features", "object_elsewhere"),
       byFeatures(Situation::kPoints, "points/features", "points_elsewhere"),
       byFeatures(Situation::kPosition, "tracker/homography", "homography_elsewhere"),
@@ -100,6 +102,38 @@ std::vector<FaultRow> ofInputs() {
       silentByFeatures(Situation::kPosition, "tracker/homography", "homography_elsewhere"),
       stranger("images: another's", kServo, kServo | kHold, Outcome::kEither, kDoubted, "relayed/image_raw", "grey",
                25.0),
+  };
+}
+
+// Of the camera itself, whose images stay what they are.
+FaultRow cameraInfo(const std::string& name, unsigned usually, const std::function<CameraInfoRelay::Fault()>& fault) {
+  return other("camera_info: " + name, usually, kServo | kOtherTasks, Outcome::kStands, kLost,
+               [fault](FaultCart& cart) { cart.info_relay->begin(fault()); });
+}
+
+std::vector<FaultRow> ofCameraInfo() {
+  const auto changed = [](const std::function<void(sensor_msgs::CameraInfo&)>& change) {
+    return [change] {
+      return [change](sensor_msgs::CameraInfo info) {
+        change(info);
+        return info;
+      };
+    };
+  };
+  FaultRow alternating =
+      cameraInfo("of twice the focal length, every second one", 0, [] { return onEverySecond(withFocalLength(2.0)); });
+  alternating.outcome = Outcome::kEither;  // it goes on by those that are true
+  return {
+      cameraInfo("of twice the focal length", kServo, [] { return withFocalLength(2.0); }),
+      alternating,
+      cameraInfo("its principal point jumps by 40 px", 0, [] { return withPrincipalPoint(40.0, 0.0); }),
+      cameraInfo("of images of half the size", 0, changed([](sensor_msgs::CameraInfo& info) {
+                   info.width /= 2;
+                   info.height /= 2;
+                 })),
+      cameraInfo("not a number", 0, [] { return withFocalLength(std::nan("")); }),
+      other("camera_info: no more", 0, kServo | kOtherTasks, Outcome::kGoesOn, "",
+            [](FaultCart& cart) { cart.info_relay->cut(); }),
   };
 }
 
@@ -173,6 +207,8 @@ std::vector<FaultRow> ofFrames() {
       row("another's camera, not a number", 0, "tip_nan"),
       row("another's shaft, 50 mm off", kServo, "shaft_off"),
       row("another's insertion point", kServo, "trocar_off"),
+      stranger("tf_static: another's shaft, 50 mm off", 0, kServo | kHold, Outcome::kEither, kDoubted, "/tf_static",
+               "shaft_off", 50.0),
   };
 }
 
@@ -180,7 +216,7 @@ std::vector<FaultRow> ofFrames() {
 
 const std::vector<FaultRow>& faultTable() {
   static const std::vector<FaultRow> table =
-      joined({&ofImages, &ofInputs, &ofRobot, &ofFrames, &ofProcesses, &reportedFaults});
+      joined({&ofImages, &ofInputs, &ofCameraInfo, &ofRobot, &ofFrames, &ofProcesses, &reportedFaults});
   return table;
 }
 

@@ -29,6 +29,7 @@ struct FaultRow {
   double degrees = 3.0;        // allowed after the fault
   double millimetres = 5.0;
   bool bounded = false;  // also where it goes on to its task
+  double later = 0.0;    // s, by which the arm does everything later: nothing stops it sooner
 };
 
 const std::vector<FaultRow>& faultTable();

@@ -63,7 +63,7 @@ const FeatureTask kParallelTask{"PARALLEL", "motion", "DominantMotion", wholeVie
 
 std::vector<std::string> FeatureTask::arguments() const {
   return {"standalone", std::string("laparoscope_servo/") + nodelet, std::string("__name:=") + node,
-          "image:=relayed/image_raw"};
+          "image:=relayed/image_raw", "camera_info:=relayed/camera_info"};
 }
 
 void keepPicture(const cv::Mat& picture, const std::string& file) {

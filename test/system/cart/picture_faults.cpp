@@ -24,6 +24,59 @@ void warp(cv::Mat& image, const cv::Matx23d& to) {
 
 }  // namespace
 
+ImageRelay::Fault frozenWithNoise(double noise) {
+  const auto first = std::make_shared<cv::Mat>();
+  const auto random = std::make_shared<cv::RNG>(17);
+  return changed([=](cv::Mat& mat) {
+    if (first->empty()) *first = mat.clone();
+    cv::Mat added(mat.size(), CV_16SC3);
+    random->fill(added, cv::RNG::NORMAL, 0.0, noise);
+    cv::add(*first, added, mat, cv::noArray(), CV_8U);
+  });
+}
+
+ImageRelay::Fault everySecond(const std::function<void(cv::Mat&)>& change) {
+  const auto count = std::make_shared<int>(0);
+  return changed([=](cv::Mat& mat) {
+    if (++*count % 2 == 0) change(mat);
+  });
+}
+
+void shift(cv::Mat& image, int right, int down) {
+  warp(image, {1.0, 0.0, static_cast<double>(right), 0.0, 1.0, static_cast<double>(down)});
+}
+
+ImageRelay::Fault trembling(int most) {
+  const auto random = std::make_shared<cv::RNG>(19);
+  return changed([=](cv::Mat& mat) {
+    const int right = random->uniform(-most, most + 1);
+    shift(mat, right, random->uniform(-most, most + 1));
+  });
+}
+
+ImageRelay::Fault white() {
+  return changed([](cv::Mat& mat) { mat.setTo(cv::Scalar::all(255)); });
+}
+
+ImageRelay::Fault inSmoke(double contrast) {
+  return changed([contrast](cv::Mat& mat) { mat.convertTo(mat, -1, contrast, 170.0 * (1.0 - contrast)); });
+}
+
+ImageRelay::Fault outOfFocus(double sigma) {
+  return changed([sigma](cv::Mat& mat) { cv::GaussianBlur(mat.clone(), mat, cv::Size(), sigma); });
+}
+
+ImageRelay::Fault inAWindow() {
+  const auto first = std::make_shared<cv::Mat>();
+  return changed([first](cv::Mat& mat) {
+    if (first->empty()) *first = mat.clone();
+    cv::Mat small;
+    cv::resize(mat, small, mat.size() / 2, 0, 0, cv::INTER_AREA);
+    first->copyTo(mat);
+    small.copyTo(mat(cv::Rect(mat.cols / 4, mat.rows / 4, small.cols, small.rows)));
+  });
+}
+
 ImageRelay::Fault torn() {
   const auto before = std::make_shared<cv::Mat>();
   const auto random = std::make_shared<cv::RNG>(11);

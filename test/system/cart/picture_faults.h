@@ -2,10 +2,26 @@
 // with the call.
 #pragma once
 
+#include <functional>
+
 #include "image_relay.h"
 
 namespace laparoscope_servo::test::image_faults {
 
+// One picture, with the noise of a grabber that digitises it anew each time, standard deviation in grey levels.
+ImageRelay::Fault frozenWithNoise(double noise);
+// Every second picture is changed: two sources that take turns.
+ImageRelay::Fault everySecond(const std::function<void(cv::Mat&)>& change);
+void shift(cv::Mat& image, int right, int down);
+// Each is somewhere else, by up to so many pixels.
+ImageRelay::Fault trembling(int most);
+ImageRelay::Fault white();
+// Of this contrast, on light grey.
+ImageRelay::Fault inSmoke(double contrast);
+// Blurred, standard deviation in pixels.
+ImageRelay::Fault outOfFocus(double sigma);
+// Half as large, in the middle of a still one.
+ImageRelay::Fault inAWindow();
 // Below a line, which is another one in each picture, it is the one before.
 ImageRelay::Fault torn();
 // Every second line is that of the picture before.

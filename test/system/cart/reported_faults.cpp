@@ -43,6 +43,11 @@ std::vector<FaultRow> ofDelivery() {
       either("of a buffer that fills", 8.0, [] { return filling(0.8); }),
       either("in bursts of five", 3.0, [] { return inBursts(5); }),
       either("each twice", 3.0, doubled),
+      either("1 in 2 repeats the one before", 4.0, [] { return repeatedEvery(2); }),
+      either("1 in 2 is ten pictures old", 4.0, [] { return oldBetween(10); }),
+      either("stand for 0.4 s in each second", 6.0, [] { return stuttering(0.4); }),
+      either("later and later, by 0.2 s in a second", 6.0, [] { return laterAndLater(0.2); }),
+      either("11 in 12 dropped", 6.0, [] { return only(12); }),
       image("1 in 25 repeats the one before", 0, Outcome::kGoesOn, "", [] { return repeatedEvery(25); }),
       either("1 in 3 with a block of bytes lost", 3.0, [] { return blockLost(3); }),  // tiscamera#139
       either("stamped 0.2 s ago", 8.0, [] { return stamped(-0.2); }),
@@ -59,6 +64,21 @@ std::vector<FaultRow> ofDelivery() {
 std::vector<FaultRow> ofPictures() {
   using namespace image_faults;
   return {
+      image("frozen, digitised anew each time", kServo, Outcome::kStands, kDoubted,
+            [] { return frozenWithNoise(2.0); }),
+      either("of two eyes in turn", 4.0, [] { return everySecond([](cv::Mat& mat) { shift(mat, 24, 0); }); }),
+      either("1 in 2 mirrored left to right", 4.0,
+             [] { return everySecond([](cv::Mat& mat) { cv::flip(mat.clone(), mat, 1); }); }),
+      either("1 in 2 of another camera", 4.0, [] { return otherScene(2); }),
+      either("trembling by 6 px", 6.0, [] { return trembling(6); }),
+      either("squeezed to three quarters of the height", 4.0,
+             [] {
+               return warped({1.0, 0.0, 0.0, 0.0, 0.75, 60.0});
+             }),
+      either("half as large, in a window", 4.0, inAWindow),
+      image("white", 0, Outcome::kStands, kLost, white),
+      either("in smoke", 4.0, [] { return inSmoke(0.2); }),
+      either("out of focus", 4.0, [] { return outOfFocus(6.0); }),
       either("torn", 3.0, torn),  // jvdillon/p3-ir-camera#5, morefigs/pymba#90
       either("interlaced", 3.0, interlaced),
       upTo(22.0, 9.0, either("running through, down by 2 px", 8.0, [] { return runningThrough(0, 2); })),

@@ -21,6 +21,18 @@ FaultRow arm(const std::string& name, Outcome outcome, const std::string& fault,
                  seconds);
 }
 
+// While it goes at one speed nothing shows that it is later; what stops it then takes so much longer.
+FaultRow later(double seconds, FaultRow row) {
+  row.later = seconds;
+  return row;
+}
+
+// A joint goes faster than the scope that it turns.
+FaultRow upTo(double degrees, FaultRow row) {
+  row.degrees = degrees;
+  return row;
+}
+
 std::vector<FaultRow> ofArm() {
   const Outcome either = Outcome::kEither, stands = Outcome::kStands;
   return {
@@ -39,7 +51,10 @@ std::vector<FaultRow> ofArm() {
       arm("twice as fast as it is told", either, "gain 2"),
       arm("a third as fast as it is told", either, "gain 0.33"),
       arm("the other way than it is told", stands, "gain -1", 0.0, kAll),
-      arm("0.3 s later than it was", either, "lag 0.3", 8.0),
+      arm("joint 1 the other way than it is told", either, "reversed 1"),
+      upTo(5.0, arm("joint 2 the other way than it is told", stands, "reversed 2", 0.0)),
+      arm("joint 7 the other way than it is told", either, "reversed 7"),
+      later(0.3, arm("0.3 s later than it was", either, "lag 0.3", 8.0)),
       arm("its controller restarts", stands, "reboot", 0.0, kAll),
       arm("1 in 50 bytes damaged", either, "corrupt 0.02"),
       arm("1 in 50 bytes lost", either, "drop 0.02"),

@@ -12,6 +12,8 @@
 
 namespace laparoscope_servo::test_support {
 
+const QSize kOriginal(1280, 720);  // px, of the nodes' images
+
 class ScreenWindow : public ScreenFixture {
  protected:
   void SetUp() override {
@@ -28,6 +30,15 @@ class ScreenWindow : public ScreenFixture {
     other->show();
     waitFor([&] { return other->windowHandle()->isExposed(); });
     return other;
+  }
+  // Draws until the screen asks for the region: a busy machine makes the picture old for a moment, and then nothing can
+  // be drawn.
+  bool draws(const QRect& region) {
+    const QPointF from = region.topLeft();
+    return waitFor([&] {
+      drag(onDisplay(kOriginal, from), onDisplay(kOriginal, from + QPointF(region.width(), region.height())));
+      return waitFor([this] { return !nodes_.regions().empty(); }, 5.0);
+    });
   }
   bool deadManIs(bool held) {
     return waitFor([&] { return !nodes_.deadMan().empty() && nodes_.deadMan().back() == held; });

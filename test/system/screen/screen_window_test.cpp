@@ -1,10 +1,13 @@
 // The screen's window, with real events of an X server, against nodes that say what the test wants.
 #include <diagnostic_msgs/DiagnosticArray.h>
 
+#include <QStyleOptionButton>
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <set>
 
+#include "screen/task_words.h"
 #include "system/aesop/child_process.h"
 #include "system/screen/display_text.h"
 #include "system/screen/screen_window_fixture.h"
@@ -13,11 +16,10 @@ namespace laparoscope_servo {
 namespace {
 
 using test_support::hands;
+using test_support::kOriginal;
 using test_support::moveTo;
 using test_support::ScreenWindow;
 using test_support::waitFor;
-
-const QSize kOriginal(1280, 720);
 
 TEST_F(ScreenWindow, ARegionIsDrawnWithinOnePixelOfTheScreenAtAnySize) {
   const QRect wanted(310, 170, 403, 287);
@@ -27,8 +29,7 @@ TEST_F(ScreenWindow, ARegionIsDrawnWithinOnePixelOfTheScreenAtAnySize) {
     ASSERT_TRUE(waitFor([&] { return screen_->size() == size && isColoured(); }));
     nodes_.forget();
     hands(moveTo(onDisplay(kOriginal, {100, 100})) + "click 1 click --repeat 2 1");
-    drag(onDisplay(kOriginal, wanted.topLeft()), onDisplay(kOriginal, wanted.topLeft() + QPoint(403, 287)));
-    ASSERT_TRUE(waitFor([this] { return !nodes_.regions().empty(); }));
+    ASSERT_TRUE(draws(wanted));
     ASSERT_EQ(nodes_.regions().size(), 1u) << "clicks draw nothing";
     const sensor_msgs::RegionOfInterest region = nodes_.regions()[0];
     const double pixel = std::max(1.0, pixelOfDisplay(kOriginal));
@@ -37,6 +38,42 @@ TEST_F(ScreenWindow, ARegionIsDrawnWithinOnePixelOfTheScreenAtAnySize) {
     EXPECT_LE(std::abs(static_cast<double>(region.x_offset + region.width) - (wanted.x() + 403)), pixel);
     EXPECT_LE(std::abs(static_cast<double>(region.y_offset + region.height) - (wanted.y() + 287)), pixel);
   }
+}
+
+// The room that its style leaves the text of a button, less what the text needs: negative where it is cut.
+QSize roomLeft(const QPushButton& button) {
+  QStyleOptionButton option;
+  option.initFrom(&button);
+  option.text = button.text();
+  const QRect contents = button.style()->subElementRect(QStyle::SE_PushButtonContents, &option, &button);
+  const QFontMetrics font = button.fontMetrics();
+  return {contents.width() - font.size(Qt::TextShowMnemonic, button.text()).width(), contents.height() - font.height()};
+}
+
+TEST_F(ScreenWindow, NoNameOfAButtonIsCutAtAnySize) {
+  nodes_.change([](TrackerState&, ControllerState& controller, OperatingState&) { controller.task = "STABILISE"; });
+  ASSERT_TRUE(waitFor([this] { return find<QPushButton>("keep_this_view").isVisible(); })) << "one more button";
+  auto& tabs = find<QTabWidget>("tabs");
+  for (const QSize& size : {QSize(1280, 800), QSize(1024, 768), QSize(1500, 760)}) {
+    show(size);
+    ASSERT_TRUE(waitFor([&] { return screen_->size() == size; }));
+    std::set<QString> seen;
+    for (int page = 0; page < tabs.count(); ++page) {
+      tabs.setCurrentIndex(page);
+      QCoreApplication::processEvents();
+      for (const QPushButton* button : screen_->findChildren<QPushButton*>()) {
+        if (!button->isVisible() || button->text().isEmpty()) continue;
+        seen.insert(button->text());
+        const QSize room = roomLeft(*button);
+        EXPECT_GE(room.width(), 0) << button->text().toStdString() << " at a width of " << size.width();
+        EXPECT_GE(room.height(), 0) << button->text().toStdString() << " at a height of " << size.height();
+      }
+    }
+    for (const screen::TaskWords& words : screen::taskWords()) {
+      EXPECT_EQ(seen.count(QString::fromStdString(words.name)), 1u) << words.name;
+    }
+  }
+  tabs.setCurrentIndex(0);
 }
 
 TEST_F(ScreenWindow, TheBandsSayWhatTheNodesSay) {
@@ -83,8 +120,7 @@ TEST_F(ScreenWindow, ARegionIsJudgedWhileItIsDrawnAndNothingIsSelectedByIt) {
 }
 
 TEST_F(ScreenWindow, ARegionThatTheTrackerOffersIsTakenByAClickInIt) {
-  drag(onDisplay(kOriginal, {300, 200}), onDisplay(kOriginal, {360, 400}));
-  ASSERT_TRUE(waitFor([this] { return nodes_.regions().size() == 1; }));
+  ASSERT_TRUE(draws({300, 200, 60, 200}));
   // To another place each time, for Qt tells of no other move.
   auto isOffered = [this, aside = 0]() mutable {
     aside = 4 - aside;

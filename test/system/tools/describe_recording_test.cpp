@@ -75,6 +75,16 @@ TEST_F(DescribeRecording, WritesThePictureWithTheRegion) {
   EXPECT_EQ(describe("--picture " + out_.file("no/such/folder.png")).status, 1);
 }
 
+TEST_F(DescribeRecording, PrintsTheScenesBetweenCutsWhenItIsAskedFor) {
+  for (int k = 4; k < 12; ++k)
+    cv::imwrite(images_.file(std::to_string(k) + ".png"), test_support::texture(cv::Size(160, 120), 2));
+  const auto told = describe("--cuts");
+  ASSERT_EQ(told.status, 0) << told.text;
+  for (const char* fact : {"\"start\": 0,", "\"end\": 0.14", "\"start\": 0.14"})
+    EXPECT_NE(told.text.find(fact), std::string::npos) << fact << " in " << told.text;
+  EXPECT_EQ(describe().text.find("scenes"), std::string::npos);
+}
+
 TEST_F(DescribeRecording, NamesWhatCannotBeRead) {
   std::ofstream(out_.file("noise.mp4")) << "no video";
   const auto told = test_support::outputOf(DESCRIBE_RECORDING " " + out_.file("noise.mp4"));

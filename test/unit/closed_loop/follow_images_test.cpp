@@ -5,10 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 
-#include "laparoscope_servo/motion/dominant_motion.h"
-#include "laparoscope_servo/servo/place_error.h"
-#include "support/simulated_cart.h"
+#include "support/image_loop.h"
 #include "support/synthetic_motion.h"
 
 namespace laparoscope_servo {
@@ -49,8 +48,8 @@ class Following {
     return (geometry::apply(truth(), middle()) - kCamera.matrix().topRightCorner<2, 1>()).norm();
   }
   // px, of where the object is seen from where it is.
-  double measuringError() const { return (seen_ - geometry::apply(truth(), middle())).norm(); }
-  double share() const { return motion_.result().share; }
+  double measuringError() const { return (eye_->place() - geometry::apply(truth(), middle())).norm(); }
+  double share() const { return eye_->motion().share; }
   SimulatedCart& cart() { return cart_; }
 
  private:
@@ -89,35 +88,18 @@ class Following {
   }
 
   void see(const cv::Mat& image) {
-    if (!object_.image_time) {
-      motion_.begin(image, cart_.time(), regionAt(middle()));
-      const geometry::Rectangle region = regionAt(middle());
-      seen_ = region.centre();
-      object_.visible_fraction = 1.0;
-    } else {
-      const motion::MotionResult& result = motion_.track(image, cart_.time());
-      ASSERT_EQ(result.state, features::State::kTracking) << cart_.time() << ": " << reasonText(result.reason);
-      variance_ += result.expected_error * result.expected_error;
-      seen_.setZero();
-      for (const Eigen::Vector2d& corner : result.region) seen_ += 0.25 * corner;
-      object_.visible_fraction = result.share;
-    }
-    object_.problem.clear();
-    object_.valid = true;
+    if (!eye_) eye_.emplace(kCamera, regionAt(middle()));
+    object_ = eye_->see(image, cart_.time());
+    ASSERT_EQ(object_.problem, "") << cart_.time();
     object_.region = 1.0;
     object_.image_time = cart_.time();
-    object_.corner_error = std::sqrt(variance_);
-    const Eigen::Vector3d place = kCamera.inverseMatrix() * seen_.homogeneous();
-    object_.error = servo::placeError(place.head<2>(), {0.0, 0.0});
   }
 
   cv::Mat scene_ = test::tissue({test::kMotionWidth + 2 * kMargin, test::kMotionHeight + 2 * kMargin}, 12);
   cv::Mat object_texture_ = test::tissue(kObject, 31), crossing_texture_ = test::tissue(kCrossing, 32);
   cv::RNG random_{7};
   SimulatedCart cart_;
-  motion::DominantMotion motion_;
-  Eigen::Vector2d seen_ = Eigen::Vector2d::Zero();
-  double variance_ = 0.0;  // px^2
+  std::optional<test::ObjectEye> eye_;
   servo::TaskErrorInput object_;
 };
 

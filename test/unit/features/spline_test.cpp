@@ -7,7 +7,6 @@
 #include <limits>
 #include <stdexcept>
 
-#include "features/spline_prior.h"
 #include "unit/features/curve_check.h"
 
 namespace laparoscope_servo::features {
@@ -228,33 +227,6 @@ TEST(Spline, refusesWhatIsNoCurve) {
   EXPECT_THROW(Spline::throughPoints(bean(), true, 49), std::invalid_argument);
   EXPECT_THROW(Spline({{0, 0}, {50, 0}, {50, 50}}, true), std::invalid_argument);
   EXPECT_THROW(Spline({{0, 0}, {50, 0}, {0, 1}, {50, 1}, {0, 2}, {50, 2}}, false), std::invalid_argument);
-}
-
-TEST(SplinePrior, similarityIsTheOneThatThePointsWereMovedBy) {
-  Spline::Points from, to;
-  Eigen::Matrix2d linear;
-  linear << 0.9, -0.3, 0.3, 0.9;
-  const Points points = bean();
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    from[k] = points[k];
-    to[k] = linear * points[k] + Eigen::Vector2d(3.0, -20.0);
-  }
-  const Similarity similarity(from, to, static_cast<int>(points.size()));
-  for (std::size_t k = 0; k < points.size(); ++k) EXPECT_LT((similarity(from[k]) - to[k]).norm(), 1e-9);
-  EXPECT_NEAR(similarity.scale(), std::hypot(0.9, 0.3), 1e-12);
-}
-
-TEST(SplinePrior, bendingIsStifferThanTheWhole) {
-  const Spline::Matrix closed = stiffness(12, true, {0.5, 2.0});
-  // All by the same: no bend. Every other one the other way: nothing but bend.
-  const Eigen::VectorXd all = Eigen::VectorXd::Ones(12);
-  Eigen::VectorXd zigzag(12);
-  for (int k = 0; k < 12; ++k) zigzag[k] = k % 2 == 0 ? 1.0 : -1.0;
-  EXPECT_NEAR(all.dot(closed * all), 12.0 / 4.0, 1e-9);
-  EXPECT_NEAR(zigzag.dot(closed * zigzag), 12.0 / 4.0 + 12.0 * 4.0 / 0.25, 1e-9);
-  const Spline::Matrix open = stiffness(12, false, {0.5, 2.0});
-  EXPECT_NEAR(zigzag.dot(open * zigzag), 12.0 / 4.0 + 10.0 * 4.0 / 0.25, 1e-9);
-  EXPECT_NEAR((inverse(open) * open - Spline::Matrix::Identity(12, 12)).norm(), 0.0, 1e-9);
 }
 
 TEST(Spline, aChangeThatIsNotFiniteIsNotTakenForASmallOne) {

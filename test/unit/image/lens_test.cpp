@@ -95,32 +95,6 @@ TEST(Lens, StraightensAsOpenCvUndistortsPoints) {
   }
 }
 
-TEST(Lens, TheLoopOverPixelsFindsTheSamePlaces) {
-  Eigen::Matrix3d g;
-  g << 1.1, 0.05, 60.0, -0.03, 0.95, 40.0, 1e-4, -5e-5, 1.0;
-  for (const LensParameters& p : models()) {
-    const Lens lens(p);
-    const RawWindow window{cv::Point(30, 20), 2.0};
-    const Eigen::Matrix3d rays = lens.raysFromRectified() * g;
-    double worst = 0.0;
-    for (int j = 0; j < 300; j += 13) {
-      const Eigen::Vector3d start = rays.col(1) * j + rays.col(2);
-      const ProjectiveRow row = {static_cast<float>(start[0]), static_cast<float>(rays(0, 0)),
-                                 static_cast<float>(start[1]), static_cast<float>(rays(1, 0)),
-                                 static_cast<float>(start[2]), static_cast<float>(rays(2, 0))};
-      float u[400], v[400];
-      locateRaw(lens.loop(window), row, 0, 400, u, v);
-      for (int i = 0; i < 400; ++i) {
-        const auto raw = lens.toRaw(geometry::apply(g, Eigen::Vector2d(i, j)));
-        ASSERT_TRUE(raw);
-        worst = std::max({worst, std::abs(window.scale * u[i] + window.origin.x - raw->x()),
-                          std::abs(window.scale * v[i] + window.origin.y - raw->y())});
-      }
-    }
-    EXPECT_LT(worst, 1e-3) << name(p);
-  }
-}
-
 TEST(Lens, NothingIsSeenWhereThePolynomialTurnsBack) {
   // r (1 - 0.5 r^2) grows up to r^2 = 2 / 3 only; a pixel farther out would be seen nearer to the centre again.
   LensParameters p;

@@ -24,8 +24,10 @@ constexpr double kDegree = M_PI / 180.0;
 constexpr double kMostAngle = 3.0 * kDegree;
 // Where a picture is wrong and something else interrupts what shows it.
 constexpr double kMostAngleOfPicture = 4.0 * kDegree;
-constexpr double kNearer = 0.6;            // of the region's offset, and it is no fault that the scope moved
-constexpr double kMostDistance = 0.005;    // m
+constexpr double kNearer = 0.6;          // of the region's offset, and it is no fault that the scope moved
+constexpr double kMostDistance = 0.005;  // m
+// rad/s and m/s, by which an arm that is later goes on meanwhile: limits/velocity and the dead zone.
+constexpr double kFastestTurn = 0.104, kFastestInsertion = 0.0204;
 constexpr double kArmDelay = 0.16 + 0.02;  // s, of the robot, and a step of the controller
 constexpr double kNoticed = 0.05;          // s, in which the controller has taken two steps
 
@@ -73,6 +75,7 @@ class PairRun {
     return all;
   }
   const ScopeTravel& worst() const { return worst_; }
+  double away() const { return away_; }  // rad
   const std::string& reason() const { return reason_; }
 
  private:
@@ -175,20 +178,36 @@ class PairRun {
       const ScopeTravel travel = cart_.travel(*from_);
       worst_.angle = std::max(worst_.angle, travel.angle);
       worst_.distance = std::max(worst_.distance, travel.distance);
-      const bool of_picture = faults_[0].of_picture || faults_[1].of_picture;
       // A mirror leaves a motion along its line as it is: the loop goes where it should, and shows nothing.
-      const bool nearer = of_picture && cart_.offset() < kNearer * from_offset_;
-      expect(nearer || travel.angle <= (of_picture ? kMostAngleOfPicture : kMostAngle), "it turns too far");
-      expect(travel.distance <= kMostDistance, "it goes too far");
+      const bool nearer = ofPicture() && cart_.offset() < kNearer * from_offset_;
+      expect(nearer || travel.angle <= mostAngle(), "it turns too far");
+      expect(travel.distance <= faster() * (kMostDistance + later() * kFastestInsertion), "it goes too far");
     }
+    watchAside();
     if (cart_.output.state == ControllerState::kServo) {
       moved_until_ = cart_.time();
     } else if (cart_.controller_stalls == 0) {
       reason_ = cart_.output.reason;
       expect(cart_.output.command.vector().isZero(0.0), "it commands a motion outside of SERVO");
-      expect(cart_.velocity().isZero(0.0) || cart_.time() - moved_until_ < kArmDelay, "it moves outside of SERVO");
+      expect(cart_.velocity().isZero(0.0) || cart_.time() - moved_until_ < kArmDelay + later(),
+             "it moves outside of SERVO");
     }
   }
+
+  // It may go on to the region in spite of a fault, but not away from it.
+  void watchAside() {
+    if (manual_) return;
+    nearest_ = std::min(nearest_, cart_.aside());
+    away_ = std::max(away_, cart_.aside() - nearest_);
+    expect(away_ <= mostAngle(), "it goes away from the region");
+  }
+
+  bool ofPicture() const { return faults_[0].of_picture || faults_[1].of_picture; }
+  double mostAngle() const {
+    return faster() * ((ofPicture() ? kMostAngleOfPicture : kMostAngle) + later() * kFastestTurn);
+  }
+  double later() const { return faults_[0].later + faults_[1].later; }
+  double faster() const { return faults_[0].faster * faults_[1].faster; }
 
   // What the page on what stops the arm says for the worst of them: disengage, release stick and switch, engage, press
   // the switch.
@@ -219,6 +238,8 @@ class PairRun {
   double alone_ = 0.0;                     // s, for which a fault that needs somebody lasted while the other did not
   std::optional<Eigen::Isometry3d> from_;  // where the scope was when it had to stop
   double from_offset_ = 0.0;               // px, there
+  double nearest_ = std::numeric_limits<double>::infinity();  // rad, of the shaft from its place, since the faults
+  double away_ = 0.0;                                         // rad, further than that, at most
   ScopeTravel worst_;
   std::string reason_;
 };
@@ -245,22 +266,26 @@ void runPairs(Task task) {
   const int first = setting("CART_FAULT_SEED", 1);
   const int count = setting("CART_FAULT_RUNS", 1000);
   ScopeTravel worst;
+  double away = 0.0;
   int stopped = 0;
   for (int seed = first; seed < first + count; ++seed) {
     PairRun run(static_cast<unsigned>(seed), task);
     const std::string failure = run.run();
     worst.angle = std::max(worst.angle, run.worst().angle);
     worst.distance = std::max(worst.distance, run.worst().distance);
+    away = std::max(away, run.away());
     stopped += run.reason().empty() ? 0 : 1;
     EXPECT_EQ(failure, "") << "seed " << seed << ": " << run.text();
     if (std::getenv("CART_FAULT_VERBOSE") != nullptr) {
       std::cout << "seed " << seed << ": " << run.worst().angle / kDegree << " deg, " << 1e3 * run.worst().distance
-                << " mm, '" << run.reason() << "'; " << run.text() << std::endl;
+                << " mm, away " << run.away() / kDegree << " deg, '" << run.reason() << "'; " << run.text()
+                << std::endl;
     }
   }
   std::cout << count << " pairs, " << stopped
             << " of them stopped the scope; the furthest after a fault that has to: " << worst.angle / kDegree
-            << " deg, " << 1e3 * worst.distance << " mm" << std::endl;
+            << " deg, " << 1e3 * worst.distance << " mm; away from the region: " << away / kDegree << " deg"
+            << std::endl;
 }
 
 TEST(FaultPairs, NoneMovesTheScopeFurtherThanItMayAndItGoesOnByTheSteps) {

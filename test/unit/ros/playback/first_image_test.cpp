@@ -44,6 +44,13 @@ TEST_F(FirstImageTest, ProposesARegionThatWouldBeTaken) {
   EXPECT_EQ(first.refusal(*proposal), "");
 }
 
+TEST_F(FirstImageTest, SuggestsASquareThatWouldBeTaken) {
+  const FirstImage first(options_);
+  const auto suggestion = first.suggestion();
+  ASSERT_TRUE(suggestion);
+  EXPECT_EQ(first.refusal(*suggestion), "");
+}
+
 TEST_F(FirstImageTest, ProposesNothingForARegionThatIsNone) {
   EXPECT_FALSE(FirstImage(options_).proposal({0, 0, 0, 0}));
 }

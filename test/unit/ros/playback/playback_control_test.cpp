@@ -39,6 +39,7 @@ TEST(PlaybackControl, PausesStepsAndPlaysOn) {
 TEST(PlaybackControl, WhatCannotBeReadIsTriedAgain) {
   PlaybackControl control;
   control.fail();  // it could not be opened
+  EXPECT_FALSE(control.hasBegun());
   EXPECT_STREQ(control.stateName(), "FAILED");
   EXPECT_FALSE(control.takeImage());
   for (const char* command : {"PLAY", "PAUSE", "STEP"})
@@ -47,6 +48,7 @@ TEST(PlaybackControl, WhatCannotBeReadIsTriedAgain) {
   EXPECT_EQ(control.takeSeek(), 0.0);
   control.begin(true);
   EXPECT_EQ(control.state(), State::kHolding) << "it has not begun before";
+  EXPECT_TRUE(control.hasBegun());
   EXPECT_TRUE(control.takeImage());
   EXPECT_FALSE(control.takeImage());
   EXPECT_EQ(control.command("PLAY", 0.0), "");

@@ -55,6 +55,37 @@ TEST(OpposedMotion, NamesTheAxisThatGoesTheWrongWayUntilItIsRestarted) {
   }
 }
 
+// Held again and again, as by a dead-man switch that bounces: no motion lasts, and they add up.
+TEST(OpposedMotion, MotionsThatAreInterruptedAddUp) {
+  Arm arm;
+  int held = 0;
+  for (; arm.watch.words().empty() && held < 20; ++held) {
+    arm.run({0.1, 0.0, 0.0, 0.0}, 0.1, -1.0);
+    arm.run(scope::Velocity(), 0.3, -1.0);
+  }
+  EXPECT_LE(held, 3);
+  // Where it moves as it is told in between, they do not.
+  Arm mended;
+  for (int k = 0; k < 20; ++k) {
+    mended.run({0.1, 0.0, 0.0, 0.0}, 0.1, -1.0);
+    mended.run(scope::Velocity(), 0.3, -1.0);
+    mended.run({0.1, 0.0, 0.0, 0.0}, 0.3, 1.0);
+    mended.run(scope::Velocity(), 0.3, 1.0);
+  }
+  EXPECT_EQ(mended.watch.words(), "");
+}
+
+TEST(OpposedMotion, AnArmThatIsHeldAndIsABitLateIsNotOpposed) {
+  for (const double delay : {0.1, 0.24}) {
+    Arm arm;
+    for (int k = 0; k < 40; ++k) {
+      arm.run({k % 2 == 0 ? 0.1 : -0.1, 0.0, 0.0, 0.0}, 0.1, 1.0, delay);
+      arm.run(scope::Velocity(), 0.06, 1.0, delay);
+    }
+    EXPECT_EQ(arm.watch.words(), "") << delay;
+  }
+}
+
 TEST(OpposedMotion, RestAndNoiseWithinTheDeadZoneAreNotOpposed) {
   Arm arm;
   arm.run({0.1, 0.1, 0.1, 0.01}, 2.0, 0.0);

@@ -57,6 +57,18 @@ TEST(Arm, aGainMultipliesTheSpeedAndALagAddsToTheDelay) {
   EXPECT_NEAR(a.velocity()[0], 0.01, 1e-6);
 }
 
+TEST(Arm, aReversedJointGoesTheOtherWayAndTheOthersDoNot) {
+  Arm a = arm();
+  a.reverse(1);
+  a.command({0.01, 0.02, 0.0, 0.0}, 0.0);
+  a.step(1.0);
+  EXPECT_NEAR(a.velocity()[0], 0.01, 1e-6);
+  EXPECT_NEAR(a.velocity()[1], -0.02, 1e-6);
+  a.reverse(-1);
+  a.step(1.5);
+  EXPECT_NEAR(a.velocity()[1], 0.02, 1e-6);
+}
+
 TEST(Arm, aLagThatEndsKeepsTheOrderOfCommands) {
   Arm a = arm();
   a.setLag(0.3);

@@ -26,7 +26,8 @@ class FaultsTest : public ::testing::Test {
 TEST_F(FaultsTest, eachBeginsAndEndsByItself) {
   const Fault all[] = {fault("drop", "0.1"),  fault("corrupt", "0.1"), fault("double", "0.1"), fault("delay", "0.1"),
                        fault("stall"),        fault("hangup"),         fault("bits", "1"),     fault("joint", "2"),
-                       fault("stalled", "2"), fault("gain", "2"),      fault("lag", "0.1"),    fault("lie", "frozen")};
+                       fault("stalled", "2"), fault("reversed", "2"),  fault("gain", "2"),     fault("lag", "0.1"),
+                       fault("lie", "frozen")};
   for (const Fault& one : all) EXPECT_EQ(faults_.begin(lasting(one, 1.0), 0.0), "") << one.name;
   const WireFaults& line = wire_.to_host.faults;
   EXPECT_EQ(line.drop + line.corrupt + line.duplicate + line.delay, 0.4);

@@ -87,6 +87,20 @@ TEST(ScopeCamera, TheMaskSaysWhatTheInstrumentCovers) {
   EXPECT_TRUE(camera.render(kStart, 0.08).instrument_mask.empty());
 }
 
+// The scene's width is that of any texture, which may be replaced.
+TEST(ScopeCamera, ShowsTheTextureThatItIsGiven) {
+  SceneConfig config = small();
+  config.camera.noise = 0.0;
+  config.exposure.automatic = false;
+  cv::Mat texture(300, 600, CV_8UC3, cv::Scalar(40, 80, 120));
+  ScopeCamera camera(config, texture, placeTissue(config.tissue, kStart));
+  EXPECT_EQ(camera.render(kStart, 0.0).image.at<cv::Vec3b>(120, 160), cv::Vec3b(40, 80, 120));
+  texture.setTo(cv::Scalar(90, 30, 60));
+  camera.setTexture(texture);
+  EXPECT_EQ(camera.render(kStart, 0.04).image.at<cv::Vec3b>(120, 160), cv::Vec3b(90, 30, 60));
+  EXPECT_THROW(camera.setTexture(cv::Mat()), std::invalid_argument);
+}
+
 TEST(ScopeCamera, RefusesAWrongConfigurationNamingEachError) {
   SceneConfig config = small();
   config.camera.rate = 0.0;

@@ -38,6 +38,7 @@ TEST(Doubt, NamesEachFlawByItself) {
   const std::vector<Flaw> flaws = {
       {"ill", "determine", [](Evidence& e) { e.esm.status = EsmStatus::kIllConditioned; }},
       {"out", "infinity", [](Evidence& e) { e.esm.status = EsmStatus::kOutOfView; }},
+      {"interrupted", "within the time", [](Evidence& e) { e.esm.status = EsmStatus::kInterrupted; }},
       {"moving", "moving",
        [](Evidence& e) {
          e.esm.status = EsmStatus::kMaxIterations;

@@ -66,6 +66,30 @@ TEST_F(RegionAlignerTest, LeavesOutWhatIsCovered) {
   EXPECT_EQ(cv::countNonZero(weights(cv::Rect(4, 4, 40, 100))), 0);
 }
 
+TEST_F(RegionAlignerTest, WhatIsInterruptedGoesOnAtItsLevelAndSaysNothingBefore) {
+  const Eigen::Matrix3d truth = test::randomHomography(kRoi, 5.0, rng_);
+  const cv::Mat image = test::view(scene_, truth, 1.0, 0.0, 1.0, 3);
+  RegionAligner aligner = alignerOn(scene_);
+  EsmState state;
+  AlignmentLimits limits;
+  limits.most_work = 0.5;
+  int parts = 0;
+  Alignment found;
+  do {
+    aligner.startAfresh();
+    found = aligner.align(image, state, nullptr, 32.0, limits);
+    state = found.esm.state;
+    limits.coarsest = found.esm.level;
+    if (found.esm.status == EsmStatus::kInterrupted) {
+      EXPECT_EQ(found.visible_fraction, 0.0);
+      EXPECT_EQ(found.blocks.seen, 0);
+    }
+  } while (found.esm.status == EsmStatus::kInterrupted && ++parts < 10);
+  EXPECT_GE(parts, 1);
+  EXPECT_LT(parts, 10);
+  EXPECT_LT(geometry::cornerDistance(state.g, truth, kRoi), 0.3);
+}
+
 TEST_F(RegionAlignerTest, DrawsWhatIsCoveredWhereTheImageShowsIt) {
   cv::Mat image = scene_.clone();
   image(cv::Rect(100, 80, 60, 110)).setTo(cv::Scalar(190, 190, 190));

@@ -3,6 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <vector>
 
 #include "laparoscope_servo/geometry/sl3.h"
 #include "support/contour_scene.h"
@@ -134,6 +138,42 @@ TEST_F(EdgeTermTest, SitesWhoseNeighboursDoNotAgreeLoseTheirSay) {
   EXPECT_GT(covered, 30);
   EXPECT_LT(believed, covered / 6);
   EXPECT_EQ(in_sight, 0);
+}
+
+// A cover over half of the contour, 4 px further in, whose edge looks like the contour's: in the images that follow it
+// does not pull any more before it is found to be a cover.
+TEST_F(EdgeTermTest, WhatIsCoveredHasNoSayUntilItsNeighboursAgreeAgain) {
+  const auto cover = [](cv::Mat1f& picture) {
+    std::vector<cv::Point> ring;
+    for (int k = 0; k <= 120; ++k) {
+      const double angle = M_PI * (k <= 60 ? k : 120 - k) / 60.0;
+      const Eigen::Vector2d arm = ContourScene::at(angle) - ContourScene::kCentre;
+      const Eigen::Vector2d p = ContourScene::kCentre + (k <= 60 ? 1.4 : 1.0 - 4.0 / arm.norm()) * arm;
+      ring.emplace_back(static_cast<int>(std::lround(p.x())), static_cast<int>(std::lround(p.y())));
+    }
+    cv::fillPoly(picture, std::vector<std::vector<cv::Point>>{ring}, cv::Scalar(85.0));
+  };
+  const Eigen::Matrix3d there = Eigen::Matrix3d::Identity();
+  const auto pullOf = [&](const cv::Mat& image) {
+    term_.look(image, there, 6.0, 200);
+    Matrix10d information = Matrix10d::Zero();
+    Vector10d score = Vector10d::Zero();
+    term_.add(there, 1.0, information, score);
+    return score.head<8>().norm() / information.topLeftCorner<8, 8>().trace();
+  };
+  const double in_sight = pullOf(scene_.image(0, 2)), at_first = pullOf(scene_.image(0, 3, cover));
+  EXPECT_GT(at_first, 5.0 * in_sight);
+  term_.gate(there);
+  EXPECT_LT(pullOf(scene_.image(0, 4, cover)), 0.3 * at_first);
+  EXPECT_FALSE(term_.gate(there)) << "nothing is newly covered";
+  pullOf(scene_.image(0, 5));
+  term_.gate(there);
+  EXPECT_LT(pullOf(scene_.image(0, 6)), 2.0 * in_sight);
+  term_.gate(there);
+  const auto agree = std::count_if(term_.findings().begin(), term_.findings().end(),
+                                   [](const auto& finding) { return finding.weight >= features::kAgreeWeight; });
+  EXPECT_GT(static_cast<double>(agree), 0.9 * static_cast<double>(term_.findings().size()))
+      << "all of it has a say again";
 }
 
 TEST_F(EdgeTermTest, SaysNothingWithoutEdges) {

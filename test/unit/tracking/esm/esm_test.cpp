@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "support/synthetic_tissue.h"
 
@@ -207,6 +208,35 @@ TEST_F(EsmTest, PredictsItsOwnError) {
   EXPECT_GT(std::sqrt(worst / predicted), 0.8);
   EXPECT_LT(std::sqrt(worst / predicted), 1.4);
   EXPECT_TRUE(std::isfinite(esm.referenceCornerError(2.0)));
+}
+
+// What does not fit into the time of an image goes on in the next one, from where it was.
+TEST_F(EsmTest, AnAlignmentThatIsInterruptedGoesOnWhereItWas) {
+  cv::RNG rng(6);
+  for (int trial = 0; trial < 5; ++trial) {
+    const Eigen::Matrix3d truth = test::randomHomography(kRoi, 6.0, rng);
+    const image::RegionPyramid image = pyramidOf(test::view(scene_, truth, 1.0, 0.0, 1.0, 20 + trial));
+    Esm esm = esmFor(EsmConfig());
+    const EsmResult whole = esm.align(image, EsmState());
+    ASSERT_EQ(whole.status, EsmStatus::kConverged);
+    ASSERT_GT(whole.work, 1.5);
+    EXPECT_LT(whole.work, whole.iterations);  // those of coarse levels count less
+    esm.forgetLight();
+    EsmState state;
+    int interrupted = 0;
+    for (EsmResult part; part.status != EsmStatus::kConverged && interrupted < 10;) {
+      esm.allow(0.5 * whole.work);
+      part = esm.align(image, state, nullptr, interrupted > 0 ? part.level : 1000);
+      EXPECT_LT(part.work, 0.5 * whole.work + 1.0);  // an iteration that has begun is finished
+      state = part.state;
+      if (part.status != EsmStatus::kInterrupted) continue;
+      EXPECT_EQ(part.corner_error, std::numeric_limits<double>::infinity());
+      ++interrupted;
+    }
+    EXPECT_GE(interrupted, 1);
+    EXPECT_LT(interrupted, 10);
+    EXPECT_LT(geometry::cornerDistance(state.g, truth, kRoi), 0.2);
+  }
 }
 
 TEST_F(EsmTest, LevelsThatWouldBeTooSmallAreLeftOut) {

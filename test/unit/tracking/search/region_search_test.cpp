@@ -46,7 +46,7 @@ class RegionSearchTest : public ::testing::Test {
     while (const auto place = s.search.next(image, s.aligner)) {
       tried_.push_back(*place);
       Attempt attempt;
-      attempt.evidence.esm = s.aligner.align(image, place->start, nullptr, 32.0).esm;
+      attempt.evidence.esm = s.aligner.align(image, place->start, nullptr, 32.0, place->limits).esm;
       attempt.evidence.zncc = 0.1 * static_cast<double>(tried_.size() % 3);  // the second is the best
       if (!(geometry::cornerDistance(attempt.evidence.esm.state.g, truth_, kRoi) < 1.0)) attempt.doubt = "elsewhere";
       if (s.search.judge(attempt, s.aligner)) break;
@@ -130,6 +130,39 @@ TEST_F(RegionSearchTest, APlaceFoundSomeImagesAgoIsCarriedToThePresentOne) {
   }
   EXPECT_LT(images, 60);
   EXPECT_EQ(s.search.suggestedBy(), Suggestion::kFeatures);
+}
+
+// So that no image takes longer than its budget allows, and what has been done is not lost.
+TEST_F(RegionSearchTest, AnAlignmentThatIsInterruptedGoesOnInTheNextImage) {
+  config_.search.budget = 0.015;
+  truth_ = shift(2.0, 1.0);
+  const cv::Mat image = seen();
+  for (const bool carried : {false, true}) {
+    Setup s = setup();
+    Eigen::Matrix3d reached = shift(6.0, 3.0);
+    for (int k = 0; k < 4; ++k) {
+      s.search.begin(EsmState(), carried && k == 0 ? std::optional<Eigen::Matrix3d>(reached) : std::nullopt);
+      const auto place = s.search.next(image, s.aligner);
+      ASSERT_TRUE(place);
+      EXPECT_GT(place->limits.most_work, 0.0);
+      EXPECT_LT(place->limits.most_work, 1000.0);
+      EXPECT_EQ(place->resumed, k < 3 ? k : 0) << "not for ever";
+      EXPECT_EQ(place->limits.coarsest == 1, k > 0 && k < 3);
+      if (k > 0 && k < 3) {
+        EXPECT_LT(geometry::cornerDistance(place->start.g, reached, kRoi), 3.0);
+      }
+      Attempt attempt;
+      attempt.evidence.esm.status = EsmStatus::kInterrupted;
+      attempt.evidence.esm.work = place->limits.most_work;
+      attempt.evidence.esm.level = 1;
+      reached = shift(2.0 + 0.5 * k, 1.0);
+      attempt.evidence.esm.state.g = reached;
+      attempt.doubt = "no time";
+      EXPECT_FALSE(s.search.judge(attempt, s.aligner));
+      EXPECT_FALSE(s.search.next(image, s.aligner)) << "the budget is used up";
+      EXPECT_EQ(s.search.best().doubt, "no time");
+    }
+  }
 }
 
 TEST_F(RegionSearchTest, WhereItWasCarriedComesBeforeAndIsSaid) {

@@ -38,6 +38,14 @@ TEST_F(StartCheckTest, MovesToWhereTheRegionIsNearby) {
   }
 }
 
+TEST_F(StartCheckTest, TellsHowManyPixelsItTakes) {
+  const double usual = check_.pixelsTaken(kSize, Eigen::Matrix3d::Identity());
+  EXPECT_NEAR(usual, 1.5 * kRoi.width * (kRoi.height + 0.5 * kRoi.width), 0.05 * usual);
+  EXPECT_NEAR(check_.pixelsTaken(kSize, motion(0.5, 0.0, 0.0, 0.0)), 0.25 * usual, 0.03 * usual);
+  EXPECT_EQ(check_.pixelsTaken(kSize, motion(10.0, 0.0, 0.0, 0.0)), kSize.area());
+  EXPECT_EQ(check_.pixelsTaken(kSize, motion(1.0, 0.0, 5000.0, 0.0)), 0.0);
+}
+
 TEST_F(StartCheckTest, HalfOfTheRegionIsStillClearerThanAnotherPlace) {
   cv::Mat half = scene_.clone();
   half(cv::Rect(220, 140, 90, 150)).setTo(cv::Scalar(120, 120, 125));
