@@ -76,6 +76,9 @@ struct Evidence {
   TrackRecord record;
 };
 
+// Enough blocks are where the estimate puts them: it is the ROI, whatever the illumination and the noise.
+bool recognised(const Evidence& evidence);
+
 // px: allowed distance of the worst corner from the prediction, for this visible share of the ROI and this corner error
 // by the residuals. The less is visible, the smaller it is.
 double allowedJump(const TrackRecord& record, const QualityConfig& config, const geometry::Rectangle& roi,
