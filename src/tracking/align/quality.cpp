@@ -49,10 +49,14 @@ constexpr double kFoundOfVisible = 0.25;
 
 // While tracking, block matching is required only if most of the ROI is visible, since blocks beside an instrument are
 // covered in part. But if the gates reject all textured areas, the estimate may be wrong: if at least kPartlyVisible is
-// visible, block matching is also required once no leastBlocks() blocks were found for kUnproven.
+// visible, block matching is also required once no leastBlocks() blocks were found for kUnproven. If kAsVisible of what
+// was visible when they were last found still is, it is not that blocks are covered: then for kUnprovenInSight, which
+// bears a blurred image.
 constexpr double kMostlyVisible = 0.5;
 constexpr double kPartlyVisible = 0.25;
 constexpr double kUnproven = 0.2;  // s
+constexpr double kAsVisible = 0.8;
+constexpr double kUnprovenInSight = 0.1;  // s
 
 // A record can be better than any later correct estimate: values at least this good always pass.
 constexpr double kGoodZncc = 0.9;
@@ -121,8 +125,9 @@ std::string doubt(const Evidence& e, const QualityConfig& q) {
   }
   if (blocks.confident >= kFewBlocks && !(blocks.off <= kMostOff * unit))
     return text("pieces of the region off by [px]", blocks.off, "at most", kMostOff * unit);
+  const double patience = e.visible_fraction < kAsVisible * e.proven_visible ? kUnproven : kUnprovenInSight;
   const bool asked = !e.from_track || e.visible_fraction >= kMostlyVisible || blocks.visible >= kVisibleTelling ||
-                     (e.visible_fraction >= kPartlyVisible && e.unproven > kUnproven);
+                     (e.visible_fraction >= kPartlyVisible && e.unproven > patience);
   const double least = leastBlocks(blocks, e.visible_fraction);
   if (asked && !(blocks.confident >= least))
     return text("pieces of the region found", blocks.confident, "at least", least);

@@ -70,9 +70,10 @@ struct Evidence {
   double in_image = 1.0;          // 0 to 1, share of the ROI that lies in the image
   double zncc = 0.0;              // over the pixels used, with the areas' means subtracted
   BlockEvidence blocks;
-  double corner_error = 0.0;  // px, claimed standard deviation of the worst corner: ESM's and the deformation's
-  double centre_error = 0.0;  // px, the same for the centre
-  double unproven = 0.0;      // s, since leastBlocks() blocks were last confident
+  double corner_error = 0.0;    // px, claimed standard deviation of the worst corner: ESM's and the deformation's
+  double centre_error = 0.0;    // px, the same for the centre
+  double unproven = 0.0;        // s, since leastBlocks() blocks were last confident
+  double proven_visible = 1.0;  // 0 to 1, visible_fraction then
   TrackRecord record;
 };
 
