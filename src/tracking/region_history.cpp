@@ -9,6 +9,7 @@ void RegionHistory::start(const geometry::Rectangle& roi, const Eigen::Matrix3d&
   record_ = TrackRecord();
   last_ = EsmState();
   proven_stamp_ = stamp;
+  proven_visible_ = 1.0;
   unseen_before_ = 0.0;
 }
 
@@ -22,6 +23,7 @@ void RegionHistory::compare(double stamp, Evidence& evidence) const {
   evidence.last_gain = last_.gain;
   evidence.unseen = unseen_before_ + stamp - filter_.lastStamp();
   evidence.unproven = stamp - proven_stamp_;
+  evidence.proven_visible = proven_visible_;
   evidence.record = record_;
 }
 
@@ -39,7 +41,10 @@ void RegionHistory::addFoundAgain(const Evidence& found, double stamp) {
 }
 
 void RegionHistory::take(const Evidence& found, double stamp) {
-  if (found.blocks.confident >= leastBlocks(found.blocks, found.visible_fraction)) proven_stamp_ = stamp;
+  if (found.blocks.confident >= leastBlocks(found.blocks, found.visible_fraction)) {
+    proven_stamp_ = stamp;
+    proven_visible_ = found.visible_fraction;
+  }
   unseen_before_ = 0.0;
   last_ = found.esm.state;
 }

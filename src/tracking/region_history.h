@@ -49,8 +49,9 @@ class RegionHistory {
   MotionFilter filter_;
   TrackRecord record_;
   EsmState last_;
-  double proven_stamp_ = 0.0;   // s, of the last image in which blocks were where the estimate has them
-  double unseen_before_ = 0.0;  // s, from the reference until it was recalled; 0 once it was found
+  double proven_stamp_ = 0.0;    // s, of the last image in which blocks were where the estimate has them
+  double proven_visible_ = 1.0;  // 0 to 1, the share of the ROI that was visible in it
+  double unseen_before_ = 0.0;   // s, from the reference until it was recalled; 0 once it was found
 };
 
 }  // namespace laparoscope_servo::tracking

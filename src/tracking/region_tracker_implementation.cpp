@@ -171,7 +171,7 @@ Attempt RegionTracker::Implementation::attempt(const cv::Mat& image, double stam
   e.roi = roi;
   e.predicted = start.g;
   e.from_track = prior != nullptr;
-  e.confirming = searched != nullptr && searched->by == Suggestion::kConfirmation;
+  e.confirming = searched != nullptr && searched->by == Suggestion::kConfirmation && confirmation_.justFound();
   e.light_gain = aligners_.now().gates().lightGain();
   e.esm = found.esm;
   e.visible_fraction = found.visible_fraction;
@@ -197,7 +197,7 @@ Attempt RegionTracker::Implementation::search(const cv::Mat& image, double stamp
 
 void RegionTracker::Implementation::decide(const Attempt& best, const MotionPrior& prior, double stamp) {
   if (!best.doubt.empty()) {
-    confirmation_.forget();
+    confirmation_.miss(stamp);
     history_.addMiss();
     if (state_ == State::kTracking) {
       state_ = State::kSearching;
@@ -209,7 +209,7 @@ void RegionTracker::Implementation::decide(const Attempt& best, const MotionPrio
   if (state_ == State::kTracking) {
     history_.addTracked(best.evidence, prior, stamp, carried_);
   } else {
-    if (!confirmation_.add(best.evidence.esm, aligners_.usual().roi(), history_.record())) return;
+    if (!confirmation_.add(best.evidence, stamp)) return;
     state_ = State::kTracking;
     history_.addFoundAgain(best.evidence, stamp);
   }

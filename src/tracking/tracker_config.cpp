@@ -72,8 +72,10 @@ void describe(Table& table, QualityConfig& c) {
   table.number("max_search_time", c.max_search_time, {0, 3600}, "s", "the state is LOST after SEARCHING for longer")
       .whileRunning();
   table
-      .number("confirmations", c.confirmations, {1, 100}, "images",
-              "number in a row that must pass every test after a loss, before the state is TRACKING again")
+      .number(
+          "confirmations", c.confirmations, {1, 100}, "images",
+          "number, each at most 0.2 s after the one before, that must pass every test after a loss, before the state "
+          "is TRACKING again")
       .whileRunning();
 }
 

@@ -68,7 +68,8 @@ struct QualityConfig {
   // share of the ROI's diagonal: allowed distance of a corner from its prediction; less if little of the ROI is visible
   double max_jump = 0.35;
   double max_search_time = 2.0;  // s: SEARCHING for longer is LOST
-  // images in a row that must pass every test after a loss, before the state is TRACKING again
+  // images, each at most 0.2 s after the one before, that must pass every test after a loss, before the state is
+  // TRACKING again
   int confirmations = 3;
 };
 

@@ -26,6 +26,7 @@ constexpr int kAlike = 2;  // other blocks that must have moved alike
 // share of a block's side: blocks nearer to each other share so many pixels that their agreement proves nothing
 constexpr double kIndependent = 0.5;
 constexpr double kLeastValid = 0.6;
+constexpr double kLeastClear = 0.8;  // share of a block's pixels in the reference that the mask does not cover
 
 struct Products {
   float both = 0.0f;    // dot product of a block with a window
@@ -60,30 +61,33 @@ double vertex(double left, double middle, double right) {
 
 }  // namespace
 
-void BlockMatching::setReference(const image::RegionPyramid& reference, const geometry::Rectangle& roi) {
+void BlockMatching::setReference(const image::RegionPyramid& reference, const geometry::Rectangle& roi,
+                                 const cv::Mat& mask) {
   int level = 0;
   while (level + 1 < reference.levels() && std::max(roi.width, roi.height) / reference.scale(level) > kLargest) ++level;
-  setReference(reference, roi, level);
+  setReference(reference, roi, level, mask);
   const int unique = blocks();
   if (unique >= kEnough || level + 1 >= reference.levels()) return;
-  setReference(reference, roi, level + 1);
-  if (blocks() <= unique) setReference(reference, roi, level);
+  setReference(reference, roi, level + 1, mask);
+  if (blocks() <= unique) setReference(reference, roi, level, mask);
 }
 
-void BlockMatching::setReference(const image::RegionPyramid& reference, const geometry::Rectangle& roi, int level) {
+void BlockMatching::setReference(const image::RegionPyramid& reference, const geometry::Rectangle& roi, int level,
+                                 const cv::Mat& mask) {
   level_ = std::min(level, reference.levels() - 1);
   scale_ = reference.scale(level_);
   const cv::Size inner(static_cast<int>(roi.width / scale_), static_cast<int>(roi.height / scale_));
   const cv::Size size(inner.width + 2 * kReach, inner.height + 2 * kReach);
   reference_T_crop_ << scale_, 0.0, roi.x - kReach * scale_, 0.0, scale_, roi.y - kReach * scale_, 0.0, 0.0, 1.0;
   warped_.create(size);
-  valid_.create(size);
+  for (cv::Mat1f* buffer : {&valid_, &in_image_}) buffer->create(size);
+  for (cv::Mat1b* buffer : {&covered_.blue, &covered_.valid}) buffer->create(size);
   detail_.create(size);
   column_sums_.assign(3 * static_cast<std::size_t>(size.width), 0.0f);
   blocks_.clear();
   has_room_ = std::min(inner.width, inner.height) >= kSide + kAlong - 1;
   if (std::min(inner.width, inner.height) < kSide) return;
-  look(reference, Eigen::Matrix3d::Identity());
+  look(reference, Eigen::Matrix3d::Identity(), mask);
   reference_ = detail_.clone();
   const auto begins = [](int length) {
     std::vector<int> result;
@@ -94,7 +98,8 @@ void BlockMatching::setReference(const image::RegionPyramid& reference, const ge
   for (const int top : begins(inner.height)) {
     for (const int left : begins(inner.width)) {
       const cv::Rect box(left, top, kSide, kSide);
-      if (cv::mean(valid_(box))[0] < kLeastValid) continue;
+      if (!isValid(box.tl(), mask.empty() ? valid_ : in_image_)) continue;
+      if (!mask.empty() && cv::mean(valid_(box))[0] < kLeastClear * cv::mean(in_image_(box))[0]) continue;
       const double norm = cv::norm(reference_(box));
       if (norm * norm < kLeastEnergy * box.area()) continue;
       const Peak peak = find(box.tl());
@@ -104,14 +109,39 @@ void BlockMatching::setReference(const image::RegionPyramid& reference, const ge
   shifts_.reserve(blocks_.size());
 }
 
-bool BlockMatching::look(const image::RegionPyramid& current, const Eigen::Matrix3d& g) {
+bool BlockMatching::look(const image::RegionPyramid& current, const Eigen::Matrix3d& g, const cv::Mat& mask) {
   const int l = std::min(level_, current.levels() - 1);
   const bool all =
       lens_ ? image::warpBilinear(current.level(l), g * reference_T_crop_, *lens_,
                                   {current.origin(), static_cast<double>(current.scale(l))}, warped_, valid_)
             : image::warpBilinear(current.level(l), current.levelFromImage(l) * g * reference_T_crop_, warped_, valid_);
+  if (!mask.empty()) leaveOut(mask, g);
   contrast();
   return all;
+}
+
+// What the mask covers is not valid, nor are the pixels beside it: smoothing has mixed some of it into them.
+void BlockMatching::leaveOut(const cv::Mat& mask, const Eigen::Matrix3d& g) {
+  valid_.copyTo(in_image_);
+  const cv::Size size = valid_.size();
+  if (lens_) {
+    image::warpNearest(mask, g * reference_T_crop_, *lens_, size, covered_);
+  } else {
+    image::warpNearest(mask, g * reference_T_crop_, size, covered_);
+  }
+  for (int j = 0; j < size.height; ++j) {
+    const uchar* const covered = covered_.blue.ptr<uchar>(j);
+    for (int i = 0; i < size.width; ++i) {
+      if (covered[i] == 0) continue;
+      for (int y = std::max(j - 1, 0); y <= std::min(j + 1, size.height - 1); ++y) {
+        for (int x = std::max(i - 1, 0); x <= std::min(i + 1, size.width - 1); ++x) valid_(y, x) = 0.0f;
+      }
+    }
+  }
+}
+
+bool BlockMatching::isValid(const cv::Point& block, const cv::Mat1f& valid) {
+  return cv::mean(valid(cv::Rect(block.x, block.y, kSide, kSide)))[0] >= kLeastValid;
 }
 
 // Local contrast: deviation from the local mean over the local standard deviation; 0 where the image is not valid.
@@ -199,19 +229,21 @@ Eigen::Vector2d BlockMatching::centreOf(const cv::Point& block) const {
   return geometry::apply(reference_T_crop_, Eigen::Vector2d(block.x + 0.5 * (kSide - 1), block.y + 0.5 * (kSide - 1)));
 }
 
-const std::vector<BlockShift>& BlockMatching::measure(const image::RegionPyramid& current, const Eigen::Matrix3d& g) {
+const std::vector<BlockShift>& BlockMatching::measure(const image::RegionPyramid& current, const Eigen::Matrix3d& g,
+                                                      const cv::Mat& mask) {
   shifts_.clear();
   if (blocks_.empty()) return shifts_;
-  const bool all_valid = look(current, g);
+  const bool all_in_image = look(current, g, mask);
+  const cv::Mat1f& in_image = mask.empty() ? valid_ : in_image_;
   for (const cv::Point& block : blocks_) {
-    if (!all_valid && cv::mean(valid_(cv::Rect(block.x, block.y, kSide, kSide)))[0] < kLeastValid) continue;
-    const Peak peak = find(block);
-    BlockShift found;
+    if (!all_in_image && !isValid(block, in_image)) continue;
+    BlockShift& found = shifts_.emplace_back();
     found.centre = centreOf(block);
+    if (!mask.empty() && !isValid(block, valid_)) continue;
+    const Peak peak = find(block);
     found.shift = scale_ * Eigen::Vector2d(peak.x, peak.y);
     found.correlation = peak.top;
     found.confident = peak.top >= kPeak && peak.top - peak.second >= kLead;
-    shifts_.push_back(found);
   }
   std::array<bool, kMostBlocks> alone{};
   for (std::size_t k = 0; k < shifts_.size(); ++k) {

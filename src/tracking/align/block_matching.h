@@ -4,15 +4,19 @@
 // It is independent of ESM and of its assumptions: gain, haze and shading that vary smoothly do not change local
 // contrast, weak texture counts as much as strong texture, and each block is searched for by itself. It is used to
 // check an estimate, and to correct it where ESM was pulled away.
+//
+// Masks are CV_8UC1 of the image's size; empty: nothing is covered. What is not 0 there, and a pixel of the level
+// beside it, is no part of a block: the border of a round picture is the strongest edge by far, and blocks that hold
+// some of it are found at the border, which stands still while the tissue moves.
 #pragma once
 
 #include <Eigen/Core>
-#include <algorithm>
 #include <memory>
 #include <opencv2/core.hpp>
 #include <vector>
 
 #include "laparoscope_servo/geometry/homography.h"
+#include "laparoscope_servo/image/colour_patch.h"
 #include "laparoscope_servo/image/lens.h"
 #include "laparoscope_servo/image/pyramid.h"
 
@@ -20,7 +24,8 @@ namespace laparoscope_servo::tracking {
 
 struct BlockShift {
   Eigen::Vector2d centre;  // px of the reference
-  Eigen::Vector2d shift;   // px of the reference: the tissue at the reference's `centre` is seen at g (centre + shift)
+  // px of the reference: the tissue at the reference's `centre` is seen at g (centre + shift)
+  Eigen::Vector2d shift = Eigen::Vector2d::Zero();
   double correlation = 0.0;  // -1 to 1, at the place where it is seen
   bool confident = false;    // a clear peak, and at least two other blocks moved alike
 };
@@ -36,17 +41,12 @@ class BlockMatching {
 
   // Searches on the finest level that tells something: one on which the ROI is not too large and enough blocks have
   // unique texture. On smooth tissue that is a coarser level, where a block holds more of it.
-  // The pyramid must hold the ROI with kReach px of the search level around it.
-  void setReference(const image::RegionPyramid& reference, const geometry::Rectangle& roi);
+  // The pyramid must hold the ROI with kReach px of the search level around it. `mask`: of the reference image.
+  void setReference(const image::RegionPyramid& reference, const geometry::Rectangle& roi,
+                    const cv::Mat& mask = cv::Mat());
   // Searches on this level of the pyramid, or on its coarsest one. Each level doubles the search range.
-  void setReference(const image::RegionPyramid& reference, const geometry::Rectangle& roi, int level);
-
-  // Drops the blocks for which `used(centre)` is false; `centre` in px of the reference.
-  template <typename Used>
-  void keep(const Used& used) {
-    const auto unused = [&](const cv::Point& block) { return !used(centreOf(block)); };
-    blocks_.erase(std::remove_if(blocks_.begin(), blocks_.end(), unused), blocks_.end());
-  }
+  void setReference(const image::RegionPyramid& reference, const geometry::Rectangle& roi, int level,
+                    const cv::Mat& mask = cv::Mat());
 
   // Level of the pyramid on which blocks are searched.
   int level() const { return level_; }
@@ -59,8 +59,10 @@ class BlockMatching {
   // Side of a block [px of the reference].
   double side() const { return kSide * scale_; }
 
-  // Measures the shifts of all blocks that lie in the image. The result is valid until the next call.
-  const std::vector<BlockShift>& measure(const image::RegionPyramid& current, const Eigen::Matrix3d& g);
+  // Measures the shifts of all blocks that lie in the image; those that `mask`, of this image, covers are not
+  // confident. The result is valid until the next call.
+  const std::vector<BlockShift>& measure(const image::RegionPyramid& current, const Eigen::Matrix3d& g,
+                                         const cv::Mat& mask = cv::Mat());
 
  private:
   static constexpr int kReach = 8;  // search range: px of the level in each direction
@@ -68,9 +70,11 @@ class BlockMatching {
     double x, y, top, second;
   };
 
-  // Returns whether all of it lies in the image.
-  bool look(const image::RegionPyramid& current, const Eigen::Matrix3d& g);
+  // Samples the image and its local contrast. Returns whether all of the crop lies in the image.
+  bool look(const image::RegionPyramid& current, const Eigen::Matrix3d& g, const cv::Mat& mask);
+  void leaveOut(const cv::Mat& mask, const Eigen::Matrix3d& g);
   void contrast();
+  static bool isValid(const cv::Point& block, const cv::Mat1f& valid);
   Peak find(const cv::Point& block);
   Eigen::Vector2d centreOf(const cv::Point& block) const;
 
@@ -78,7 +82,10 @@ class BlockMatching {
   int level_ = 0;
   double scale_ = 1.0;  // px of the reference per px of the level
   Eigen::Matrix3d reference_T_crop_ = Eigen::Matrix3d::Identity();
-  cv::Mat1f warped_, valid_, detail_, reference_;
+  cv::Mat1f warped_, detail_, reference_;
+  cv::Mat1f valid_;             // 1 where the image has the pixel and the mask does not cover it, else 0
+  cv::Mat1f in_image_;          // with a mask: valid_ without it
+  image::ColourPatch covered_;  // the mask, as the crop is sampled
   bool has_room_ = false;
   std::vector<float> column_sums_;
   std::vector<cv::Point> blocks_;  // first pixel of each block in the crop

@@ -49,10 +49,14 @@ constexpr double kFoundOfVisible = 0.25;
 
 // While tracking, block matching is required only if most of the ROI is visible, since blocks beside an instrument are
 // covered in part. But if the gates reject all textured areas, the estimate may be wrong: if at least kPartlyVisible is
-// visible, block matching is also required once no leastBlocks() blocks were found for kUnproven.
+// visible, block matching is also required once no leastBlocks() blocks were found for kUnproven. If kAsVisible of what
+// was visible when they were last found still is, it is not that blocks are covered: then for kUnprovenInSight, which
+// bears a blurred image.
 constexpr double kMostlyVisible = 0.5;
 constexpr double kPartlyVisible = 0.25;
 constexpr double kUnproven = 0.2;  // s
+constexpr double kAsVisible = 0.8;
+constexpr double kUnprovenInSight = 0.1;  // s
 
 // A record can be better than any later correct estimate: values at least this good always pass.
 constexpr double kGoodZncc = 0.9;
@@ -92,14 +96,18 @@ double leastBlocks(const BlockEvidence& blocks, double visible_fraction) {
                           kFoundOfVisible * std::max<double>(blocks.visible, visible_fraction * blocks.seen));
 }
 
+bool recognised(const Evidence& e) {
+  return e.blocks.confident >= std::max<double>(kEnoughBlocks, kRecognised * e.blocks.seen) &&
+         e.blocks.off <= kNear * lengthUnit(e.roi);
+}
+
 std::string doubt(const Evidence& e, const QualityConfig& q) {
   if (e.esm.status == EsmStatus::kOutOfView) return "the ROI's image crosses infinity";
   if (e.esm.status == EsmStatus::kIllConditioned) return "the pixels kept do not determine the motion";
   if (e.esm.status == EsmStatus::kInterrupted) return "not aligned within the time of an image";
   const double unit = lengthUnit(e.roi);
   const BlockEvidence& blocks = e.blocks;
-  const bool recognised =
-      blocks.confident >= std::max<double>(kEnoughBlocks, kRecognised * blocks.seen) && blocks.off <= kNear * unit;
+  const bool known = recognised(e);
   const double min_visible = e.from_track || e.confirming ? q.min_visible_fraction : q.min_return_fraction;
   if (!(e.visible_fraction >= min_visible))
     return text("visible fraction", e.visible_fraction, "at least", min_visible);
@@ -117,8 +125,9 @@ std::string doubt(const Evidence& e, const QualityConfig& q) {
   }
   if (blocks.confident >= kFewBlocks && !(blocks.off <= kMostOff * unit))
     return text("pieces of the region off by [px]", blocks.off, "at most", kMostOff * unit);
+  const double patience = e.visible_fraction < kAsVisible * e.proven_visible ? kUnproven : kUnprovenInSight;
   const bool asked = !e.from_track || e.visible_fraction >= kMostlyVisible || blocks.visible >= kVisibleTelling ||
-                     (e.visible_fraction >= kPartlyVisible && e.unproven > kUnproven);
+                     (e.visible_fraction >= kPartlyVisible && e.unproven > patience);
   const double least = leastBlocks(blocks, e.visible_fraction);
   if (asked && !(blocks.confident >= least))
     return text("pieces of the region found", blocks.confident, "at least", least);
@@ -129,19 +138,18 @@ std::string doubt(const Evidence& e, const QualityConfig& q) {
   const double min_zncc = std::max(
       q.min_zncc,
       std::min(kGoodZncc, 1.0 - tolerance.unexplained - tolerance.unexplained_factor * (1.0 - e.record.zncc())));
-  if (!recognised && !(e.zncc >= min_zncc)) return text("correlation", e.zncc, "at least", min_zncc);
+  if (!known && !(e.zncc >= min_zncc)) return text("correlation", e.zncc, "at least", min_zncc);
   const double max_sigma = std::max(kGoodSigma, tolerance.sigma + tolerance.sigma_factor * e.record.sigma());
-  if (!recognised && !(e.esm.sigma <= max_sigma))
-    return text("residual [grey levels]", e.esm.sigma, "at most", max_sigma);
-  const double max_corner_error = recognised ? std::max(q.max_corner_error, kWrong * unit) : q.max_corner_error;
-  const bool determined = recognised && blocks.spread >= kSpread;
+  if (!known && !(e.esm.sigma <= max_sigma)) return text("residual [grey levels]", e.esm.sigma, "at most", max_sigma);
+  const double max_corner_error = known ? std::max(q.max_corner_error, kWrong * unit) : q.max_corner_error;
+  const bool determined = known && blocks.spread >= kSpread;
   if (!determined && !(e.esm.corner_error <= max_corner_error)) {
     return text("expected corner error [px]", e.esm.corner_error, "at most", max_corner_error);
   }
   if (!(e.esm.centre_error <= q.max_centre_error)) {
     return text("expected error of the centre [px]", e.esm.centre_error, "at most", q.max_centre_error);
   }
-  if (!e.from_track && !recognised) {
+  if (!e.from_track && !known) {
     const auto factor = [&](double gain) { return std::max(gain / e.esm.state.gain, e.esm.state.gain / gain); };
     const double of_last = factor(e.last_gain);
     const double change = e.light_gain > 0.0 ? std::min(of_last, factor(e.light_gain)) : of_last;

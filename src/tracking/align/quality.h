@@ -70,11 +70,15 @@ struct Evidence {
   double in_image = 1.0;          // 0 to 1, share of the ROI that lies in the image
   double zncc = 0.0;              // over the pixels used, with the areas' means subtracted
   BlockEvidence blocks;
-  double corner_error = 0.0;  // px, claimed standard deviation of the worst corner: ESM's and the deformation's
-  double centre_error = 0.0;  // px, the same for the centre
-  double unproven = 0.0;      // s, since leastBlocks() blocks were last confident
+  double corner_error = 0.0;    // px, claimed standard deviation of the worst corner: ESM's and the deformation's
+  double centre_error = 0.0;    // px, the same for the centre
+  double unproven = 0.0;        // s, since leastBlocks() blocks were last confident
+  double proven_visible = 1.0;  // 0 to 1, visible_fraction then
   TrackRecord record;
 };
+
+// Enough blocks are where the estimate puts them: it is the ROI, whatever the illumination and the noise.
+bool recognised(const Evidence& evidence);
 
 // px: allowed distance of the worst corner from the prediction, for this visible share of the ROI and this corner error
 // by the residuals. The less is visible, the smaller it is.

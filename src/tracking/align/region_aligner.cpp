@@ -66,21 +66,17 @@ void RegionAligner::setReference(const cv::Mat& image, const geometry::Rectangle
   channels_ = channels ? *channels : chosenChannels(config_.channels, image(box), config_.saturation);
   finest_ = finestScale(roi);
   const cv::Rect with_border = image::seenBox(lens_.get(), roi.corners(), kBorder * (finest_ << config_.levels));
-  noise_ = noiseOf(mixed(image(box), channels_.weights[0]));
+  noise_ = noiseOf(mixed(image(box), channels_.weights[0]), mask_.empty() ? mask_ : mask_(box));
   pyramid_.build(image, with_border, config_.levels, channels_, finest_);
   esm_.setReference(pyramid_, roi);
-  blocks_.setReference(pyramid_, roi);
-  far_blocks_.setReference(pyramid_, roi, blocks_.level() + 1);
-  if (blocks_.scale() >= kCoarse) fine_blocks_.setReference(pyramid_, roi, std::max(blocks_.level() - 1, 0));
+  blocks_.setReference(pyramid_, roi, mask_);
+  far_blocks_.setReference(pyramid_, roi, blocks_.level() + 1, mask_);
+  if (blocks_.scale() >= kCoarse) fine_blocks_.setReference(pyramid_, roi, std::max(blocks_.level() - 1, 0), mask_);
   deformation_ = DeformationMemory();
   sample(image, Eigen::Matrix3d::Identity());
   gates_.setReference(patch_, patchSize(), coloursIn(channels_));
-  const bool hidden = !mask_.empty() && cv::countNonZero(covered_.blue) > 0;
-  if (hidden) gates_.hideInReference(covered_.blue);
+  if (!mask_.empty() && cv::countNonZero(covered_.blue) > 0) gates_.hideInReference(covered_.blue);
   esm_.setWeights(weights());
-  if (!hidden) return;
-  for (BlockMatching* blocks : {&blocks_, &far_blocks_, &fine_blocks_})
-    blocks->keep([&](const Eigen::Vector2d& centre) { return isVisible(centre, blocks->side()); });
 }
 
 ReferenceTexture RegionAligner::referenceTexture() {
@@ -200,7 +196,7 @@ void RegionAligner::follow(const ShiftFit& fit, EsmResult& estimate) const {
 }
 
 const std::vector<BlockShift>& RegionAligner::measure(const EsmResult& estimate, BlockEvidence& evidence) {
-  const std::vector<BlockShift>& shifts = blocks_.measure(pyramid_, estimate.state.g);
+  const std::vector<BlockShift>& shifts = blocks_.measure(pyramid_, estimate.state.g, mask_);
   evidence.seen = static_cast<int>(shifts.size());
   evidence.confident = confidentShifts(shifts);
   evidence.off = medianShift(shifts, estimate.state.g);
@@ -242,7 +238,7 @@ void RegionAligner::correct(EsmResult& estimate, BlockEvidence& evidence) {
 // is the region's.
 void RegionAligner::lookFurther(EsmResult& estimate, BlockEvidence& evidence) {
   if (evidence.seen == 0 || evidence.confident > kMostMissing * evidence.seen) return;
-  const std::vector<BlockShift>& shifts = far_blocks_.measure(pyramid_, estimate.state.g);
+  const std::vector<BlockShift>& shifts = far_blocks_.measure(pyramid_, estimate.state.g, mask_);
   const BlockEvidence further = {static_cast<int>(shifts.size()), confidentShifts(shifts),
                                  medianShift(shifts, estimate.state.g)};
   const std::optional<ShiftFit> fit = fitShifts(shifts, roi(), far_blocks_.side());
@@ -263,13 +259,14 @@ void RegionAligner::lookFurther(EsmResult& estimate, BlockEvidence& evidence) {
 // place is that of the piece with most contrast. Blocks of half the side are believed where enough of them are found.
 void RegionAligner::correctFinely(EsmResult& estimate, BlockEvidence& evidence) {
   if (!(blocks_.scale() >= kCoarse && evidence.confident > kMostMissing * evidence.seen)) return;
-  const auto& shifts = fine_blocks_.measure(pyramid_, estimate.state.g);  // after the next call what that has measured
+  // after the next call what that has measured
+  const auto& shifts = fine_blocks_.measure(pyramid_, estimate.state.g, mask_);
   if (!(confidentShifts(shifts) > kMostMissing * fine_blocks_.blocks())) return;
   if (!(medianShift(shifts, estimate.state.g) > kNearOff * fine_blocks_.scale())) return;
   const std::optional<ShiftFit> fit = fitShifts(shifts, roi(), fine_blocks_.side());
   if (!fit || !(fit->significance > kSignificant)) return;
   follow(*fit, estimate);
-  evidence.off = medianShift(fine_blocks_.measure(pyramid_, estimate.state.g), estimate.state.g);
+  evidence.off = medianShift(fine_blocks_.measure(pyramid_, estimate.state.g, mask_), estimate.state.g);
   evidence.deformation = deformationCovariance(shifts, evidence.off, roi());
 }
 

@@ -17,7 +17,7 @@ constexpr double kByChance = 1.6;
 
 }  // namespace
 
-double noiseOf(const cv::Mat1f& plane) {
+double noiseOf(const cv::Mat1f& plane, const cv::Mat& mask) {
   if (plane.rows < 3 || plane.cols < 3) return 0.0;
   // The difference of two Laplacians, whose response to white noise is 6 times its standard deviation.
   const cv::Matx33f kernel(1, -2, 1, -2, 4, -2, 1, -2, 1);
@@ -27,10 +27,12 @@ double noiseOf(const cv::Mat1f& plane) {
   std::vector<double> blocks;
   for (int y = 0; y == 0 || y + kBlock <= response.rows; y += kBlock) {
     for (int x = 0; x == 0 || x + kBlock <= response.cols; x += kBlock) {
-      blocks.push_back(
-          cv::mean(response(cv::Rect(x, y, kBlock, kBlock) & cv::Rect(cv::Point(0, 0), response.size())))[0]);
+      const cv::Rect box = cv::Rect(x, y, kBlock, kBlock) & cv::Rect(cv::Point(0, 0), response.size());
+      const cv::Rect seen(box.x, box.y, box.width + 2, box.height + 2);  // px of the plane, that the filter takes in
+      if (mask.empty() || cv::countNonZero(mask(seen)) == 0) blocks.push_back(cv::mean(response(box))[0]);
     }
   }
+  if (blocks.empty()) return noiseOf(plane);
   const auto quartile = blocks.begin() + static_cast<std::ptrdiff_t>(kQuartile * (blocks.size() - 1));
   std::nth_element(blocks.begin(), quartile, blocks.end());
   return std::sqrt(M_PI / 2.0) / 6.0 * *quartile;

@@ -107,5 +107,20 @@ TEST_F(RegionHistoryTest, OnlyBlocksThatAreFoundProveAnEstimate) {
   EXPECT_DOUBLE_EQ(compared(0.75).unproven, 0.25);
 }
 
+TEST_F(RegionHistoryTest, KnowsHowMuchWasVisibleWhenBlocksWereFound) {
+  history_.start(kRoi, normalisation(), 0.0);
+  EXPECT_EQ(compared(0.1).proven_visible, 1.0);
+  Evidence half = estimate(shift(0, 0));
+  half.visible_fraction = 0.5;
+  track(half, 0.2);
+  EXPECT_EQ(compared(0.3).proven_visible, 0.5);
+  Evidence unproven = estimate(shift(0, 0), false);
+  unproven.visible_fraction = 0.4;
+  track(unproven, 0.4);
+  EXPECT_EQ(compared(0.5).proven_visible, 0.5);
+  history_.start(kRoi, normalisation(), 1.0);
+  EXPECT_EQ(compared(1.1).proven_visible, 1.0);
+}
+
 }  // namespace
 }  // namespace laparoscope_servo::tracking

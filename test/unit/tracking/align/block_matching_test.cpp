@@ -108,6 +108,17 @@ TEST(BlockMatchingOfRawImages, ShiftsAreInRectifiedPixelsAtAnyFinestScale) {
         EXPECT_LT((s.shift - true_shift).norm(), 0.3 * finest);
       }
     }
+    cv::Mat mask = cv::Mat::zeros(size, CV_8UC1);  // of the raw image
+    mask(cv::Rect(0, 0, 225, size.height)).setTo(255);
+    for (const BlockShift& s : matching.measure(pyramid(view(scene, g)), Eigen::Matrix3d::Identity(), mask)) {
+      const double side = BlockMatching::kSide * finest, x = lens->toRaw(s.centre).value().x();
+      if (x < 225.0 - 0.2 * side) {
+        EXPECT_FALSE(s.confident) << x;
+      }
+      if (x > 225.0 + side) {
+        EXPECT_TRUE(s.confident) << x;
+      }
+    }
   }
 }
 
@@ -146,6 +157,44 @@ TEST_F(BlockMatchingTest, WhatIsCoveredIsNotConfidentAndTheRestIs) {
   }
   EXPECT_EQ(covered, 0);
   EXPECT_GE(free, 12);
+}
+
+// The border of the picture stands still, and is the strongest edge by far: it is found in place of the tissue.
+TEST_F(BlockMatchingTest, WhatTheMaskCoversIsNoPartOfABlock) {
+  cv::Mat mask(kSize, CV_8UC1, cv::Scalar(255));
+  mask(cv::Rect(125, 100, 205, 180)).setTo(0);
+  const auto faint = [&](const cv::Mat& scene) {
+    cv::Mat image = 0.06 * scene + cv::Scalar(60, 60, 60);
+    image.setTo(0, mask);
+    return image;
+  };
+  const cv::Mat reference = faint(scene_), image = faint(moved(3.0, -2.0));
+  const auto elsewhere = [](const std::vector<BlockShift>& shifts) {
+    return std::count_if(shifts.begin(), shifts.end(), [](const BlockShift& s) {
+      return s.confident && (s.shift - Eigen::Vector2d(3.0, -2.0)).norm() > 1.0;
+    });
+  };
+  matching_.setReference(pyramid(reference), kRoi);
+  EXPECT_GE(elsewhere(measured(image)), 3);
+  matching_.setReference(pyramid(reference), kRoi, mask);
+  const std::vector<BlockShift>& shifts = matching_.measure(pyramid(image), Eigen::Matrix3d::Identity(), mask);
+  EXPECT_EQ(elsewhere(shifts), 0);
+  EXPECT_GE(confidentShifts(shifts), 12);
+}
+
+TEST_F(BlockMatchingTest, WhatTheMaskCoversNowIsAskedForInVain) {
+  cv::Mat mask = cv::Mat::zeros(kSize, CV_8UC1);
+  mask(cv::Rect(0, 0, 160, kSize.height)).setTo(255);
+  const std::vector<BlockShift>& shifts = matching_.measure(pyramid(scene_), Eigen::Matrix3d::Identity(), mask);
+  EXPECT_EQ(static_cast<int>(shifts.size()), matching_.blocks()) << "they lie in the image";
+  for (const BlockShift& s : shifts) {
+    if (s.centre.x() < 155.0) {
+      EXPECT_FALSE(s.confident) << s.centre.x();
+    }
+    if (s.centre.x() > 175.0) {
+      EXPECT_TRUE(s.confident) << s.centre.x();
+    }
+  }
 }
 
 TEST_F(BlockMatchingTest, ARegionWithoutTextureHasNoBlocks) {

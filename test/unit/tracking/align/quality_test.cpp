@@ -292,6 +292,22 @@ TEST(Doubt, AsksForBlocksThatNothingCoversAndForOthersAfterAWhile) {
   EXPECT_EQ(doubt(e, QualityConfig()), "") << "fewer than can tell";
 }
 
+// What is not covered more than when blocks were found has to be found again soon.
+TEST(Doubt, BlocksAreMissedSoonerWhereNothingMoreIsCovered) {
+  const auto refused = [](double visible, double unproven) {
+    Evidence e = good();
+    e.visible_fraction = visible;
+    e.blocks = {36, 0, std::numeric_limits<double>::quiet_NaN(), 0};
+    e.proven_visible = 0.4;
+    e.unproven = unproven;
+    return doubt(e, QualityConfig()).find("pieces of the region found") != std::string::npos;
+  };
+  EXPECT_FALSE(refused(0.36, 0.08)) << "an image may be blurred";
+  EXPECT_TRUE(refused(0.36, 0.12));
+  EXPECT_FALSE(refused(0.30, 0.12)) << "more is covered";
+  EXPECT_TRUE(refused(0.30, 0.22));
+}
+
 // What was found with enough of it visible is confirmed by less: under light that flickers every second image shows
 // less.
 TEST(Doubt, ConfirmsWithAsMuchVisibleAsTrackingTakes) {

@@ -46,6 +46,18 @@ TEST(NoiseOf, OfTextureIsHardlyMoreThanThatOfTheNoiseInIt) {
   EXPECT_NEAR(noiseOf(noisy), 4.0, 0.5);
 }
 
+TEST(NoiseOf, OfWhatTheMaskCoversDoesNotCount) {
+  cv::Mat1f plane = noise({120, 90}, 2.0, 1);
+  const cv::Rect black(0, 0, 50, 90);
+  plane(black).setTo(0.0f);
+  EXPECT_LT(noiseOf(plane), 0.5);
+  cv::Mat mask = cv::Mat::zeros(plane.size(), CV_8UC1);
+  mask(black).setTo(255);
+  EXPECT_NEAR(noiseOf(plane, mask), 2.0, 0.3);
+  mask.setTo(255);
+  EXPECT_EQ(noiseOf(plane, mask), noiseOf(plane)) << "nothing else is seen";
+}
+
 TEST(NoiseOf, OfAFewPixelsIsNone) {
   EXPECT_EQ(noiseOf(cv::Mat1f(2, 50, 7.0f)), 0.0);
   EXPECT_EQ(noiseOf(cv::Mat1f(50, 2, 7.0f)), 0.0);

@@ -9,18 +9,29 @@ namespace {
 
 const geometry::Rectangle kRoi = {100, 80, 60, 60};  // its diagonal: 85 px
 
-EsmResult at(double x, double corner_error = 0.1) {
-  EsmResult result;
-  result.status = EsmStatus::kConverged;
-  result.state.g(0, 2) = x;
-  result.corner_error = corner_error;
-  return result;
+Evidence at(double x, int confident_blocks = 20) {
+  Evidence found;
+  found.roi = kRoi;
+  found.esm.status = EsmStatus::kConverged;
+  found.esm.state.g(0, 2) = x;
+  found.esm.corner_error = 0.1;
+  found.blocks.seen = 36;
+  found.blocks.confident = confident_blocks;
+  return found;
 }
 
 class ConfirmationTest : public ::testing::Test {
  protected:
-  Confirmation confirmation_{QualityConfig()};  // three in a row
-  bool add(const EsmResult& found) { return confirmation_.add(found, kRoi, TrackRecord()); }
+  Confirmation confirmation_{QualityConfig()};  // three
+  double stamp_ = 5.0;                          // s, of the next image
+  bool add(const Evidence& found) {
+    stamp_ += 0.04;
+    return confirmation_.add(found, stamp_);
+  }
+  void miss() {
+    stamp_ += 0.04;
+    confirmation_.miss(stamp_);
+  }
 };
 
 TEST_F(ConfirmationTest, TakesAsManyImagesAsAreAskedFor) {
@@ -28,8 +39,8 @@ TEST_F(ConfirmationTest, TakesAsManyImagesAsAreAskedFor) {
     QualityConfig config;
     config.confirmations = wanted;
     Confirmation confirmation(config);
-    for (int k = 1; k < wanted; ++k) EXPECT_FALSE(confirmation.add(at(7.0), kRoi, TrackRecord())) << wanted;
-    EXPECT_TRUE(confirmation.add(at(7.0), kRoi, TrackRecord())) << wanted;
+    for (int k = 1; k < wanted; ++k) EXPECT_FALSE(confirmation.add(at(7.0), 0.04 * k)) << wanted;
+    EXPECT_TRUE(confirmation.add(at(7.0), 0.04 * wanted)) << wanted;
   }
 }
 
@@ -52,6 +63,51 @@ TEST_F(ConfirmationTest, ExpectsItToGoOnAsItWent) {
   EXPECT_TRUE(add(at(20.0)));
 }
 
+TEST_F(ConfirmationTest, WaitsInImagesInWhichItIsNotFound) {
+  add(at(0.0));
+  for (int k = 0; k < 3; ++k) miss();
+  add(at(10.0));
+  EXPECT_NEAR(confirmation_.awaited()->g(0, 2), 10.0, 1e-12);  // how fast it moved is not known
+  miss();
+  EXPECT_TRUE(confirmation_.waiting());
+  EXPECT_TRUE(add(at(12.0)));
+}
+
+TEST_F(ConfirmationTest, DoesNotWaitForLong) {
+  add(at(0.0));
+  add(at(0.0));
+  for (int k = 0; k < 6; ++k) miss();  // 0.24 s
+  EXPECT_FALSE(confirmation_.waiting());
+  EXPECT_FALSE(add(at(0.0)));
+}
+
+TEST_F(ConfirmationTest, WhatWasMissedIsProvenByItsBlocks) {
+  add(at(0.0, 3));
+  add(at(0.0, 3));
+  EXPECT_TRUE(confirmation_.justFound());
+  miss();
+  EXPECT_FALSE(confirmation_.justFound());
+  EXPECT_FALSE(add(at(0.0, 3))) << "starts again";
+  EXPECT_FALSE(add(at(0.0, 3)));
+  miss();
+  EXPECT_TRUE(add(at(0.0, 12)));
+}
+
+TEST_F(ConfirmationTest, WhatIsNotMissedNeedsNoMoreBlocks) {
+  add(at(0.0, 3));
+  add(at(0.0, 3));
+  EXPECT_TRUE(add(at(0.0, 3)));
+}
+
+TEST_F(ConfirmationTest, DoesNotWaitElsewhere) {
+  add(at(0.0));
+  add(at(0.0));
+  miss();
+  EXPECT_FALSE(add(at(60.0)));
+  EXPECT_FALSE(add(at(60.0)));
+  EXPECT_TRUE(add(at(60.0)));
+}
+
 // A new record allows 19 px.
 TEST_F(ConfirmationTest, WhatIsElsewhereStartsAgain) {
   add(at(0.0));
@@ -65,22 +121,27 @@ TEST_F(ConfirmationTest, WhatIsElsewhereStartsAgain) {
 TEST_F(ConfirmationTest, AFurtherWayIsAllowedWhileTheMotionIsNotKnown) {
   TrackRecord calm;
   for (int k = 0; k < 200; ++k) calm.add(0.9, 3.0, 0.0, 1.0, 0.04);
+  const auto calmly = [&](double x) {
+    Evidence found = at(x);
+    found.record = calm;
+    return found;
+  };
   const double way = 0.1 * 85.0;
   Confirmation first(QualityConfig{});
-  first.add(at(0.0), kRoi, calm);
-  first.add(at(way), kRoi, calm);
-  EXPECT_TRUE(first.add(at(2.0 * way), kRoi, calm));
+  first.add(calmly(0.0), 0.0);
+  first.add(calmly(way), 0.0);
+  EXPECT_TRUE(first.add(calmly(2.0 * way), 0.0));
   Confirmation later(QualityConfig{});
-  later.add(at(0.0), kRoi, calm);
-  later.add(at(0.0), kRoi, calm);
-  EXPECT_FALSE(later.add(at(way), kRoi, calm));
+  later.add(calmly(0.0), 0.0);
+  later.add(calmly(0.0), 0.0);
+  EXPECT_FALSE(later.add(calmly(way), 0.0));
 }
 
 TEST_F(ConfirmationTest, WhatHasNoImageIsNowhereNear) {
   add(at(0.0));
   add(at(0.0));
-  EsmResult through_infinity = at(0.0);
-  through_infinity.state.g(2, 0) = -1.0 / 130.0;
+  Evidence through_infinity = at(0.0);
+  through_infinity.esm.state.g(2, 0) = -1.0 / 130.0;
   EXPECT_FALSE(add(through_infinity));
 }
 
