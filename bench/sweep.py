@@ -282,7 +282,7 @@ def main():
     print("| --- | --- | --- |", " | ".join("---" for _ in usual), "|")
     print("| as it is | | |", " | ".join(map(str, usual.values())), "|", flush=True)
     kept.add(("", "as it is", "", ""), usual)
-    part_folder = FOLDER[arguments.part].removeprefix("src/") + "/"
+    part_folder = FOLDER[arguments.part][len("src/"):] + "/"
     wanted = [part_folder + under for under in arguments.under or [""]]
     for source in [s for under in wanted for s in build.sources if s.name.startswith(under)]:
         for constant, (kind, number) in source.numbers.items():

@@ -20,6 +20,11 @@ def program(name):
                    "source the workspace's devel/setup.bash")
 
 
+def exit_status(status):
+    """Of a process as subprocess has it, negative by a signal, from what os.wait4 says: os.waitstatus_to_exitcode is newer than Python 3.8."""
+    return -os.WTERMSIG(status) if os.WIFSIGNALED(status) else os.WEXITSTATUS(status)
+
+
 def source_options(row):
     """Options of track_bag and describe_recording that say which images are meant, of a line of a manifest."""
     names = {"start": "--start", "end": "--end", "image_topic": "--image-topic", "camera_info": "--camera-info", "params": "--params",

@@ -57,7 +57,7 @@ def run(command, log):
         before = {number: signal.signal(number, stop) for number in (signal.SIGTERM, signal.SIGINT)}
         try:
             _, status, usage = os.wait4(process.pid, 0)
-            process.returncode = os.waitstatus_to_exitcode(status)
+            process.returncode = programs.exit_status(status)
         except Stopped as name:
             process.wait()
             raise TrackingEnded(f"ended by {name}") from None
