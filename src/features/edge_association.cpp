@@ -32,12 +32,9 @@ int bestOf(const WeightedCandidates& candidates, double range, double moved) {
 }
 
 double displacement(const Site& site, const Eigen::VectorXd& step) {
-  const Eigen::Index unknowns = step.size();
   double sum = 0.0;
-  for (int k = 0; k < site.count; ++k) {
-    const Eigen::Index column = site.first + k;
-    sum += site.jacobian[static_cast<std::size_t>(k)] * step[column < unknowns ? column : column - unknowns];
-  }
+  for (int k = 0; k < site.count; ++k)
+    sum += site.jacobian[static_cast<std::size_t>(k)] * step[robust::columnOf(site.first, k, step.size())];
   return sum;
 }
 

@@ -7,6 +7,7 @@
 
 #include "features/chance.h"
 #include "laparoscope_servo/features/edge_association.h"
+#include "laparoscope_servo/robust/irls.h"
 #include "laparoscope_servo/robust/largest.h"
 
 namespace laparoscope_servo::features {
@@ -26,12 +27,11 @@ constexpr double kTolerances[] = {kAgreeDistance, 0.5 * kAgreeDistance, 0.25 * k
 
 // px^2, of the curve's displacement along the site's normal: J C J', C being symmetric.
 double variance(const Site& site, const Eigen::MatrixXd& covariance) {
-  const Eigen::Index unknowns = covariance.rows();
   std::array<Eigen::Index, Site::kMostCoefficients> column{};
   double sum = 0.0;
   for (int k = 0; k < site.count; ++k) {
     const std::size_t i = static_cast<std::size_t>(k);
-    column[i] = site.first + k < unknowns ? site.first + k : site.first + k - unknowns;
+    column[i] = robust::columnOf(site.first, k, covariance.rows());
     double row = 0.5 * site.jacobian[i] * covariance(column[i], column[i]);
     for (std::size_t l = 0; l < i; ++l) row += site.jacobian[l] * covariance(column[l], column[i]);
     sum += 2.0 * site.jacobian[i] * row;

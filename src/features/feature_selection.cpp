@@ -4,6 +4,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "laparoscope_servo/features/curve.h"
+
 namespace laparoscope_servo::features {
 
 namespace {
@@ -13,7 +15,6 @@ constexpr double kMostRange = 100.0;
 constexpr int kAnyNumber = -1;
 constexpr double kFarthestPose = 1e3;  // m
 constexpr int kMostCorners = 500;
-constexpr double kFarthest = 1e5;  // px: of an image, and of whatever in or beside it
 
 // Of the parameters, see FeatureKind.
 int parametersOf(FeatureKind kind) {

@@ -14,7 +14,6 @@ namespace {
 constexpr int kProbes = 4;           // sites beyond each end
 constexpr int kEndRun = 4;           // sites, of which all but one are seen where the line begins
 constexpr double kRemembered = 2.0;  // s
-constexpr double kFarthest = 1e5;    // px
 
 double turned(double angle) {
   return std::atan2(std::sin(angle), std::cos(angle));

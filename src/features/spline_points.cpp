@@ -10,12 +10,11 @@ namespace laparoscope_servo::features {
 
 namespace {
 
-constexpr double kPiece = 16.0;    // px, from control point to control point, unless their number is given;
-constexpr int kMostUnasked = 32;   // but no more of them than this, or than points are given
-constexpr double kApart = 2.0;     // px, from point to point, at least
-constexpr double kFarthest = 1e5;  // px
-constexpr int kChords = 16;        // between two of the given points
-constexpr int kSweeps = 24;        // each leaves a quarter of the error
+constexpr double kPiece = 16.0;   // px, from control point to control point, unless their number is given;
+constexpr int kMostUnasked = 32;  // but no more of them than this, or than points are given
+constexpr double kApart = 2.0;    // px, from point to point, at least
+constexpr int kChords = 16;       // between two of the given points
+constexpr int kSweeps = 24;       // each leaves a quarter of the error
 
 [[noreturn]] void refuse(const std::string& what, double value, const std::string& expected) {
   std::ostringstream text;

@@ -187,10 +187,11 @@ void warpNearest(const cv::Mat& image, const Eigen::Matrix3d& g, const cv::Size&
   warpRows(image, g, nullptr, size, patch);
 }
 
-void warpNearest(const cv::Mat& image, const Eigen::Matrix3d& g, const Lens& lens, const cv::Size& size,
+void warpNearest(const cv::Mat& image, const Eigen::Matrix3d& g, const Lens* lens, const cv::Size& size,
                  ColourPatch& patch) {
-  const LensLoop loop = lens.loop({});
-  warpRows(image, lens.raysFromRectified() * g, &loop, size, patch);
+  if (lens == nullptr) return warpNearest(image, g, size, patch);
+  const LensLoop loop = lens->loop({});
+  warpRows(image, lens->raysFromRectified() * g, &loop, size, patch);
 }
 
 void saturatedPixels(const ColourPatch& patch, const std::array<int, 3>& thresholds, int grow, cv::Mat1b& mask) {

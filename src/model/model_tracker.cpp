@@ -117,8 +117,7 @@ class ModelTracker::Implementation {
     const Eigen::Vector3d centre = outline.centre();
     const double depth = centre.z() - model_->radius;
     if (!(depth > 0.0)) return;  // it may be anywhere
-    const Eigen::Vector2d place(camera_.cx + camera_.fx * centre.x() / centre.z(),
-                                camera_.cy + camera_.fy * centre.y() / centre.z());
+    const Eigen::Vector2d place = project(camera_, centre);
     const double reach = std::max(camera_.fx, camera_.fy) * model_->radius / depth * (1.0 + centre.norm() / centre.z());
     if (place.x() + reach >= 0.0 && place.y() + reach >= 0.0 && place.x() - reach < size.width &&
         place.y() - reach < size.height)

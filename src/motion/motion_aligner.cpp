@@ -158,14 +158,13 @@ void MotionAligner::beginOffsets(int l, const Alignment& at) {
   }
 }
 
-// The blocks' offsets were eliminated from the equations: what the step `x` of all else leaves of the mean residual.
 void MotionAligner::stepOffsets(int l, const Vector10d& x, Alignment& at) {
   std::vector<double>& bias = levels_[static_cast<std::size_t>(l)].planes[0].bias;
   double sum = 0.0, weight = 0.0;
   for (std::size_t k = 0; k < bias.size(); ++k) {
     const tracking::LightBlockSums& block = equations_.blocks()[k];
     if (!(block.weight > 0.0)) continue;
-    bias[k] -= (block.residual + block.jacobian.dot(x)) / block.weight;
+    bias[k] += block.biasStep(x);
     sum += block.weight * bias[k];
     weight += block.weight;
   }

@@ -14,11 +14,6 @@ namespace {
 // Of the pivots of A'WA: below it a direction is not determined in double precision.
 constexpr double kLeastPivot = 1e-12;
 
-int column(const Row& row, int k, int unknowns) {
-  const int c = row.first + k;
-  return c < unknowns ? c : c - unknowns;
-}
-
 // Adds a row's part of A'WA, of which the lower triangle is used, and of A'Wb: coefficients side by side.
 void addBlock(const Row& row, double weight, Eigen::MatrixXd& normal, Eigen::VectorXd& right) {
   for (int l = 0; l < row.count; ++l) {
@@ -31,22 +26,20 @@ void addBlock(const Row& row, double weight, Eigen::MatrixXd& normal, Eigen::Vec
 
 // The same of coefficients that go on at the first column.
 void addRound(const Row& row, double weight, Eigen::MatrixXd& normal, Eigen::VectorXd& right) {
-  const int unknowns = static_cast<int>(right.size());
   for (int k = 0; k < row.count; ++k) {
     const double scaled = weight * row.a[static_cast<std::size_t>(k)];
-    const int r = column(row, k, unknowns);
+    const Eigen::Index r = columnOf(row.first, k, right.size());
     right[r] += scaled * row.b;
     for (int l = 0; l <= k; ++l) {
-      const int c = column(row, l, unknowns);
+      const Eigen::Index c = columnOf(row.first, l, right.size());
       normal(std::max(r, c), std::min(r, c)) += scaled * row.a[static_cast<std::size_t>(l)];
     }
   }
 }
 
 double product(const Row& row, const Eigen::VectorXd& x) {
-  const int unknowns = static_cast<int>(x.size());
   double sum = 0.0;
-  for (int k = 0; k < row.count; ++k) sum += row.a[static_cast<std::size_t>(k)] * x[column(row, k, unknowns)];
+  for (int k = 0; k < row.count; ++k) sum += row.a[static_cast<std::size_t>(k)] * x[columnOf(row.first, k, x.size())];
   return sum;
 }
 

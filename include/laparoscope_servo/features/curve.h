@@ -7,6 +7,8 @@
 
 namespace laparoscope_servo::features {
 
+constexpr double kFarthest = 1e5;  // px: of an image, and of whatever in or beside it
+
 // A point of the curve at which an edge is searched along the normal.
 struct Site {
   static constexpr int kMostCoefficients = 8;

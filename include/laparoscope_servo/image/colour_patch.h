@@ -24,8 +24,8 @@ struct ColourPatch {
 void warpNearest(const cv::Mat& image, const Eigen::Matrix3d& g, const cv::Size& size, ColourPatch& patch);
 
 // warpNearest() through a lens: `g` takes (i, j, 1) to rectified pixels, `image` is the whole raw image. Pixels outside
-// the lens's field are not valid.
-void warpNearest(const cv::Mat& image, const Eigen::Matrix3d& g, const Lens& lens, const cv::Size& size,
+// the lens's field are not valid. Null: there is no lens.
+void warpNearest(const cv::Mat& image, const Eigen::Matrix3d& g, const Lens* lens, const cv::Size& size,
                  ColourPatch& patch);
 
 // Mask: 255 where a channel (blue, green, red) is at least its threshold (grey levels; without colour, the least of

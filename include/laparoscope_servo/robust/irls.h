@@ -22,12 +22,18 @@ struct Row {
   double weight = 1.0;            // what is known of it beforehand; a row without weight takes no part
 };
 
+// Column of the k-th coefficient of a row that begins at column `first`.
+inline Eigen::Index columnOf(Eigen::Index first, Eigen::Index k, Eigen::Index unknowns) {
+  const Eigen::Index column = first + k;
+  return column < unknowns ? column : column - unknowns;
+}
+
 struct IrlsConfig {
   Weights weights = Weights::kTukey;
   int max_iterations = 20;
   double min_sigma = 0.0;  // the scale never falls below it: the noise that is known to be there
-  // The scale of the first step is no smaller, and that of each further one no smaller than half of the one before: rows
-  // that x brings together only later are not taken for outliers at once.
+  // The scale of the first step is no smaller, and that of each further one no smaller than half of the one before:
+  // rows that x brings together only later are not taken for outliers at once.
   double start_sigma = 0.0;
   double min_step = 1e-6;  // ends when no unknown changes by more
 };

@@ -124,11 +124,7 @@ bool BlockMatching::look(const image::RegionPyramid& current, const Eigen::Matri
 void BlockMatching::leaveOut(const cv::Mat& mask, const Eigen::Matrix3d& g) {
   valid_.copyTo(in_image_);
   const cv::Size size = valid_.size();
-  if (lens_) {
-    image::warpNearest(mask, g * reference_T_crop_, *lens_, size, covered_);
-  } else {
-    image::warpNearest(mask, g * reference_T_crop_, size, covered_);
-  }
+  image::warpNearest(mask, g * reference_T_crop_, lens_.get(), size, covered_);
   for (int j = 0; j < size.height; ++j) {
     const uchar* const covered = covered_.blue.ptr<uchar>(j);
     for (int i = 0; i < size.width; ++i) {

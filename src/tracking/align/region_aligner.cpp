@@ -109,11 +109,7 @@ void RegionAligner::sample(const cv::Mat& image, const Eigen::Matrix3d& g, image
   Eigen::Matrix3d image_T_sample = g * esm_.level(0).image_T_patch;
   image_T_sample.leftCols<2>() *= step;
   const cv::Size samples((size.width + step - 1) / step, (size.height + step - 1) / step);
-  if (lens_) {
-    image::warpNearest(image, image_T_sample, *lens_, samples, patch);
-  } else {
-    image::warpNearest(image, image_T_sample, samples, patch);
-  }
+  image::warpNearest(image, image_T_sample, lens_.get(), samples, patch);
 }
 
 void RegionAligner::look(const cv::Mat& image, const Eigen::Matrix3d& g) {

@@ -62,11 +62,7 @@ void RegionAligners::sample(const cv::Mat& image, const Eigen::Matrix3d& g) {
   const double middle = 0.5 * (step_ - 1.0);
   roi_T_sample.topLeftCorner<2, 2>() *= step_;
   roi_T_sample.topRightCorner<2, 1>() << roi.x + middle, roi.y + middle;
-  if (lens_) {
-    image::warpNearest(image, g * roi_T_sample, *lens_, samples_, patch_);
-  } else {
-    image::warpNearest(image, g * roi_T_sample, samples_, patch_);
-  }
+  image::warpNearest(image, g * roi_T_sample, lens_.get(), samples_, patch_);
 }
 
 // Share of what the reference shows of a mixture that the current image shows as well.

@@ -172,7 +172,7 @@ void Esm::takeStep(EsmLevel& level, const Vector10d& x, EsmState& state) {
         plane.bias[block] = state.bias;
       } else if (light_ == Light::kLocal && sums->weight > 0.0) {
         // The step is one of gain * image + bias; part of it is what the gain's does to the mean.
-        plane.bias[block] += x[8] * plane.mean[block] - (sums->residual + sums->jacobian.dot(x)) / sums->weight;
+        plane.bias[block] += x[8] * plane.mean[block] + sums->biasStep(x);
         bias += sums->weight * plane.biasOf(block, state.gain);
         weight += sums->weight;
       }

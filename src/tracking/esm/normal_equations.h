@@ -65,8 +65,7 @@ class NormalEquations {
   // J'WJ and J'Wr of all blocks. Unknowns that `light` does not have get a row of the identity, and 0.
   Matrix10d matrix() const;
   const Vector10d& vector() const { return vector_; }
-  // Sums of the last block that ended: sum w, sum w r, and sum w J. A step x changes the block's bias by -(sum w r +
-  // sum w J x) / sum w.
+  // Sums of the last block that ended: sum w, sum w r, and sum w J; see LightBlockSums.
   double blockWeight() const { return block_weight_; }
   double blockResidual() const { return block_residual_; }
   const Vector10d& blockJacobian() const { return block_jacobian_; }
@@ -98,6 +97,10 @@ struct LightBlockSums {
   double residual;
   Vector10d jacobian;
   Vector10d score;
+
+  // Change of the block's own bias, which was eliminated, by a step `x` of all else: what that leaves of the mean
+  // residual. The weight must not be 0.
+  double biasStep(const Vector10d& x) const { return -(residual + jacobian.dot(x)) / weight; }
 };
 
 class LevelEquations {

@@ -144,15 +144,19 @@ std::optional<SearchPlace> RegionSearch::nextSuggested(const cv::Mat& image) {
 double RegionSearch::lookCost(const cv::Size& image, const Eigen::Matrix3d& g) const {
   const geometry::Quadrilateral corners = geometry::apply(g, keyframes_.roi().corners());
   const double built = std::min(static_cast<double>(image.area()), kAround * geometry::signedArea(corners));
-  return built * nominal_cost::kPixelBuilt +
-         iterationCost() / nominal_cost::kPixelIterated * nominal_cost::kPixelLookedAt;
+  return built * nominal_cost::kPixelBuilt + finestPixels() * nominal_cost::kPixelLookedAt;
+}
+
+// Of the ROI on the finest level.
+double RegionSearch::finestPixels() const {
+  const geometry::Rectangle& roi = keyframes_.roi();
+  const double scale = finestScale(roi);
+  return roi.width * roi.height / (scale * scale);
 }
 
 // Of an iteration on the finest level.
 double RegionSearch::iterationCost() const {
-  const geometry::Rectangle& roi = keyframes_.roi();
-  const double scale = finestScale(roi);
-  return roi.width * roi.height / (scale * scale) * nominal_cost::kPixelIterated;
+  return finestPixels() * nominal_cost::kPixelIterated;
 }
 
 bool RegionSearch::judge(const Attempt& attempt, const RegionAligner& aligner) {

@@ -84,6 +84,7 @@ class RegionSearch {
   bool work(const cv::Mat& image, const RegionAligner& aligner);
   void suggest(const Eigen::Matrix3d& g, Suggestion by);
   double lookCost(const cv::Size& image, const Eigen::Matrix3d& g) const;
+  double finestPixels() const;
   double iterationCost() const;
   double slideCost() const;
   void slide(const RegionAligner& aligner);

@@ -43,7 +43,7 @@ TEST_F(LensWarp, IsThePlainOneWhenAllCoefficientsAreZero) {
     }
     ColourPatch near, plain_near;
     warpNearest(colour_, g_, cv::Size(300, 170), plain_near);
-    warpNearest(colour_, g_, lens, cv::Size(300, 170), near);
+    warpNearest(colour_, g_, &lens, cv::Size(300, 170), near);
     EXPECT_EQ(cv::countNonZero(near.valid != plain_near.valid), 0);
     EXPECT_LT(cv::countNonZero(near.green != plain_near.green), 300 * 170 / 500)
         << "but for pixels half-way between two";
@@ -74,7 +74,7 @@ TEST_F(LensWarp, ShowsWhatOpenCvRemaps) {
     const cv::Mat1f sharp = rectify(image_(crop), g_, lens, {crop.tl(), 1.0}, u.size());
     EXPECT_LT(cv::norm(patch, sharp, cv::NORM_L2) / std::sqrt(sharp.total()), 1.0) << name(p);
     ColourPatch near;
-    warpNearest(colour_, g_, lens, u.size(), near);
+    warpNearest(colour_, g_, &lens, u.size(), near);
     EXPECT_EQ(cv::countNonZero(near.valid), static_cast<int>(u.total()));
     cv::Mat red;
     cv::Mat planes[3];
@@ -94,7 +94,7 @@ TEST_F(LensWarp, MarksWhatIsOutsideTheImageOrTheField) {
   left(0, 2) = -300.0;
   EXPECT_FALSE(warpBilinear(image_, left, lens, {}, patch, valid));
   ColourPatch near;
-  warpNearest(colour_, left, lens, patch.size(), near);
+  warpNearest(colour_, left, &lens, patch.size(), near);
   for (int j = 0; j < patch.rows; j += 5) {
     for (int i = 0; i < patch.cols; i += 5) {
       const auto raw = lens.toRaw(Eigen::Vector2d(i - 300.0, j));
