@@ -127,7 +127,7 @@ void MotionAligner::setOffset(int l, double offset) {
 
 void MotionAligner::warp(const MotionImage& current, int l, const Alignment& at) {
   warpImage(current, l, at.g);
-  setOffset(l, at.offset);
+  if (!hasOwnOffsets(l)) setOffset(l, at.offset);
 }
 
 // The median of each block's differences: after one offset for all, Tukey's weights would drop whole blocks that are
@@ -272,9 +272,8 @@ void MotionAligner::judgeAgain(const MotionImage& current, int l, const Eigen::M
   double least = std::numeric_limits<double>::infinity();
   int most = 0;
   const auto look = [&](const Eigen::Matrix3d& g) {
-    Alignment there = at;
-    there.g = g;
-    warp(current, l, there);
+    warpImage(current, l, g);
+    setOffset(l, at.offset);
     tracking::ResidualScale& residuals = residuals_[count];
     const double sigma = scaleOf(l, residuals, residuals.of(level, at.gain));
     least = std::min(least, sigma);
@@ -304,8 +303,7 @@ void MotionAligner::judgeAgain(const MotionImage& current, int l, const Eigen::M
 // Iterates until the remaining way, extrapolated from how the steps shrink, is short.
 void MotionAligner::refine(const MotionImage& current, int l, Alignment& at) {
   const double scale = levels_[static_cast<std::size_t>(l)].scale;
-  // On coarser levels, where the motion may be far off yet, the offsets would take up what drives it.
-  const bool local = l == 0 && config_.light;
+  const bool local = hasOwnOffsets(l);
   const double accuracy = scale * (l == 0 ? kAccuracy : kCoarseAccuracy);
   double contraction = kContraction;
   for (int k = 0; k < kIterations; ++k) {

@@ -76,7 +76,8 @@ class MotionAligner {
   // determine them.
   std::optional<tracking::Matrix8d> covariance() const;
   const tracking::LevelEquations& equations() const { return equations_; }
-  // Warps level `l` of the image as it is aligned, into level(l).
+  // Warps level `l` of the image into level(l), as the last alignment left it: with one offset, or with the blocks'
+  // own.
   void warp(const MotionImage& current, int l, const Alignment& at);
   // Sums the equations of that level, with Tukey's weights at the scale found there, or without weights by residuals.
   void sum(int l, const Alignment& at, bool robust);
@@ -92,6 +93,8 @@ class MotionAligner {
     bool gain, offset;
   };
   Unknowns all() const { return {parametersOf(config_.model), config_.light, config_.light}; }
+  // On coarser levels, where the motion may be far off yet, the offsets would take up what drives it.
+  bool hasOwnOffsets(int l) const { return l == 0 && config_.light; }
   enum class Offsets { kOne, kBegin, kGoOn };  // one for all pixels; of each block, begun anew or as they are
   bool step(const MotionImage& current, int l, const Unknowns& unknowns, Offsets offsets,
             tracking::ResidualScale& scale, Alignment& at);

@@ -91,21 +91,25 @@ void MotionSupport::judge(MotionAligner& aligner, const MotionImage& current, co
   }
   share_ = saying > 0.0 ? following / saying : 0.0;
   textured_ = static_cast<double>(textured) / static_cast<double>(map_.total());
-  measureScale(level, at);
+  measureScale(level, at.gain);
 }
 
-void MotionSupport::measureScale(const tracking::EsmLevel& level, const Alignment& at) {
+void MotionSupport::measureScale(const tracking::EsmLevel& level, double gain) {
   magnitudes_.clear();
   magnitudes_.reserve(static_cast<std::size_t>(level.width / kEvery + 1) * static_cast<std::size_t>(level.height));
   const tracking::EsmPlane& plane = level.planes[0];
   const image::Patch& weight = level.usedWeight();
-  const float gain = static_cast<float>(at.gain), offset = static_cast<float>(at.offset);
   const int width = cell_.width / static_cast<int>(level.scale);
+  std::size_t row = 0;  // of blocks of light
   for (int j = 0; j < level.height; ++j) {
+    if (j == level.light_row_begin[row + 1]) ++row;
     const unsigned char* cells = map_[j / level.cell_rows];
     for (int i = j % kEvery; i < level.width; i += kEvery) {
       if (cells[i / width] != kFollows || !(weight(j, i) > 0.0f)) continue;
-      magnitudes_.push_back(std::abs(gain * plane.warped(j, i) + offset - plane.value(j, i)));
+      const int column = level.light_column_of_strip[static_cast<std::size_t>(i / image::Patch::kStrip)];
+      const std::size_t block = row * static_cast<std::size_t>(level.light_columns) + static_cast<std::size_t>(column);
+      const float offset = static_cast<float>(plane.biasOf(block, gain));
+      magnitudes_.push_back(std::abs(static_cast<float>(gain) * plane.warped(j, i) + offset - plane.value(j, i)));
     }
   }
   sigma_ = magnitudes_.empty()

@@ -33,7 +33,7 @@ class MotionSupport {
   cv::Size cellSize() const { return cell_; }
 
  private:
-  void measureScale(const tracking::EsmLevel& level, const Alignment& at);
+  void measureScale(const tracking::EsmLevel& level, double gain);
 
   cv::Mat1b map_;
   cv::Size cell_;

@@ -12,8 +12,8 @@ using test::usualMotion;
 
 class MotionSupportTest : public testing::Test {
  protected:
-  void judge(const cv::Mat& reference, const cv::Mat& current, const Eigen::Matrix3d& start) {
-    const MotionConfig config;
+  void judge(const cv::Mat& reference, const cv::Mat& current, const Eigen::Matrix3d& start,
+             const MotionConfig& config = MotionConfig()) {
     MotionAligner aligner(config);
     MotionImage before, after;
     before.take(reference, cv::Mat(), config);
@@ -69,6 +69,19 @@ TEST_F(MotionSupportTest, WhatIsFlatSaysNothing) {
   judge(before, after, homographyOf(field));
   EXPECT_GT(shareOf(cv::Rect(0, 32, 128, 176), MotionSupport::kSilent), 0.9);
   EXPECT_GT(support_.share(), 0.9);
+}
+
+// Of an image with a single level what is judged is the finest one, on which each block of light has its own offset.
+TEST_F(MotionSupportTest, AllFollowsOnASingleLevelUnderALightThatIsUneven) {
+  MotionConfig config;
+  config.max_pixels = 80 * 60;
+  const MotionField field = usualMotion();
+  cv::Mat after = movingTissue(1, field);
+  for (int i = 0; i < after.cols; ++i) after.col(i) += cv::Scalar::all(40.0 * i / after.cols - 20.0);
+  judge(movingTissue(0, field), after, homographyOf(field), config);
+  EXPECT_EQ(support_.level(), 0);
+  EXPECT_GT(support_.share(), 0.9);
+  EXPECT_LT(support_.sigma(), 4.0) << "grey levels; what is uneven within a block is left";
 }
 
 TEST_F(MotionSupportTest, IsCleared) {
