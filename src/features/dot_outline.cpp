@@ -39,7 +39,7 @@ int sectorOf(double u, double v) {
   const int quadrant = v < 0.0 ? (u < 0.0 ? 0 : 1) : (u < 0.0 ? 3 : 2);
   // Along and across the axis at which the quadrant begins.
   const double x = quadrant % 2 == 0 ? std::abs(u) : std::abs(v), y = quadrant % 2 == 0 ? std::abs(v) : std::abs(u);
-  return 3 * quadrant + (y >= kTan30 * x ? 1 : 0) + (y >= kTan60 * x ? 1 : 0);
+  return 3 * quadrant + (y > kTan30 * x ? 1 : 0) + (y > kTan60 * x ? 1 : 0);
 }
 
 }  // namespace laparoscope_servo::features

@@ -22,7 +22,8 @@ class DotOutline {
   float minor_;
 };
 
-// The sector, 0 to kSectors - 1 from -180 degrees on, in which (u, v) lies as seen from the centre.
+// The sector, 0 to kSectors - 1 from -180 degrees on, in which (u, v) lies as seen from the centre; that itself lies in
+// that of the angle 0.
 int sectorOf(double u, double v);
 
 }  // namespace laparoscope_servo::features

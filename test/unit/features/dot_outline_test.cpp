@@ -45,6 +45,11 @@ TEST(DotOutline, theCentreIsTheSmallerRadiusInside) {
   EXPECT_EQ(found, -5.0f);
 }
 
+TEST(DotOutline, theCentreHasTheSectorOfTheAngleZero) {
+  EXPECT_EQ(sectorOf(0.0, 0.0), sectorOf(1.0, 0.0));
+  EXPECT_EQ(sectorOf(0.0, 0.0), kSectors / 2);
+}
+
 TEST(DotOutline, sectorsAreThoseOfTheAngle) {
   for (int degree = -179; degree < 180; degree += 2) {  // no border of a sector, which either may have
     const double angle = degree * M_PI / 180.0;
