@@ -70,11 +70,19 @@ void FeatureNodelet::process(const sensor_msgs::ImageConstPtr& message) {
   statistics_.answered(steadyNow(), (ros::Time::now() - processed.header.stamp).toSec());
 }
 
+void FeatureNodelet::publishFeatures(const ProcessedFeatures& processed, const cv::Size& size) {
+  if (features_publisher_.getNumSubscribers() == 0) return;
+  features_publisher_.publish(boost::make_shared<TrackedFeatures>(
+      featuresMessage(processed.header, size, processed.result, processed.selection_stamp)));
+}
+
+void FeatureNodelet::notSeen(const sensor_msgs::Image& image, const std::string& why) {
+  publishFeatures(session_->notSeen(image.header, why),
+                  cv::Size(static_cast<int>(image.width), static_cast<int>(image.height)));
+}
+
 void FeatureNodelet::publish(const ProcessedFeatures& processed) {
-  if (features_publisher_.getNumSubscribers() > 0) {
-    features_publisher_.publish(boost::make_shared<TrackedFeatures>(
-        featuresMessage(processed.header, processed.image.size(), processed.result, processed.selection_stamp)));
-  }
+  publishFeatures(processed, processed.image.size());
   if (poses_) poses_->publish(processed.header, processed.result);
   if (mask_publisher_ && mask_publisher_.getNumSubscribers() > 0)
     mask_publisher_.publish(imageMessage(processed.header, session_->mask()));

@@ -40,10 +40,12 @@ class FeatureNodelet : public ImageNodelet {
   void process(const sensor_msgs::ImageConstPtr& message) override;
   void takeCameraInfo(const sensor_msgs::CameraInfo& info) override { session_->setCameraInfo(info); }
   void clockJumpedBack() override { session_->clockJumpedBack(); }
+  void notSeen(const sensor_msgs::Image& image, const std::string& why) override;
   void refused(const std::string& error, Refusal cause) override;
   void diagnose(double now, const FeedPublishers& publishers,
                 diagnostic_updater::DiagnosticStatusWrapper& status) override;
   void publish(const ProcessedFeatures& processed);
+  void publishFeatures(const ProcessedFeatures& processed, const cv::Size& size);
   bool reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   // In a thread of its own, because it waits for an image.
   bool select(SelectFeatures::Request& request, SelectFeatures::Response& response);

@@ -105,11 +105,21 @@ void ImageNodelet::leaveForLater(const sensor_msgs::ImageConstPtr& message) {
 void ImageNodelet::imageCallback(const sensor_msgs::ImageConstPtr& message) {
   // A bad image must not end the process, which the camera driver may share. (cv::Exception is a std::exception.)
   try {
-    process(message);
+    processOrTell(message);
   } catch (const ImageError& error) {
     refuse(error.what(), error.cause());
   } catch (const std::exception& error) {
     refuse(error.what());
+  }
+}
+
+// Other images that are refused are single ones, as a rule, and no reason to stop.
+void ImageNodelet::processOrTell(const sensor_msgs::ImageConstPtr& message) {
+  try {
+    process(message);
+  } catch (const ImageError& error) {
+    if (error.cause() == Refusal::kSize) notSeen(*message, error.what());
+    throw;
   }
 }
 

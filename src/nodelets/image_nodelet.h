@@ -37,6 +37,9 @@ class ImageNodelet : public nodelet::Nodelet {
   virtual void process(const sensor_msgs::ImageConstPtr& message) = 0;
   virtual void takeCameraInfo(const sensor_msgs::CameraInfo& info) = 0;
   virtual void clockJumpedBack() = 0;
+  // Called for an image that may be the first one of another camera; refused() follows. Says at once that nothing of
+  // what is tracked was seen in it: the scope must not go on by the image before it until it is certain whose this is.
+  virtual void notSeen(const sensor_msgs::Image& image, const std::string& why) = 0;
   // An image could not be used; it is logged already.
   virtual void refused(const std::string& error, Refusal cause) = 0;
   // Not called before start().
@@ -57,6 +60,7 @@ class ImageNodelet : public nodelet::Nodelet {
   void imageCallback(const sensor_msgs::ImageConstPtr& message);
   // For the raw transport, with which the sender of an image is known.
   void rawImageCallback(const ros::MessageEvent<const sensor_msgs::Image>& event);
+  void processOrTell(const sensor_msgs::ImageConstPtr& message);
   void leaveForLater(const sensor_msgs::ImageConstPtr& message);
   void cameraInfoCallback(const ros::MessageEvent<const sensor_msgs::CameraInfo>& event);
   void refuse(const std::string& error, Refusal cause = Refusal::kData);

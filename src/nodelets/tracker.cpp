@@ -128,11 +128,8 @@ void Tracker::process(const sensor_msgs::ImageConstPtr& message) {
     processed = session_->process(*message, roi != nullptr ? std::make_optional(*roi) : std::nullopt);
   } catch (const std::exception& error) {
     guard.set({false, std::string("the image could not be used: ") + error.what()});
-    const auto* refusal = dynamic_cast<const ImageError*>(&error);
-    if (refusal != nullptr && refusal->cause() == Refusal::kSize) publishNotSeen(message->header);
     throw;
   }
-  reference_stamp_ = processed.reference_stamp;
   if (const auto* roi = questionOf<geometry::Rectangle>(guard)) {
     const bool selected = processed.result.selected_now;
     guard.set({selected, selected ? "selected " + roiText(*roi) : processed.selection_error});
@@ -168,12 +165,10 @@ void Tracker::publish(const Processed& processed) {
   }
 }
 
-// An image of another size may be the first one of another camera: the scope must not go on by the image before it
-// until that is certain. Other images that are refused are single ones, as a rule, and no reason to stop.
-void Tracker::publishNotSeen(const std_msgs::Header& header) {
+void Tracker::notSeen(const sensor_msgs::Image& image, const std::string& /*why*/) {
   Processed not_seen;
-  not_seen.header = header;
-  not_seen.reference_stamp = reference_stamp_;
+  not_seen.header = image.header;
+  not_seen.reference_stamp = session_->referenceStamp();
   publishIfHeard(task_error_publisher_, taskErrorMessage, not_seen);
 }
 

@@ -45,11 +45,11 @@ class Tracker : public ImageNodelet {
   void takeCameraInfo(const sensor_msgs::CameraInfo& info) override { session_->setCameraInfo(info); }
   void clockJumpedBack() override;
   void takeMask(const ros::MessageEvent<const sensor_msgs::Image>& event);
+  void notSeen(const sensor_msgs::Image& image, const std::string& why) override;
   void refused(const std::string& error, Refusal cause) override;
   void diagnose(double now, const FeedPublishers& publishers,
                 diagnostic_updater::DiagnosticStatusWrapper& status) override;
   void publish(const Processed& processed);
-  void publishNotSeen(const std_msgs::Header& header);
   void publishState(const std::optional<TrackerState>& state);
   bool reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   // In a separate queue and thread, because it waits for an image.
@@ -73,7 +73,6 @@ class Tracker : public ImageNodelet {
   TrackerParameters parameters_;  // as read, then buffer for live_.take()
   std::unique_ptr<TrackerDiagnostics> statistics_;
   TrackerStateReport state_report_;
-  ros::Time reference_stamp_;  // of the last result
   Preview preview_;
 
   TrackerRequest request_;

@@ -83,6 +83,15 @@ ProcessedFeatures FeatureSession::process(const cv::Mat& decoded, const std_msgs
   return processed;
 }
 
+ProcessedFeatures FeatureSession::notSeen(const std_msgs::Header& header, const std::string& why) const {
+  ProcessedFeatures not_seen;
+  not_seen.header = header;
+  not_seen.result = tracker_->features();
+  not_seen.selection_stamp = selection_stamp_;
+  lower(not_seen.result, why);
+  return not_seen;
+}
+
 void FeatureSession::complete(ProcessedFeatures& processed, const std::optional<features::FeatureSelection>& request) {
   const ImageGate::Passed passed = intake_.pass(processed.header.stamp, processed.image);
   processed.period = passed.period;

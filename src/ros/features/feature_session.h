@@ -55,6 +55,9 @@ class FeatureSession {
   // begins again, the features are forgotten, and those of the file selected again.
   ProcessedFeatures process(const sensor_msgs::Image& message,
                             const std::optional<features::FeatureSelection>& request = std::nullopt);
+  // What is to be told of an image that process() refused because of its size: no feature was seen in it. Has neither
+  // an image nor times; the session is unchanged.
+  ProcessedFeatures notSeen(const std_msgs::Header& header, const std::string& why) const;
   // Processes an image decoded by OpenCV.
   ProcessedFeatures process(const cv::Mat& decoded, const std_msgs::Header& header,
                             const std::optional<features::FeatureSelection>& request = std::nullopt);

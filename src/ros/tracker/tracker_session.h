@@ -88,6 +88,8 @@ class TrackerSession {
   // The image in which the present region was selected, or that of the view that was recalled; null: there is none. Its
   // pixels are not changed any more.
   std::shared_ptr<const Snapshot> reference() const;
+  // Of the image in which the present or last region was selected, or of the view that was recalled; zero: none was.
+  ros::Time referenceStamp() const { return reference_stamp_; }
   // Starts a recall with the next image: each view of the way is the reference until it is reached; the last one stays.
   // Returns why it is refused: a ROI was selected, or the session was reset, after the image from which the way was
   // planned.

@@ -120,12 +120,21 @@ TEST_P(FeaturesNodelets, SaysThatNoImageComes) {
   EXPECT_NE(answer.message.find("no image came on /scope/image within 1 s"), std::string::npos) << answer.message;
 }
 
-TEST_P(FeaturesNodelets, RefusesSingleImagesOfAnotherKindAndGoesOn) {
+// It may be the first one of another camera: who moves by the features must not go on by the image before it.
+TEST_P(FeaturesNodelets, SaysOfTheFirstImageOfAnotherKindThatNothingIsSeenAndGoesOn) {
   DiagnosticsListener diagnostics(bench().node(), "scope/" + kind());
   select();
   const cv::Mat small(120, 160, CV_8UC1, cv::Scalar(90)), colour(240, 320, CV_8UC3, cv::Scalar::all(90));
   for (const cv::Mat& other : {small, colour}) {
-    EXPECT_FALSE(bench().track(kind(), other, FeatureBench::nextStamp(), 0.3));
+    const TrackedFeaturesConstPtr not_seen = bench().track(kind(), other);
+    ASSERT_TRUE(not_seen);
+    EXPECT_EQ(not_seen->state, TrackedFeatures::SEARCHING);
+    EXPECT_EQ(not_seen->width, static_cast<std::uint32_t>(other.cols));
+    EXPECT_FALSE(not_seen->selection_stamp.isZero());
+    for (const TrackedFeature& feature : not_seen->features) {
+      EXPECT_EQ(feature.state, TrackedFeatures::SEARCHING);
+      EXPECT_NE(feature.reason.find("another camera is believed"), std::string::npos) << feature.reason;
+    }
     EXPECT_TRUE(diagnostics.waitForMessage(diagnostic_msgs::DiagnosticStatus::ERROR, "another camera is believed"))
         << diagnostics.last();
     const TrackedFeaturesConstPtr told = track();
@@ -140,9 +149,10 @@ TEST_P(FeaturesNodelets, EndsWithAnotherSizeAndWithAnotherColour) {
     ASSERT_TRUE(bench().trackUntil(kind(), [](const TrackedFeatures&) { return true; }));
     select();
     TrackedFeaturesConstPtr told;
-    ASSERT_TRUE(
-        waitFor([&] { return (told = bench().track(kind(), other, FeatureBench::nextStamp(), 0.3)) != nullptr; }));
-    EXPECT_EQ(told->state, TrackedFeatures::IDLE);
+    ASSERT_TRUE(waitFor([&] {
+      told = bench().track(kind(), other, FeatureBench::nextStamp(), 0.3);
+      return told && told->state == TrackedFeatures::IDLE;
+    }));
     EXPECT_NE(told->reason.find("another size or type"), std::string::npos) << told->reason;
   }
 }

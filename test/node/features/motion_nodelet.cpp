@@ -95,7 +95,9 @@ TEST_F(MotionNodelet, SaysWhyThereIsNoMotion) {
 TEST_F(MotionNodelet, RefusesAnImageOfAnotherSizeAndGoesOn) {
   DiagnosticsListener diagnostics(bench().node(), "scope/motion");
   ASSERT_TRUE(trackUntil(TrackedFeatures::TRACKING));
-  EXPECT_FALSE(send(cv::Mat(120, 160, CV_8UC3, cv::Scalar(90, 90, 90))));
+  const TrackedFeaturesConstPtr told = send(cv::Mat(120, 160, CV_8UC3, cv::Scalar(90, 90, 90)));
+  ASSERT_TRUE(told);
+  EXPECT_EQ(told->state, TrackedFeatures::SEARCHING);
   EXPECT_TRUE(diagnostics.waitForMessage(diagnostic_msgs::DiagnosticStatus::ERROR, "image refused"))
       << diagnostics.last();
   EXPECT_TRUE(trackUntil(TrackedFeatures::TRACKING));

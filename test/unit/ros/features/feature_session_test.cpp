@@ -190,6 +190,25 @@ TEST_P(FeatureSessionTest, RefusesSingleImagesThatAreNoneOfTheSequence) {
   EXPECT_EQ(next(session).result.state, State::kTracking);
 }
 
+TEST_P(FeatureSessionTest, TellsThatNothingWasSeenInAnImageThatItRefused) {
+  FeatureSession session = this->session();
+  EXPECT_EQ(session.notSeen({}, "why").result.state, State::kIdle);
+  const ProcessedFeatures selected = select(session);
+  std_msgs::Header header;
+  header.stamp = ros::Time(time_ + 0.01);
+  const ProcessedFeatures not_seen = session.notSeen(header, "of another size");
+  EXPECT_EQ(not_seen.header.stamp, header.stamp);
+  EXPECT_EQ(not_seen.selection_stamp, selected.header.stamp);
+  EXPECT_EQ(not_seen.result.state, State::kSearching);
+  ASSERT_EQ(not_seen.result.features.size(), 2u);
+  for (const features::TrackedFeature& feature : not_seen.result.features) {
+    EXPECT_EQ(feature.state, State::kSearching);
+    EXPECT_EQ(feature.reason, "of another size");
+    EXPECT_TRUE(std::isinf(feature.expected_error));
+  }
+  EXPECT_EQ(next(session).result.state, State::kTracking) << "the session is unchanged";
+}
+
 TEST_P(FeatureSessionTest, EndsWithAnotherCamera) {
   FeatureSession session = this->session();
   select(session);
