@@ -54,6 +54,10 @@ servo::TaskErrorInput TipInput::from(const TrackedFeatures& message, const Featu
   servo::TaskErrorInput input;
   input.problem = camera.problem();
   if (!input.problem.empty()) return input;
+  if (!camera.hasSizeOf(message)) {
+    input.problem = "the tip is of images of another size than camera_info says";
+    return input;
+  }
   const TrackedFeature* const tip = choose(message, camera);
   input.region = number_;
   if (tip == nullptr || !isSeen(*tip)) return input;

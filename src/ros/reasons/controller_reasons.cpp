@@ -138,7 +138,8 @@ const std::vector<ReasonRow>& controllerReasons() {
        "Bring it back, and select it again.",
        "tasks.md#follow"},
       {{"the motion of the object is of images of another size than camera_info says",
-        "the points are of images of another size than camera_info says"},
+        "the points are of images of another size than camera_info says",
+        "the tip is of images of another size than camera_info says"},
        "The node that tracks sees other images than camera_info is of.",
        "Is the camera_info that of this camera?"},
       // The points, in POINTS.

@@ -42,6 +42,7 @@ TEST_F(ControllerCentreTip, EachLossStopsIt) {
       {"leaves", [](MotionWords& w) { w.message.features[0].parameters[0] = 600.0; }, "the tip leaves"},
       {"uncertain", [](MotionWords& w) { w.message.features[0].expected_error = 9.0; }, "centre_tip/max_error"},
       {"not a number", [](MotionWords& w) { w.message.features[0].parameters[1] = std::nan(""); }, "not finite"},
+      {"of another size", [](MotionWords& w) { w.message.width = 320; }, "another size"},
       {"stamped ahead", [](MotionWords& w) { w.stamp_offset = 60.0; }, "future"},
       {"without a stamp", [](MotionWords& w) { w.without_stamp = true; }, "no stamp"},
   });

@@ -47,6 +47,8 @@ inline TrackedFeatures viewOff(double u, double v) {
 inline TrackedFeatures tipAt(double u, double v, const std::string& number = "1") {
   TrackedFeatures message;
   message.state = TrackedFeatures::TRACKING;
+  message.width = 640;
+  message.height = 480;
   TrackedFeature tip;
   tip.id = number + " tip";
   tip.kind = TrackedFeature::POINT;

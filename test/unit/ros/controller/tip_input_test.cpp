@@ -25,6 +25,8 @@ TrackedFeature tip(const std::string& number, double u, double v) {
 
 TrackedFeatures of(const std::vector<TrackedFeature>& features) {
   TrackedFeatures message;
+  message.width = 640;
+  message.height = 480;
   message.features = features;
   return message;
 }
@@ -70,7 +72,7 @@ TEST(TipInput, IsNotValidUnlessTheTipIsTracked) {
     EXPECT_FALSE(input.from(of({lost}), camera).valid) << int{state};
   }
   TipInput input{servo::CentreTipConfig()};
-  EXPECT_FALSE(input.from(TrackedFeatures(), camera).valid);
+  EXPECT_FALSE(input.from(of({}), camera).valid);
   for (const char* id : {"1", "tip", " tip", "1 left"}) {
     TrackedFeature none = tip("1", 310.0, 250.0);
     none.id = id;
@@ -84,6 +86,16 @@ TEST(TipInput, IsNotValidUnlessTheTipIsTracked) {
   EXPECT_FALSE(input.from(of({empty}), camera).valid);
   TrackedFeature nan = tip("1", std::numeric_limits<double>::quiet_NaN(), 250.0);
   EXPECT_FALSE(input.from(of({nan}), camera).valid);
+}
+
+TEST(TipInput, RefusesATipOfImagesOfAnotherSizeThanTheCamera) {
+  TipInput input{servo::CentreTipConfig()};
+  TrackedFeatures message = of({tip("1", 310.0, 200.0)});
+  message.height = 240;
+  const servo::TaskErrorInput seen = input.from(message, calibrated());
+  EXPECT_FALSE(seen.valid);
+  EXPECT_EQ(seen.problem, "the tip is of images of another size than camera_info says");
+  EXPECT_TRUE(input.from(of({tip("1", 310.0, 200.0)}), calibrated()).valid);
 }
 
 TEST(TipInput, NeedsACalibration) {
