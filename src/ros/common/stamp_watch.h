@@ -21,7 +21,9 @@ class StampWatch {
   bool empty() const { return empty_; }
   void clear() { empty_ = true; }
 
-  // s, never negative. Call only if not empty.
+  // All below: call only if not empty. Of the last data.
+  const ros::Time& stamp() const { return stamp_; }
+  // s, never negative.
   double age(const ros::Time& now, double steady_now) const;
   // The two parts of the age: since new data came, and since the stamp.
   double silence(double steady_now) const;

@@ -222,6 +222,7 @@ void ControllerInputs::fill(servo::ControllerInput& input, double steady_now) co
   input.object = agedOf(motion_input_, object_, steady_now);
   input.points = agedOf(points_input_, points_, steady_now);
   input.position = agedOf(homography_input_, position_, steady_now);
+  if (isDenied(position_, task_error_)) input.position.valid = false;
   input.robot_report = robot_report_;
   input.robot_report.age = steady_now - robot_report_arrival_;
 }

@@ -99,6 +99,8 @@ class ControllerInputs {
   template <typename Message>
   bool takes(Input& input, Picture& picture, const ros::MessageEvent<Message const>& event, bool follows);
   void keep(Picture& picture, const servo::TaskErrorInput& seen);
+  // Whether the task error says that the region is not seen in the homography's image, or in a newer one.
+  static bool isDenied(const Picture& position, const Picture& task_error);
   static servo::TaskErrorInput agedOf(const Input& input, const Picture& picture, double steady_now);
   void onTaskError(const ros::MessageEvent<TaskError const>& event);
   void onHomography(const ros::MessageEvent<Homography const>& event);

@@ -37,8 +37,13 @@ void ControllerInputs::onTaskError(const ros::MessageEvent<TaskError const>& eve
   if (!takes(task_error_input_, task_error_, event, follows)) return;
   keep(task_error_, fromMessage(*event.getConstMessage()));
   position_input_.know(*event.getConstMessage());
-  // An image of another size has a task error, which is not valid, and no homography.
-  if (!task_error_.last.valid) position_.last.valid = false;
+}
+
+// An image of another size has a task error, which is not valid, and no homography; an estimate that is no motion of a
+// camera has both. The two topics may come in any order: one that is older than the homography says nothing.
+bool ControllerInputs::isDenied(const Picture& position, const Picture& task_error) {
+  return !task_error.watch.empty() && !task_error.last.valid && !position.watch.empty() &&
+         task_error.watch.stamp() >= position.watch.stamp();
 }
 
 void ControllerInputs::onHomography(const ros::MessageEvent<Homography const>& event) {

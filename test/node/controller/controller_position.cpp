@@ -43,6 +43,23 @@ TEST_F(ControllerPosition, MovesByTheHomography) {
   }
 }
 
+// Task errors that are not valid: older than each homography they say nothing of it, as new or newer they do.
+TEST_F(ControllerPosition, AnOlderTaskErrorDoesNotDenyTheHomographyAndANewerOneDoes) {
+  cart_.set([](Feed& feed) {
+    feed.stamp_offset = -0.09;  // s: more than two periods of the homography, and no jump of the clock
+    feed.message.valid = false;
+  });
+  cart_.nextCommands(20);
+  engageAndMove();
+  int still = 0;
+  for (const ScopeVelocity& command : cart_.nextCommands(100)) still += isZero(command) ? 1 : 0;
+  EXPECT_LT(still, 10) << "of 100, where a busy machine makes a homography late";
+  feed_.set([](PositionWords& w) { w.stamp_offset = -0.08; });
+  cart_.set([](Feed& feed) { feed.stamp_offset = 0.0; });
+  ASSERT_TRUE(waitForReason("not valid")) << cart_.state().reason;
+  for (const ScopeVelocity& command : cart_.nextCommands(20)) EXPECT_TRUE(isZero(command));
+}
+
 TEST_F(ControllerPosition, EachLossStopsIt) {
   eachLossStopsIt(losses());
 }
