@@ -92,9 +92,10 @@ class Facts:
             return False
 
 
-def scenes(facts):
-    """Of a recording, each with `start` and `end` in s and `roi`: one, and neither start nor end, where no cut is known."""
-    return json.loads(facts.get("scenes") or "null") or [{"start": 0.0, "roi": facts["roi"]}]
+def scenes(facts, cuts=True):
+    """Of a recording, each with `start` and `end` in s and `roi`: one, and no end, where no cut is known, or none counts."""
+    told = json.loads(facts.get("scenes") or "null") if cuts else None
+    return told or [{"start": 0.0, "roi": facts["roi"]}]
 
 
 def seconds(facts):

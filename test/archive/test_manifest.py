@@ -39,6 +39,9 @@ def test_cuts_are_looked_for_when_they_are_asked_for(tmp_path):
     (tmp_path / "m.csv").unlink()
     call("archive_manifest", "propose", folder, tmp_path / "m.csv")
     assert len(files.read_table(tmp_path / "m.csv")) == 2, "that the film is known without its cuts is not enough"
+    (tmp_path / "m.csv").unlink()
+    said = call("archive_manifest", "propose", folder, tmp_path / "m.csv", "--no-cuts")
+    assert len(files.read_table(tmp_path / "m.csv")) == 1 and "a line for each scene" not in said, "known cuts do not count either"
 
 
 def test_a_changed_recording_is_opened_again(tmp_path):
