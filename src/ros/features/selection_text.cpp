@@ -10,6 +10,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "laparoscope_servo/features/curve.h"
 #include "laparoscope_servo/geometry/se3.h"
 #include "laparoscope_servo/validation/error_report.h"
 
@@ -25,8 +26,6 @@ constexpr std::array<FeatureKind, 6> kWrittenKinds = {FeatureKind::kPoint,  Feat
 constexpr char kShapes[] = "one of point, corners, line, ellipse, spline, motion, pose";
 constexpr char kKeys[] =
     "id, one of point, corners, line, ellipse, spline, motion, pose, and arc, closed, range, stored, desired";
-
-constexpr int kFarthest = 100000;  // px
 
 // Each file is read once, so that features of one file have one picture.
 class Pictures {
@@ -130,8 +129,8 @@ class Reader {
     std::array<int, 4> sides{};
     bool is_region = node.IsSequence() && node.size() == sides.size();
     for (std::size_t k = 0; is_region && k < sides.size(); ++k)
-      is_region =
-          node[k].IsScalar() && YAML::convert<int>::decode(node[k], sides[k]) && std::abs(sides[k]) <= kFarthest;
+      is_region = node[k].IsScalar() && YAML::convert<int>::decode(node[k], sides[k]) &&
+                  std::abs(static_cast<double>(sides[k])) <= features::kFarthest;
     if (!is_region || sides[2] < 1 || sides[3] < 1) {
       refuse(node, "region", "[x, y, width, height] in whole px, width and height of 1 or more");
       return {};

@@ -91,6 +91,7 @@ TEST(SelectionText, NamesWhatIsWrongWithCornersAndPictures) {
             "selection: a, line 1: region, expected [x, y, width, height] in whole px, width and height of 1 or more");
   EXPECT_NE(errorOf("- {id: a, corners: {region: [1, 2, 0, 5]}}").find("region"), std::string::npos);
   EXPECT_NE(errorOf("- {id: a, corners: {region: [1, 2, 3000000, 5]}}").find("region"), std::string::npos);
+  EXPECT_NE(errorOf("- {id: a, corners: {region: [-2147483648, 2, 30, 5]}}").find("region"), std::string::npos);
   EXPECT_EQ(errorOf("- {id: a, corners: {count: many}}"),
             "selection: a, line 1: count = many, expected a whole number");
   EXPECT_NE(errorOf("- {id: a, corners: {number: 5}}").find("= number, expected region or count"), std::string::npos);
