@@ -25,21 +25,14 @@ Marker lines(const std::string& base, int id, int type) {
 }  // namespace
 
 void PositionTarget::take(const Homography& message, const tf2::BufferCore& tf) {
-  if (message.state == Homography::IDLE) {
-    selection_ = ros::Time();
-    base_T_then_.reset();
-    return;
-  }
-  if (message.reference_stamp != selection_) {
-    selection_ = message.reference_stamp;
-    base_T_then_.reset();
-  }
+  const ros::Time selected = message.state == Homography::IDLE ? ros::Time() : message.reference_stamp;
+  if (selected != selection_) base_T_then_.reset();
+  selection_ = selected;
   if (base_T_then_ || selection_.isZero()) return;
-  const Eigen::Matrix3d back =
-      Eigen::Matrix3d(Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(message.g.data())).inverse();
+  const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> g(message.g.data());
   geometry::Quadrilateral corners;
   for (std::size_t k = 0; k < 4; ++k) corners[k] = {message.corners[2 * k], message.corners[2 * k + 1]};
-  outline_ = geometry::apply(back, corners);
+  outline_ = geometry::apply(g.inverse(), corners);
   try {
     base_T_then_ = fromMessage(tf.lookupTransform(base_, camera_, selection_).transform);
   } catch (const tf2::TransformException&) {

@@ -37,7 +37,7 @@ ScopeMarkers::ScopeMarkers(ros::NodeHandle node, ros::NodeHandle private_node, c
       target_(config.frame_prefix + kBase, config.frame_prefix + config.camera_frame),
       publisher_(private_node.advertise<MarkerArray>("markers", 1)),
       camera_info_subscriber_(node.subscribe<sensor_msgs::CameraInfo>(
-          "camera_info", 1, [this](const sensor_msgs::CameraInfoConstPtr& info) { camera_info_ = *info; })),
+          "camera_info", 1, [this](const sensor_msgs::CameraInfoConstPtr& info) { takeCameraInfo(*info); })),
       homography_subscriber_(node.subscribe<Homography>(
           "homography", 1, [this](const HomographyConstPtr& message) { target_.take(*message, tf_); })),
       state_subscriber_(node.subscribe<ControllerState>(
@@ -54,6 +54,12 @@ std::optional<Eigen::Vector3d> ScopeMarkers::origin(const std::string& frame) co
   } catch (const tf2::TransformException&) {
     return std::nullopt;  // not yet: rviz's own display of tf says what is missing
   }
+}
+
+void ScopeMarkers::takeCameraInfo(const sensor_msgs::CameraInfo& info) {
+  camera_ = geometry::cameraFromRowMajor(info.K.data());
+  if (!camera_->error().empty()) camera_.reset();
+  image_size_ = {static_cast<int>(info.width), static_cast<int>(info.height)};
 }
 
 void ScopeMarkers::publish() {
@@ -81,20 +87,15 @@ void ScopeMarkers::addScope(MarkerArray& array) const {
   if (!a || !b) return;
   array.markers.push_back(cylinderMarker(config_.frame_prefix + kBase, "scope", 0, *a, *b, config_.scope_radius));
   setColour(array.markers.back(), 0.25, 0.27, 0.32, 1.0);
-  if (!camera_info_) return;
-  const geometry::PinholeCamera camera = geometry::cameraFromRowMajor(camera_info_->K.data());
-  if (!camera.error().empty()) return;
-  const cv::Size size(static_cast<int>(camera_info_->width), static_cast<int>(camera_info_->height));
-  array.markers.push_back(viewMarker(config_.frame_prefix + config_.camera_frame, camera, size, config_.view_depth));
+  if (!camera_) return;
+  array.markers.push_back(
+      viewMarker(config_.frame_prefix + config_.camera_frame, *camera_, image_size_, config_.view_depth));
   array.markers.back().frame_locked = static_cast<std::uint8_t>(true);
 }
 
 void ScopeMarkers::addTarget(MarkerArray& array) const {
-  if (!camera_info_) return;
-  const geometry::PinholeCamera camera = geometry::cameraFromRowMajor(camera_info_->K.data());
-  if (!camera.error().empty()) return;
-  const cv::Size size(static_cast<int>(camera_info_->width), static_cast<int>(camera_info_->height));
-  target_.addTo(array, has_target_, camera, size, config_.view_depth, origin(config_.camera_frame));
+  if (camera_)
+    target_.addTo(array, has_target_, *camera_, image_size_, config_.view_depth, origin(config_.camera_frame));
 }
 
 void ScopeMarkers::addInsertionPoint(MarkerArray& array) const {

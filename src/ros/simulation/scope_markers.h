@@ -14,6 +14,7 @@
 #include <visualization_msgs/MarkerArray.h>
 
 #include <Eigen/Core>
+#include <opencv2/core.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -41,6 +42,7 @@ class ScopeMarkers {
   ScopeMarkers(ros::NodeHandle node, ros::NodeHandle private_node, const ScopeMarkersConfig& config);
 
  private:
+  void takeCameraInfo(const sensor_msgs::CameraInfo& info);
   void publish();
   void addArm(visualization_msgs::MarkerArray& array) const;
   void addScope(visualization_msgs::MarkerArray& array) const;
@@ -52,7 +54,8 @@ class ScopeMarkers {
   ScopeMarkersConfig config_;
   tf2_ros::Buffer tf_;
   tf2_ros::TransformListener tf_listener_;
-  std::optional<sensor_msgs::CameraInfo> camera_info_;
+  std::optional<geometry::PinholeCamera> camera_;  // of the last camera_info, if it can be used
+  cv::Size image_size_;                            // px
   PositionTarget target_;
   bool has_target_ = false;  // the task is POSITION
   ros::Publisher publisher_;
