@@ -249,8 +249,10 @@ int program(int argc, char** argv) {
   if (const auto status = parse(argc, argv, options, "image", -1, [&] { return !images.empty() && starts > 0; }))
     return *status;
   if (tasks.empty()) tasks = {"POINTS", "FOLLOW", "STABILISE", "PARALLEL"};
+  std::vector<Texture> textures;
+  for (const std::string& image : images) textures.push_back(textureOf(image));
   for (const std::string& task : tasks) {
-    for (const std::string& image : images) measure(textureOf(image), task, starts, pictures);
+    for (const Texture& texture : textures) measure(texture, task, starts, pictures);
   }
   return 0;
 }

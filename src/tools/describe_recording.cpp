@@ -57,7 +57,7 @@ void writeScenes(const OfflineOptions& options, JsonWriter& json) {
 void describe(Command& command) {
   const auto source = openImageSource(command.offline.inputs, command.offline.source);
   command.offline.parameters = readOfflineParameters(command.parameters);
-  const FirstImage first(command.offline);
+  const FirstImage first(command.offline, *source);
   const bool given = !command.roi.empty();
   const std::optional<geometry::Rectangle> roi = given ? parseRoi(command.roi) : first.suggestion();
   if (!command.picture.empty()) writePicture(first, roi, command.picture);

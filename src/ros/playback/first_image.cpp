@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <stdexcept>
 #include <utility>
 
@@ -16,21 +17,27 @@ namespace {
 
 constexpr double kShare = 1.0 / 3.0;  // of the image's smaller side: side of the region that is looked at first
 
-SourceImage readFirst(const OfflineOptions& options) {
+std::unique_ptr<ImageSource> openSource(const OfflineOptions& options) {
   if (options.inputs.empty())
     throw std::invalid_argument("no input is given, expected a bag, a video or a folder of images");
-  const auto source = openImageSource(options.inputs, options.source);
-  std::optional<SourceImage> image = source->next();
+  return openImageSource(options.inputs, options.source);
+}
+
+SourceImage readFirst(const OfflineOptions& options, ImageSource& source) {
+  std::optional<SourceImage> image = source.next();
   if (!image) {
     throw SourceError("'" + options.inputs.front() + "' has no image after " + std::to_string(options.source.start) +
-                      " s, but " + std::to_string(source->size()) + " in all");
+                      " s, but " + std::to_string(source.size()) + " in all");
   }
   return std::move(*image);
 }
 
 }  // namespace
 
-FirstImage::FirstImage(const OfflineOptions& options) : FirstImage(options, readFirst(options)) {}
+FirstImage::FirstImage(const OfflineOptions& options) : FirstImage(options, *openSource(options)) {}
+
+FirstImage::FirstImage(const OfflineOptions& options, ImageSource& source)
+    : FirstImage(options, readFirst(options, source)) {}
 
 FirstImage::FirstImage(const OfflineOptions& options, const SourceImage& image)
     : parameters_(options.parameters), frame_(image.frame) {

@@ -16,6 +16,8 @@ class FirstImage {
  public:
   // Throws as trackOffline does where the first image cannot be used.
   explicit FirstImage(const OfflineOptions& options);
+  // Reads it from a source that was opened for these options, and not read yet.
+  FirstImage(const OfflineOptions& options, ImageSource& source);
   // Of an image that was read already, with the camera_info that holds for it.
   FirstImage(const OfflineOptions& options, const SourceImage& image);
 
