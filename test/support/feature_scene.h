@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cv_bridge/cv_bridge.h>
+#include <sensor_msgs/CameraInfo.h>
 
 #include <cmath>
 #include <functional>
@@ -52,6 +53,15 @@ inline cv::Mat featureScene(double shift, unsigned seed, const std::function<voi
 
 inline cv::Mat coveredScene(unsigned seed) {
   return featureScene(0.0, seed, [](cv::Mat1f& pixels) { pixels.setTo(100.0f); });
+}
+
+// Of a camera of its pictures, 320 x 240 px.
+inline sensor_msgs::CameraInfo featureCamera() {
+  sensor_msgs::CameraInfo info;
+  info.width = 320;
+  info.height = 240;
+  info.K = {300.0, 0.0, 160.0, 0.0, 300.0, 120.0, 0.0, 0.0, 1.0};
+  return info;
 }
 
 inline sensor_msgs::ImagePtr imageAt(const cv::Mat& image, double seconds) {

@@ -193,20 +193,21 @@ TEST_F(VideoPlayer, TimeGoesOnAtALoopAfterAPauseToo) {
   start(folder());
   ASSERT_NO_FATAL_FAILURE(listen());
   ASSERT_TRUE(spinUntil([this] { return !images_->all.empty(); }));
-  control("PAUSE");
+  ASSERT_TRUE(control("PAUSE"));
   const auto number = [this] { return numberOf(*images_->all.back()); };
-  std::size_t on_the_way = 0;
-  do {
+  for (std::size_t on_the_way = 0; on_the_way != images_->all.size();) {
     on_the_way = images_->all.size();
-  } while (spinUntil([&] { return images_->all.size() > on_the_way; }, 0.2));
+    ASSERT_LT(on_the_way, 20u * kImages) << "it is not paused";
+    spinUntil([&] { return images_->all.size() > on_the_way; }, 0.2);
+  }
   for (int k = 0; k < 2 * kImages && number() != 3; ++k) {
     const std::size_t before = images_->all.size();
-    control("STEP");
+    EXPECT_TRUE(control("STEP"));
     ASSERT_TRUE(spinUntil([&] { return images_->all.size() > before; }));
   }
   ASSERT_EQ(number(), 3);
   const std::size_t paused = images_->all.size();
-  control("PLAY");
+  EXPECT_TRUE(control("PLAY"));
   ASSERT_TRUE(spinUntil([&] { return images_->all.size() > paused + kImages; }));
   for (std::size_t k = 1; k < images_->all.size(); ++k) EXPECT_NEAR((stamp(k) - stamp(k - 1)).toSec(), 0.01, 1e-8) << k;
 }
@@ -289,8 +290,10 @@ TEST_F(VideoPlayer, HoldsItsFirstImageUntilARegionIsSelectedAndGoesOnAsItIsTold)
   EXPECT_FALSE(spinUntil([&] { return number() != 3; }, 0.2));
   EXPECT_TRUE(control("SEEK", 1e6)) << "beyond the end";
   EXPECT_TRUE(spinUntil([&] { return state() == PlaybackState::ENDED; }));
+  const std::size_t before = images_->all.size();
   EXPECT_TRUE(control("AGAIN"));
-  EXPECT_TRUE(spinUntil([&] { return number() == kImages - 1 && state() == PlaybackState::ENDED; }));
+  EXPECT_TRUE(spinUntil([&] { return images_->all.size() >= before + kImages && state() == PlaybackState::ENDED; }));
+  EXPECT_EQ(number(), kImages - 1);
   EXPECT_TRUE(player_->isRunning());
 }
 

@@ -28,7 +28,7 @@ class ScreenWindow : public ScreenFixture {
     auto other = std::make_unique<QWidget>();
     other->setGeometry(1300, 10, 200, 100);
     other->show();
-    waitFor([&] { return other->windowHandle()->isExposed(); });
+    EXPECT_TRUE(waitFor([&] { return other->windowHandle()->isExposed(); })) << "the other window";
     return other;
   }
   // Draws until the screen asks for the region: a busy machine makes the picture old for a moment, and then nothing can

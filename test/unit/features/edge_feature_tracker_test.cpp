@@ -33,7 +33,7 @@ TEST(EdgeFeatureTracker, tellsALineAndAnEllipseOfOneImage) {
   EXPECT_NEAR(line.outline[0].x(), kLine + 2.0, 0.2);
   const TrackedFeature& rim = told.features[1];
   EXPECT_EQ(rim.kind, FeatureKind::kEllipse);
-  const Ellipse truth(kDisc + Eigen::Vector2d(2.0, 0.0), 25.0, 22.0, 0.3);
+  const Ellipse truth = discOutline(2.0);
   EXPECT_LT((Ellipse::fromCoefficients(rim.parameters).centre() - truth.centre()).norm(), 0.15);
   EXPECT_EQ(rim.covariance.rows(), 5);
   for (const Eigen::Vector2d& point : rim.outline) {
@@ -45,13 +45,7 @@ TEST(EdgeFeatureTracker, tellsALineAndAnEllipseOfOneImage) {
 
 TEST(EdgeFeatureTracker, tellsASpline) {
   EdgeFeatureTracker tracker;
-  FeatureSelection selection(1);
-  selection[0].id = "outline";
-  selection[0].kind = FeatureKind::kSpline;
-  selection[0].closed = true;
-  const Ellipse first(kDisc, 25.0, 22.0, 0.3);
-  for (int k = 0; k < 10; ++k) selection[0].points.push_back(first.at(0.2 * M_PI * k));
-  tracker.select(scene(0.0), 0.0, selection, {});
+  tracker.select(scene(0.0), 0.0, {contour()}, {});
   const TrackedFeatures& told = tracker.track(scene(2.0), kPeriod, {});
   ASSERT_EQ(told.state, State::kTracking) << told.reason;
   const TrackedFeature& spline = told.features[0];
@@ -62,7 +56,7 @@ TEST(EdgeFeatureTracker, tellsASpline) {
   const Eigen::Matrix2d of_first = spline.covariance.topLeftCorner<2, 2>();
   EXPECT_GT(of_first.trace(), 0.0);
   EXPECT_NEAR(of_first.determinant(), 0.0, 1e-9);
-  const Ellipse truth(kDisc + Eigen::Vector2d(2.0, 0.0), 25.0, 22.0, 0.3);
+  const Ellipse truth = discOutline(2.0);
   const EllipseCoefficients c = truth.coefficients();
   for (const Eigen::Vector2d& p : spline.outline) {
     const double value =

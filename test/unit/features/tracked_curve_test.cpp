@@ -22,15 +22,6 @@ SelectedFeature rim() {
   return edges()[1];
 }
 
-SelectedFeature contour() {
-  SelectedFeature selected;
-  selected.kind = FeatureKind::kSpline;
-  selected.closed = true;
-  const Ellipse disc(kDisc, 25.0, 22.0, 0.3);
-  for (int k = 0; k < 10; ++k) selected.points.push_back(disc.at(0.2 * M_PI * k));
-  return selected;
-}
-
 TrackedFeature told(const TrackedCurve& curve) {
   TrackedFeature feature;
   curve.tell(feature);
@@ -99,8 +90,7 @@ TEST(TrackedCurve, NothingIsKnownOfWhatIsNotSeen) {
 TEST(TrackedCurve, AnEllipseIsGivenByPointsOrByItsForm) {
   SelectedFeature by_points = rim();
   by_points.ellipse.reset();
-  const Ellipse disc(kDisc, 25.0, 22.0, 0.3);
-  for (const double phi : {0.1, 1.2, 2.6, 3.9, 5.4}) by_points.points.push_back(disc.at(phi));
+  for (const double phi : {0.1, 1.2, 2.6, 3.9, 5.4}) by_points.points.push_back(discOutline().at(phi));
   const auto first = makeTrackedCurve(FeatureKind::kEllipse, {}), second = makeTrackedCurve(FeatureKind::kEllipse, {});
   first->select(scene(0.0), 0.0, rim());
   second->select(scene(0.0), 0.0, by_points);

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <functional>
 #include <opencv2/core.hpp>
 
+#include "laparoscope_servo/features/ellipse.h"
 #include "laparoscope_servo/features/feature_selection.h"
 #include "support/synthetic_edges.h"
 
@@ -50,6 +52,21 @@ inline FeatureSelection points() {
   selection[1].id = "beside";
   selection[1].points = {kSmall + Eigen::Vector2d(6.0, -4.0)};
   return selection;
+}
+
+// The outline of the large disc, `shift` px to the right.
+inline Ellipse discOutline(double shift = 0.0) {
+  return {kDisc + Eigen::Vector2d(shift, 0.0), 25.0, 22.0, 0.3};
+}
+
+// The same as points that a closed spline goes through.
+inline SelectedFeature contour() {
+  SelectedFeature selected;
+  selected.id = "contour";
+  selected.kind = FeatureKind::kSpline;
+  selected.closed = true;
+  for (int k = 0; k < 10; ++k) selected.points.push_back(discOutline().at(0.2 * M_PI * k));
+  return selected;
 }
 
 inline FeatureSelection edges() {

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "lens_models.h"
+#include "support/error_text.h"
 
 namespace laparoscope_servo::image {
 namespace {
@@ -131,12 +132,7 @@ TEST(Lens, APoleEndsTheField) {
 TEST(Lens, RefusesWhatIsNoLens) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const auto error = [](const LensParameters& p) -> std::string {
-    try {
-      const Lens lens(p);
-    } catch (const std::invalid_argument& e) {
-      return e.what();
-    }
-    return "";
+    return test_support::errorText<std::invalid_argument>([&] { const Lens lens(p); });
   };
   LensParameters p = test::laparoscope(kSize, 500.0);
   EXPECT_EQ(error(p), "");

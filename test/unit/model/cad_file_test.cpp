@@ -2,18 +2,14 @@
 #include <gtest/gtest.h>
 
 #include "laparoscope_servo/model/cad_model.h"
+#include "support/error_text.h"
 #include "support/synthetic_model.h"
 
 namespace laparoscope_servo::model {
 namespace {
 
 std::string errorOf(const std::string& text) {
-  try {
-    test::modelOf(text);
-  } catch (const CadFileError& error) {
-    return error.what();
-  }
-  return "";
+  return test_support::errorText<CadFileError>([&] { test::modelOf(text); });
 }
 
 // A tetrahedron's points, one to a line from line 3 on.

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "laparoscope_servo/model/cad_model.h"
+#include "support/error_text.h"
 
 namespace laparoscope_servo::model {
 namespace {
@@ -18,12 +19,7 @@ CadWords wordsOf(const std::string& text) {
 
 std::string refusal(const std::string& text, const std::function<void(CadWords&)>& read) {
   CadWords words = wordsOf(text);
-  try {
-    read(words);
-  } catch (const CadFileError& error) {
-    return error.what();
-  }
-  return "";
+  return test_support::errorText<CadFileError>([&] { read(words); });
 }
 
 TEST(CadWords, comeInTheirOrderWithoutComments) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "support/error_text.h"
 #include "support/synthetic_model.h"
 
 namespace laparoscope_servo::model {
@@ -25,12 +26,7 @@ class ModelFeatureTrackerTest : public ::testing::Test {
     selection_.push_back(cube);
   }
   std::string refusal(const features::FeatureSelection& selection, const features::FeaturePrior& prior) {
-    try {
-      tracker_.select(image_, 0.0, selection, prior);
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "";
+    return test_support::errorText<std::invalid_argument>([&] { tracker_.select(image_, 0.0, selection, prior); });
   }
 
   test::ModelScene scene_;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "support/error_text.h"
 #include "support/synthetic_model.h"
 
 namespace laparoscope_servo::model {
@@ -149,12 +150,7 @@ TEST_F(ModelTrackerTest, timeThatJumpsBackAndAnotherImageReset) {
 TEST_F(ModelTrackerTest, aSelectionThatCannotBeIsRefusedAndTrackingGoesOn) {
   tracker_.select(image(0), 0.0, truth(0));
   const auto refusal = [&](const cv::Mat& pixels, double time, const Eigen::Isometry3d& pose) {
-    try {
-      tracker_.select(pixels, time, pose);
-    } catch (const std::invalid_argument& error) {
-      return std::string(error.what());
-    }
-    return std::string();
+    return test_support::errorText<std::invalid_argument>([&] { tracker_.select(pixels, time, pose); });
   };
   Eigen::Isometry3d behind = truth(0), skewed = truth(0);
   behind.translation().z() = -0.5;

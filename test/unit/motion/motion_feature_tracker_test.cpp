@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "support/error_text.h"
 #include "support/synthetic_motion.h"
 
 namespace laparoscope_servo::motion {
@@ -26,12 +27,8 @@ FeatureSelection selectionOf(const std::string& id, const std::vector<Eigen::Vec
 }
 
 std::string refusal(MotionFeatureTracker& tracker, const FeatureSelection& selection) {
-  try {
-    tracker.select(movingTissue(0, usualMotion()), 0.0, selection, {});
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "";
+  return test_support::errorText<std::invalid_argument>(
+      [&] { tracker.select(movingTissue(0, usualMotion()), 0.0, selection, {}); });
 }
 
 TEST(MotionFeatureTracker, TellsTheFieldWithoutASelection) {

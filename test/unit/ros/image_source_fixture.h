@@ -13,6 +13,7 @@
 
 #include "ros/playback/image_source.h"
 #include "ros/tracker/image_conversion.h"
+#include "support/error_text.h"
 #include "support/stamped_header.h"
 #include "support/temporary_folder.h"
 
@@ -37,12 +38,7 @@ inline std::vector<SourceImage> readAll(const std::string& path, const SourceOpt
 }
 
 inline std::string errorOf(const std::string& path, const SourceOptions& options = {}) {
-  try {
-    readAll(path, options);
-  } catch (const SourceError& error) {
-    return error.what();
-  }
-  return "";
+  return test_support::errorText<SourceError>([&] { readAll(path, options); });
 }
 
 inline bool mentions(const std::string& text, const std::string& part) {

@@ -1,50 +1,26 @@
 // The task CENTRE_TIP: when it moves, and each way in which it stands.
 #include <gtest/gtest.h>
 
-#include "controller_input.h"
-#include "laparoscope_servo/servo/place_error.h"
+#include "watching_task.h"
 
 namespace laparoscope_servo::servo {
 namespace {
 
 using test::blind;
-using test::good;
 using test::isZero;
 using test::kNan;
 
 const Eigen::Vector2d kOutside(0.25, -0.1);  // of the zone, and not so far that it leaves
 
-// In the closed loop's stead: the tip stays where it is seen, whatever the scope does.
-class Centring {
+class Centring : public test::WatchingTask {
  public:
-  Centring() : controller(blind()) {
-    controller.select(Task::kCentreTip);
-    input = good(0.0);
-    input.task_error = TaskErrorInput();
-    input.tip = good(0.0).task_error;
-    input.tip.region = 1.0;
-    seeAt({0.0, 0.0});
-    input.tip.image_time = -0.05;
-    EXPECT_EQ(controller.engage(input), "");
-  }
-  void seeAt(const Eigen::Vector2d& tip) { input.tip.error = placeError(tip, {0.0, 0.0}); }
-  ControllerOutput step() {
-    time += 0.02;
-    input.time = time;
-    if (input.tip.image_time) input.tip.image_time = time - 0.05;
-    input.tip.error.x += 1e-9;  // no two pictures are the same
-    return last = controller.update(input);
-  }
+  Centring() : WatchingTask(Task::kCentreTip, {0.0, 0.0}) { engage(); }
   // Whether it has moved meanwhile.
   bool movesIn(double seconds) {
     bool moves = false;
     for (const double end = time + seconds; time < end;) moves |= !isZero(step());
     return moves;
   }
-  Controller controller;
-  ControllerInput input;
-  ControllerOutput last;
-  double time = 0.0;
 };
 
 TEST(CentreTip, NothingMovesWithinTheZone) {

@@ -2,10 +2,9 @@
 // and of the turn: parallel_simulation_test.cpp.
 #include <gtest/gtest.h>
 
-#include "controller_input.h"
 #include "laparoscope_servo/geometry/se3.h"
-#include "laparoscope_servo/servo/place_error.h"
 #include "servo/shaping/dead_zone.h"
+#include "watching_task.h"
 
 namespace laparoscope_servo::servo {
 namespace {
@@ -14,43 +13,21 @@ using test::blind;
 using test::good;
 using test::isZero;
 
-constexpr double kPeriod = 0.02;  // s
+constexpr double kPeriod = test::WatchingTask::kPeriod;  // s
 
-// In the closed loop's stead: neither picture nor pose shows what the scope does.
-class Circling {
+class Circling : public test::WatchingTask {
  public:
-  explicit Circling(const ControllerConfig& configuration = blind()) : config(configuration), controller(config) {
-    input = good(0.0);
+  explicit Circling(const ControllerConfig& configuration = blind())
+      : WatchingTask(Task::kParallel, {0.15, -0.1}, configuration) {
     // Straight down into the body.
     Eigen::Isometry3d tip = Eigen::Isometry3d::Identity();
     tip.linear() = geometry::so3Exp({M_PI, 0.0, 0.0});
     tip.translation() = input.depth.d2 * tip.linear().col(2);
     input.depth.insertion_point_T_tip = tip;
-    input.view = good(0.0).task_error;
-    input.view.region = 1.0;
-    input.view.error = placeError({0.15, -0.1}, {0.0, 0.0});
-    input.view.image_time = -0.05;
   }
   // What the robot executes of the next command.
-  scope::Velocity step() {
-    time += kPeriod;
-    input.time = time;
-    input.view.image_time = time - 0.05;
-    input.view.error.x += 1e-9;  // no two pictures are the same
-    last = controller.update(input);
-    return afterDeadZone(last.command, config.dead_zone.width);
-  }
-  void engage() {
-    controller.select(Task::kParallel);
-    ASSERT_EQ(controller.engage(input), "");
-  }
+  scope::Velocity executed() { return afterDeadZone(step().command, config.dead_zone.width); }
   double speed() const { return config.parallel.radius * 2.0 * M_PI / config.parallel.period; }
-
-  ControllerConfig config;
-  Controller controller;
-  ControllerInput input;
-  ControllerOutput last;
-  double time = 0.0;
 };
 
 TEST(ControllerPlane, NeedsTheShaftsPose) {
@@ -73,8 +50,8 @@ TEST(ControllerPlane, GoesRoundWhateverTheErrorSays) {
   double farthest = 0.0;
   const int steps = static_cast<int>(std::lround(task.config.parallel.period / kPeriod));
   for (int k = 0; k < steps; ++k) {
-    const Eigen::Vector4d velocity = task.step().vector();
-    EXPECT_EQ(velocity, other.step().vector()) << k;
+    const Eigen::Vector4d velocity = task.executed().vector();
+    EXPECT_EQ(velocity, other.executed().vector()) << k;
     EXPECT_TRUE(velocity.tail<2>().isZero(0.0)) << velocity.transpose();
     if (k > 10) {
       EXPECT_NEAR(velocity.norm(), task.speed(), 0.02 * task.speed()) << k;
@@ -96,7 +73,7 @@ TEST(ControllerPlane, GoesSlowerWhereLessIsVisible) {
   double farthest = 0.0;
   const int steps = static_cast<int>(std::lround(2.0 * task.config.parallel.period / kPeriod));
   for (int k = 0; k < steps; ++k) {
-    const Eigen::Vector4d velocity = task.step().vector();
+    const Eigen::Vector4d velocity = task.executed().vector();
     EXPECT_NEAR(task.last.speed_scale, 0.5, 1e-9);
     if (k > 10) {
       EXPECT_NEAR(velocity.norm(), 0.5 * task.speed(), 0.02 * task.speed()) << k;
@@ -146,14 +123,14 @@ TEST(ControllerPlane, ACircleThatIsLeftBeginsAnew) {
   Circling task;
   task.engage();
   for (double end = 0.25 * task.config.parallel.period; task.time < end;) task.step();
-  EXPECT_GT(task.step().tilt, 0.9 * task.speed());
+  EXPECT_GT(task.executed().tilt, 0.9 * task.speed());
   task.controller.disengage("asked for");
   task.step();
   EXPECT_EQ(task.controller.figures().parallel.stage, ParallelStage::kUnknown);
   task.engage();
   for (int k = 0; k < 10; ++k) task.step();
   EXPECT_GT(task.last.command.pan, 0.9 * task.speed());
-  EXPECT_LT(std::abs(task.step().tilt), 0.5 * task.speed());
+  EXPECT_LT(std::abs(task.executed().tilt), 0.5 * task.speed());
 }
 
 }  // namespace

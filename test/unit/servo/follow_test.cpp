@@ -1,8 +1,7 @@
 // The tasks FOLLOW and POINTS: which degrees of freedom they use, and each way in which they stand.
 #include <gtest/gtest.h>
 
-#include "controller_input.h"
-#include "laparoscope_servo/servo/place_error.h"
+#include "watching_task.h"
 
 namespace laparoscope_servo::servo {
 namespace {
@@ -12,31 +11,9 @@ using test::good;
 using test::isZero;
 using test::kNan;
 
-// In the closed loop's stead: what is seen stays where it is, whatever the scope does.
-class Engaged {
+class Engaged : public test::WatchingTask {
  public:
-  explicit Engaged(Task chosen) : controller(blind()), task(chosen) {
-    controller.select(task);
-    input = good(0.0);
-    input.task_error = TaskErrorInput();
-    seen() = good(0.0).task_error;
-    seen().region = 1.0;
-    seen().image_time = -0.05;
-    seen().error = placeError({0.15, -0.1}, {0.0, 0.0});
-    EXPECT_EQ(controller.engage(input), "");
-  }
-  TaskErrorInput& seen() { return input.seenBy(task); }
-  ControllerOutput step() {
-    time += 0.02;
-    input.time = time;
-    if (seen().image_time) seen().image_time = time - 0.05;
-    seen().error.x += 1e-9;  // no two pictures are the same
-    return controller.update(input);
-  }
-  Controller controller;
-  ControllerInput input;
-  Task task;
-  double time = 0.0;
+  explicit Engaged(Task chosen) : WatchingTask(chosen, {0.15, -0.1}) { engage(); }
 };
 
 TEST(Follow, UsesPanAndTiltAlone) {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "laparoscope_servo/tracking/region_tracker.h"
+#include "support/error_text.h"
 #include "support/synthetic_sequence.h"
 
 namespace laparoscope_servo::tracking {
@@ -26,12 +27,7 @@ class RegionTrackerBorder : public testing::Test {
     return test_support::noisy(image, random_);
   }
   std::string refusal(const geometry::Rectangle& roi) {
-    try {
-      tracker_.select(picture(0, 0), 0.0, roi);
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "";
+    return test_support::errorText<std::invalid_argument>([&] { tracker_.select(picture(0, 0), 0.0, roi); });
   }
 
   cv::RNG random_{3};

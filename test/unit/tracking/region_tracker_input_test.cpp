@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "region_tracker_fixture.h"
+#include "support/error_text.h"
 
 namespace laparoscope_servo::tracking {
 namespace {
@@ -71,16 +72,13 @@ TEST_F(RegionTrackerInputTest, ARegionIsCheckedAsItWouldBeSelectedAndNothingChan
   select();
   const auto whyNot = [&](const geometry::Rectangle& roi, bool check) -> std::string {
     RegionTracker fresh{TrackerConfig()};
-    try {
+    return test_support::errorText<std::invalid_argument>([&] {
       if (check) {
         tracker_.check(image, roi);
       } else {
         fresh.select(image, 0.0, roi);
       }
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "";
+    });
   };
   for (const geometry::Rectangle& roi :
        {kRoi, geometry::Rectangle{300, 80, 112, 112}, geometry::Rectangle{10, 10, 3, 50}, geometry::Rectangle{}}) {

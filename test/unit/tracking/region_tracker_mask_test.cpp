@@ -6,6 +6,7 @@
 
 #include "laparoscope_servo/sim/scope_camera.h"
 #include "laparoscope_servo/tracking/region_tracker.h"
+#include "support/error_text.h"
 
 namespace laparoscope_servo::tracking {
 namespace {
@@ -87,12 +88,7 @@ TEST_F(RegionTrackerMask, ARegionOnAShaftIsRefusedAndOneBesideItIsProposed) {
                                    std::floor(moments.m01 / moments.m00) - 20, 40, 40};
   ASSERT_GT(shaft.area(), 0);
   const auto refusal = [&](const geometry::Rectangle& r) {
-    try {
-      tracker_.check(first.image, r);
-    } catch (const std::invalid_argument& error) {
-      return std::string(error.what());
-    }
-    return std::string();
+    return test_support::errorText<std::invalid_argument>([&] { tracker_.check(first.image, r); });
   };
   EXPECT_NE(refusal(roi).find(" lies on an instrument by "), std::string::npos) << refusal(roi);
   EXPECT_THROW(tracker_.select(first.image, 0.0, roi), std::invalid_argument);

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "support/error_text.h"
 #include "support/synthetic_tissue.h"
 
 namespace laparoscope_servo::tracking {
@@ -16,12 +17,7 @@ const cv::Mat kImage(120, 160, CV_8UC1, cv::Scalar(90));
 
 // What is said against the ROI; empty when nothing is.
 std::string refusal(const geometry::Rectangle& roi, const image::Lens* lens = nullptr) {
-  try {
-    checkedRoi(kImage, roi, 16, lens);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "";
+  return test_support::errorText<std::invalid_argument>([&] { checkedRoi(kImage, roi, 16, lens); });
 }
 
 image::Lens barrel() {

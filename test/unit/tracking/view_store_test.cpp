@@ -8,11 +8,13 @@
 #include <string>
 #include <vector>
 
+#include "support/error_text.h"
 #include "support/synthetic_tissue.h"
 
 namespace laparoscope_servo::tracking {
 namespace {
 
+using test_support::errorText;
 using Names = std::vector<std::string>;
 
 const cv::Size kSize(320, 240);
@@ -32,14 +34,6 @@ class ViewStoreTest : public ::testing::Test {
   }
   void storeRow(const Names& names) {
     for (std::size_t k = 0; k < names.size(); ++k) store_.store(names[k], at(kStep * static_cast<int>(k)), kRoi);
-  }
-  static std::string errorOf(const std::function<void()>& call) {
-    try {
-      call();
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "";
   }
 };
 
@@ -112,25 +106,32 @@ TEST_F(ViewStoreTest, KeepsACopyOfTheImage) {
 TEST_F(ViewStoreTest, RefusesWhatItCannotStoreAndStaysAsItWas) {
   store_ = ViewStore(TrackerConfig(), 2);
   storeRow({"a", "b"});
-  EXPECT_NE(errorOf([&] { store_.store("", at(0), kRoi); }).find("0 bytes"), std::string::npos);
-  EXPECT_NE(errorOf([&] { store_.store(std::string(65, 'x'), at(0), kRoi); }).find("65 bytes"), std::string::npos);
-  const std::string full = errorOf([&] { store_.store("c", at(0), kRoi); });
+  EXPECT_NE(errorText<std::invalid_argument>([&] { store_.store("", at(0), kRoi); }).find("0 bytes"),
+            std::string::npos);
+  EXPECT_NE(errorText<std::invalid_argument>([&] { store_.store(std::string(65, 'x'), at(0), kRoi); }).find("65 bytes"),
+            std::string::npos);
+  const std::string full = errorText<std::invalid_argument>([&] { store_.store("c", at(0), kRoi); });
   EXPECT_NE(full.find("no place is left for view 'c'"), std::string::npos) << full;
   EXPECT_NE(full.find("'a', 'b'"), std::string::npos) << full;
-  EXPECT_NE(errorOf([&] { store_.store("a", at(0), {300, 75, 100, 90}); }), "");
-  EXPECT_NE(errorOf([&] { store_.store("a", cv::Mat(kSize, CV_8UC3, cv::Scalar(9, 9, 9)), kRoi); }), "");
-  EXPECT_NE(errorOf([&] { store_.store("a", cv::Mat(), kRoi); }), "");
+  EXPECT_NE(errorText<std::invalid_argument>([&] { store_.store("a", at(0), {300, 75, 100, 90}); }), "");
+  EXPECT_NE(
+      errorText<std::invalid_argument>([&] { store_.store("a", cv::Mat(kSize, CV_8UC3, cv::Scalar(9, 9, 9)), kRoi); }),
+      "");
+  EXPECT_NE(errorText<std::invalid_argument>([&] { store_.store("a", cv::Mat(), kRoi); }), "");
   EXPECT_EQ(store_.names(), (Names{"a", "b"}));
   EXPECT_EQ(store_.path("a", "b"), (Names{"a", "b"}));
 }
 
 TEST_F(ViewStoreTest, NamesTheViewsThereAreWhenAnotherIsAskedFor) {
-  EXPECT_NE(errorOf([&] { store_.route(at(0), "x"); }).find("there is none"), std::string::npos);
+  EXPECT_NE(errorText<std::invalid_argument>([&] { store_.route(at(0), "x"); }).find("there is none"),
+            std::string::npos);
   storeRow({"a"});
   for (const auto& call : std::vector<std::function<void()>>{
            [&] { store_.get("x"); }, [&] { store_.isSeen("x", at(0)); }, [&] { store_.leads("a", "x"); },
            [&] { store_.path("x", "a"); }, [&] { store_.path("a", "x"); }, [&] { store_.route(at(0), "x"); }}) {
-    EXPECT_NE(errorOf(call).find("no view 'x' is stored, expected one of 'a'"), std::string::npos) << errorOf(call);
+    EXPECT_NE(errorText<std::invalid_argument>(call).find("no view 'x' is stored, expected one of 'a'"),
+              std::string::npos)
+        << errorText<std::invalid_argument>(call);
   }
 }
 

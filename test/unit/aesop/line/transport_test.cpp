@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "sim/arm/pty.h"
+#include "support/error_text.h"
 #include "support/temporary_folder.h"
 
 namespace laparoscope_servo::aesop {
@@ -20,12 +21,7 @@ class TransportTest : public ::testing::Test {
   std::string path(const std::string& name) const { return folder_.file(name); }
 
   static std::string errorOf(SerialTransport& transport, const std::string& port, int baud_rate = 38400) {
-    try {
-      transport.open(port, baud_rate);
-    } catch (const TransportError& error) {
-      return error.what();
-    }
-    return "";
+    return test_support::errorText<TransportError>([&] { transport.open(port, baud_rate); });
   }
   // What `read` gives until `size` bytes are there, or a second has passed.
   template <typename Read>

@@ -4,15 +4,17 @@
 
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <regex>
 #include <sstream>
 #include <stdexcept>
 
+#include "support/error_text.h"
 #include "support/temporary_folder.h"
 
 namespace laparoscope_servo {
 namespace {
+
+using test_support::errorText;
 
 const aesop::Kinematics kKinematics{aesop::KinematicsConfig()};
 
@@ -37,15 +39,6 @@ std::string contentOf(const std::string& file) {
   std::ostringstream text;
   text << stream.rdbuf();
   return text.str();
-}
-
-std::string errorOf(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
-  return "";
 }
 
 TEST(InsertionPointFile, WhatIsSavedIsLoaded) {
@@ -80,16 +73,21 @@ TEST(InsertionPointFile, ReplacesAsAWholeOrNotAtAll) {
 
   const std::string before = contentOf(file);
   std::filesystem::create_directory(file + ".partial");  // so that the new file cannot be made
-  EXPECT_NE(errorOf([&] { saveInsertionPoint(file, example()); }).find("'" + file + "' cannot be written"),
+  EXPECT_NE(errorText<std::runtime_error>([&] {
+              saveInsertionPoint(file, example());
+            }).find("'" + file + "' cannot be written"),
             std::string::npos);
   EXPECT_EQ(contentOf(file), before);
   std::filesystem::remove(file + ".partial");
 
   const std::string folder_name = folder.file("a_folder");
   std::filesystem::create_directory(folder_name);
-  EXPECT_NE(errorOf([&] { saveInsertionPoint(folder_name, example()); }).find("a_folder"), std::string::npos);
+  EXPECT_NE(errorText<std::runtime_error>([&] { saveInsertionPoint(folder_name, example()); }).find("a_folder"),
+            std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(folder_name + ".partial")) << "nothing is left behind";
-  EXPECT_NE(errorOf([&] { saveInsertionPoint(folder.file("no/such/point.yaml"), example()); }).find("No such file"),
+  EXPECT_NE(errorText<std::runtime_error>([&] {
+              saveInsertionPoint(folder.file("no/such/point.yaml"), example());
+            }).find("No such file"),
             std::string::npos);
 }
 
@@ -100,7 +98,7 @@ TEST(InsertionPointFile, SaysWhatIsWrongInAFile) {
   const std::string good = contentOf(file);
   const auto errorWith = [&](const std::string& pattern, const std::string& text) {
     std::ofstream(file) << std::regex_replace(good, std::regex(pattern), text);
-    const std::string error = errorOf([&] { loadInsertionPoint(file, kKinematics); });
+    const std::string error = errorText<std::runtime_error>([&] { loadInsertionPoint(file, kKinematics); });
     EXPECT_NE(error.find(file), std::string::npos) << "names the file: " << error;
     return error;
   };
@@ -119,7 +117,9 @@ TEST(InsertionPointFile, SaysWhatIsWrongInAFile) {
   EXPECT_NE(errorWith("[^]*", "").find("insertion_point"), std::string::npos) << "an empty file";
   EXPECT_NE(errorWith("[^]*", "{").find("point.yaml"), std::string::npos);
   EXPECT_NE(errorWith("[^]*", "just words").find("mapping"), std::string::npos);
-  EXPECT_NE(errorOf([&] { loadInsertionPoint(folder.file("absent.yaml"), kKinematics); }).find("absent.yaml"),
+  EXPECT_NE(errorText<std::runtime_error>([&] {
+              loadInsertionPoint(folder.file("absent.yaml"), kKinematics);
+            }).find("absent.yaml"),
             std::string::npos);
 }
 
@@ -129,11 +129,11 @@ TEST(InsertionPointFile, RefusesPosesOfOtherKinematics) {
   saveInsertionPoint(file, example());
   aesop::KinematicsConfig other;
   other.joints[1].a += 0.01;
-  const std::string error = errorOf([&] { loadInsertionPoint(file, aesop::Kinematics(other)); });
+  const std::string error = errorText<std::runtime_error>([&] { loadInsertionPoint(file, aesop::Kinematics(other)); });
   EXPECT_NE(error.find("another table of joints"), std::string::npos) << error;
   other = aesop::KinematicsConfig();
   other.scope_length = 0.35;  // behind O_7, where the shafts are the same
-  EXPECT_EQ(errorOf([&] { loadInsertionPoint(file, aesop::Kinematics(other)); }), "");
+  EXPECT_EQ(errorText<std::runtime_error>([&] { loadInsertionPoint(file, aesop::Kinematics(other)); }), "");
 }
 
 }  // namespace

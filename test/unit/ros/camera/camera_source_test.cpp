@@ -5,6 +5,7 @@
 #include <fstream>
 #include <opencv2/videoio.hpp>
 
+#include "support/error_text.h"
 #include "support/temporary_folder.h"
 
 namespace laparoscope_servo {
@@ -65,12 +66,7 @@ TEST_F(CameraSourceTest, GivesTheFilesPicturesAndThenItsEnd) {
 TEST_F(CameraSourceTest, SaysWhatCannotBeOpened) {
   const auto error = [this](const std::string& device) -> std::string {
     config_.device = device;
-    try {
-      CameraSource source(config_);
-      return "";
-    } catch (const std::runtime_error& e) {
-      return e.what();
-    }
+    return test_support::errorText<std::runtime_error>([&] { CameraSource source(config_); });
   };
   EXPECT_NE(error("/dev/video77").find("/dev/video0"), std::string::npos);
   std::ofstream(folder_.file("text.avi")) << "no video";

@@ -9,10 +9,13 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "support/error_text.h"
 #include "support/temporary_folder.h"
 
 namespace laparoscope_servo {
 namespace {
+
+using test_support::errorText;
 
 namespace fs = std::filesystem;
 
@@ -23,15 +26,6 @@ std::string contentOf(const std::string& path) {
 
 std::size_t filesIn(const std::string& folder) {
   return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
-}
-
-std::string errorOf(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
-  return "";
 }
 
 void print(std::ostream& stream) {
@@ -84,12 +78,13 @@ TEST_F(OutputFileTest, FollowsLinks) {
     EXPECT_EQ(filesIn(folder_.file("elsewhere")), 1u) << round;
   }
   fs::create_symlink("circle", folder_.file("circle"));
-  EXPECT_NE(errorOf([&] { writeTextFile(folder_.file("circle"), print); }).find("circle"), std::string::npos);
+  EXPECT_NE(errorText<std::runtime_error>([&] { writeTextFile(folder_.file("circle"), print); }).find("circle"),
+            std::string::npos);
 }
 
 TEST_F(OutputFileTest, NamesWhatCannotBeWritten) {
   const auto expectError = [](const std::string& name, const std::string& part) {
-    const std::string error = errorOf([&] { writeTextFile(name, print); });
+    const std::string error = errorText<std::runtime_error>([&] { writeTextFile(name, print); });
     EXPECT_NE(error.find("'" + name + "' cannot be written"), std::string::npos) << error;
     EXPECT_NE(error.find(part), std::string::npos) << error;
   };
@@ -112,8 +107,8 @@ TEST_F(OutputFileTest, AFullDiskLeavesWhatWasThere) {
   rlimit small = before;
   small.rlim_cur = 10000;
   ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
-  const std::string error =
-      errorOf([&] { writeTextFile(name_, [](std::ostream& stream) { stream << std::string(100000, 'x'); }); });
+  const std::string error = errorText<std::runtime_error>(
+      [&] { writeTextFile(name_, [](std::ostream& stream) { stream << std::string(100000, 'x'); }); });
   ::setrlimit(RLIMIT_FSIZE, &before);
   ::signal(SIGXFSZ, on_signal);
   EXPECT_NE(error.find("File too large"), std::string::npos) << error;

@@ -168,9 +168,6 @@ class BadInput : public testing::TestWithParam<Kind> {
     auto tracker = makeFeatureTracker(GetParam().name, tree, "", input, errors);
     EXPECT_TRUE(errors.empty());
     session_ = std::make_unique<FeatureSession>(input, std::move(tracker));
-    info_.width = 320;
-    info_.height = 240;
-    info_.K = {300.0, 0.0, 160.0, 0.0, 300.0, 120.0, 0.0, 0.0, 1.0};
   }
 
   // No two pictures repeat.
@@ -231,7 +228,7 @@ class BadInput : public testing::TestWithParam<Kind> {
 
   const test_support::TemporaryFolder folder_;
   std::unique_ptr<FeatureSession> session_;
-  sensor_msgs::CameraInfo info_;
+  sensor_msgs::CameraInfo info_ = test_support::featureCamera();
   double time_ = 1000.0;
   unsigned number_ = 0;
   std::size_t count_ = 0;

@@ -16,6 +16,7 @@ namespace {
 
 using features::State;
 using test_support::coveredScene;
+using test_support::featureCamera;
 using test_support::featureScene;
 using test_support::imageAt;
 
@@ -49,13 +50,6 @@ class FeatureSessionTest : public testing::TestWithParam<const char*> {
 
   static constexpr double kJump = 30.0;  // px, further than edges and dots are searched by themselves
 
-  static sensor_msgs::CameraInfo info() {
-    sensor_msgs::CameraInfo info;
-    info.width = 320;
-    info.height = 240;
-    info.K = {300.0, 0.0, 160.0, 0.0, 300.0, 120.0, 0.0, 0.0, 1.0};
-    return info;
-  }
   // Of the camera, when pixels jump by kJump.
   static Eigen::Isometry3d jump() {
     return Eigen::Isometry3d(Eigen::Translation3d(kJump / 300.0 * FeatureInput().robot_motion.depth, 0.0, 0.0));
@@ -86,7 +80,7 @@ TEST_P(FeatureSessionTest, SelectsAndTracks) {
 TEST_P(FeatureSessionTest, StartsFromWhereTheCamerasMotionPuts) {
   for (const bool knows : {false, true}) {
     FeatureSession session = this->session();
-    session.setCameraInfo(info());
+    session.setCameraInfo(featureCamera());
     select(session);
     std::vector<std::pair<ros::Time, ros::Time>> asked;
     const auto motion = [&](const std::string& frame, const ros::Time& from, const ros::Time& to, std::string& why) {
@@ -107,7 +101,7 @@ TEST_P(FeatureSessionTest, StartsFromWhereTheCamerasMotionPuts) {
 // tf knows of the jump an image too late: it is asked for since the image before the jump.
 TEST_P(FeatureSessionTest, AMotionThatIsKnownLateIsMadeUpFor) {
   FeatureSession session = this->session();
-  session.setCameraInfo(info());
+  session.setCameraInfo(featureCamera());
   select(session);
   const double before = time_;
   bool knows = false;
@@ -246,9 +240,7 @@ TEST_P(FeatureSessionTest, SearchesWhatIsCovered) {
 TEST_P(FeatureSessionTest, TellsWhyThereAreNoIntrinsics) {
   FeatureSession session = this->session();
   EXPECT_NE(next(session).camera_error.find("no camera_info"), std::string::npos);
-  sensor_msgs::CameraInfo info;
-  info.K = {300.0, 0.0, 160.0, 0.0, 300.0, 120.0, 0.0, 0.0, 1.0};
-  session.setCameraInfo(info);
+  session.setCameraInfo(featureCamera());
   EXPECT_EQ(next(session).camera_error, "");
 }
 

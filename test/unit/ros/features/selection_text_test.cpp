@@ -6,6 +6,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
 
+#include "support/error_text.h"
 #include "support/temporary_folder.h"
 
 namespace laparoscope_servo {
@@ -15,12 +16,7 @@ using features::FeatureKind;
 using features::FeatureSelection;
 
 std::string errorOf(const std::string& text) {
-  try {
-    parseSelection(text);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "";
+  return test_support::errorText<std::invalid_argument>([&] { parseSelection(text); });
 }
 
 TEST(SelectionText, ReadsEveryShape) {

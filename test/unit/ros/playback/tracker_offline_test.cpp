@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "laparoscope_servo/tracking/region_tracker.h"
+#include "support/error_text.h"
 #include "support/lens_info.h"
 #include "support/synthetic_sequence.h"
 #include "support/temporary_folder.h"
@@ -332,14 +333,7 @@ TEST_F(TrackerOfflineTest, SaysThatDistortionIsNotCorrected) {
 
 TEST_F(TrackerOfflineTest, SaysWhatIsMissingToRectify) {
   writeRawFolder(image::Lens(test::laparoscope(cv::Size(320, 240), 220.0)), out_.file("scope.yaml"));
-  const auto error = [this]() -> std::string {
-    try {
-      run();
-    } catch (const std::exception& e) {
-      return e.what();
-    }
-    return "";
-  };
+  const auto error = [this]() -> std::string { return test_support::errorText<std::exception>([&] { run(); }); };
   EXPECT_NE(error().find("camera_info"), std::string::npos) << error();
   options_.camera_info = out_.file("none.yaml");
   EXPECT_NE(error().find("none.yaml"), std::string::npos) << error();

@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "support/error_text.h"
+
 namespace laparoscope_servo {
 namespace {
 
@@ -26,12 +28,7 @@ sensor_msgs::CameraInfo info() {
 }
 
 std::string errorOf(const sensor_msgs::CameraInfo& message, ImageKind kind = ImageKind::kRaw) {
-  try {
-    cameraFromInfo(message, kind, kSize);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "";
+  return test_support::errorText<std::invalid_argument>([&] { cameraFromInfo(message, kind, kSize); });
 }
 
 TEST(CameraFromInfo, TakesKOfRawAndPOfRectifiedImages) {
@@ -218,12 +215,7 @@ sensor_msgs::CameraInfo lensInfo() {
 }
 
 std::string lensErrorOf(const sensor_msgs::CameraInfo& message) {
-  try {
-    lensFromInfo(message, kSize);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "";
+  return test_support::errorText<std::invalid_argument>([&] { lensFromInfo(message, kSize); });
 }
 
 TEST(LensFromInfo, TakesEveryMatrixAndModel) {

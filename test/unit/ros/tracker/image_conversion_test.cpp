@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "support/error_text.h"
+
 namespace laparoscope_servo {
 namespace {
 
@@ -26,12 +28,7 @@ sensor_msgs::Image message(const std::string& encoding, const std::vector<std::u
 }
 
 std::string errorOf(const sensor_msgs::Image& image) {
-  try {
-    trackerImage(image);
-  } catch (const ImageError& error) {
-    return error.what();
-  }
-  return "";
+  return test_support::errorText<ImageError>([&] { trackerImage(image); });
 }
 
 struct Case {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "ros/tracker/image_conversion.h"
+#include "support/error_text.h"
 
 namespace laparoscope_servo {
 namespace {
@@ -37,12 +38,7 @@ class MaskInputTest : public testing::Test {
   }
   // Why it is refused; empty: it is not.
   std::string refusal(const sensor_msgs::ImageConstPtr& mask, const MaskInput::Arrival& arrival) {
-    try {
-      input_.take(mask, arrival);
-      return "";
-    } catch (const ImageError& error) {
-      return error.what();
-    }
+    return test_support::errorText<ImageError>([&] { input_.take(mask, arrival); });
   }
   std::string refusal(const sensor_msgs::ImageConstPtr& mask) { return refusal(mask, from("/instrument")); }
 

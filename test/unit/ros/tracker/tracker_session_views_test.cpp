@@ -11,6 +11,7 @@
 #include "ros/tracker/result_messages.h"
 #include "ros/tracker/tracker_session.h"
 #include "ros/tracker/view_library.h"
+#include "support/error_text.h"
 #include "support/stamped_header.h"
 #include "support/synthetic_sequence.h"
 #include "support/synthetic_tissue.h"
@@ -134,12 +135,7 @@ TEST_F(TrackerSessionViewsTest, StoresNothingWhileItDoesNotTrackOrTheRegionIsCov
 TEST_F(TrackerSessionViewsTest, SaysWhyAViewCannotBeReached) {
   storeRow(1);
   const auto why = [&](const std::string& name, int x) {
-    try {
-      recall(name, see(x));
-    } catch (const std::invalid_argument& error) {
-      return std::string(error.what());
-    }
-    return std::string();
+    return test_support::errorText<std::invalid_argument>([&] { recall(name, see(x)); });
   };
   EXPECT_EQ(why("a", 500), "no stored view overlaps with the present image");
   EXPECT_NE(why("b", 0).find("no view 'b' is stored"), std::string::npos);

@@ -2,6 +2,7 @@
 #include "laparoscope_servo/sim/emulator_control_client.h"
 
 #include <gtest/gtest.h>
+#include <poll.h>
 
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/io_context.hpp>
@@ -13,12 +14,14 @@
 #include <thread>
 #include <vector>
 
+#include "support/error_text.h"
 #include "support/temporary_folder.h"
 
 namespace laparoscope_servo::sim {
 namespace {
 
 using boost::asio::local::stream_protocol;
+using test_support::errorText;
 
 // Answers each line of one client; an empty answer is none.
 class Answering {
@@ -37,12 +40,22 @@ class Answering {
   }
 
  private:
+  // Whether a client, a line or its end has come. One that never comes must not keep the test from ending.
+  static bool isReady(int handle) {
+    constexpr int kPatience = 20000;  // ms
+    pollfd waiting{handle, POLLIN, 0};
+    const bool ready = ::poll(&waiting, 1, kPatience) > 0;
+    EXPECT_TRUE(ready) << "the client is silent";
+    return ready;
+  }
+
   void run(const Answer& answer) {
     stream_protocol::socket socket(context_);
+    if (!isReady(acceptor_.native_handle())) return;
     acceptor_.accept(socket);
     std::string buffer;
     boost::system::error_code failure;
-    while (true) {
+    while (isReady(socket.native_handle())) {
       const std::size_t size = boost::asio::read_until(socket, boost::asio::dynamic_buffer(buffer), '\n', failure);
       if (failure) return;
       lines_.push_back(buffer.substr(0, size - 1));
@@ -59,15 +72,6 @@ class Answering {
   std::vector<std::string> lines_;
   std::thread thread_;
 };
-
-std::string errorOf(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
-  return "";
-}
 
 TEST(EmulatorControlClient, ReadsTheAnswersOfTheProtocol) {
   Answering server([](const std::string& line) -> std::string {
@@ -110,11 +114,11 @@ TEST(EmulatorControlClient, ARefusalIsAnErrorAndNoEnd) {
   Answering server(
       [](const std::string& line) { return line == "dance" ? "error there is no request\n" : "ok 1 2\n"; });
   EmulatorControlClient client(server.path());
-  const std::string refused = errorOf([&] { client.request("dance"); });
+  const std::string refused = errorText<std::runtime_error>([&] { client.request("dance"); });
   EXPECT_NE(refused.find("'dance'"), std::string::npos) << refused;
   EXPECT_NE(refused.find("there is no request"), std::string::npos) << refused;
   EXPECT_EQ(client.request("anything"), "1 2");
-  EXPECT_NE(errorOf([&] { client.request("state\nstate"); }), "") << "two lines have two answers";
+  EXPECT_NE(errorText<std::runtime_error>([&] { client.request("state\nstate"); }), "") << "two lines have two answers";
   EXPECT_EQ(client.request("anything"), "1 2");
 }
 
@@ -125,7 +129,7 @@ TEST(EmulatorControlClient, AnAnswerThatCannotBeReadIsSaid) {
   for (const auto& call :
        {std::function<void()>([&] { client.state(); }), std::function<void()>([&] { client.motion(); }),
         std::function<void()>([&] { client.record(); })}) {
-    const std::string error = errorOf(call);
+    const std::string error = errorText<std::runtime_error>(call);
     EXPECT_NE(error.find("cannot read 'ENABLED 1 6 0.5 0 0 zero'"), std::string::npos) << error;
   }
 }
@@ -135,8 +139,10 @@ TEST(EmulatorControlClient, SilenceEndsTheConnection) {
   Answering server([](const std::string& line) { return line == "first" ? "ok\n" : ""; });
   EmulatorControlClient client(server.path(), 0.2);
   EXPECT_EQ(client.request("first"), "");
-  EXPECT_NE(errorOf([&] { client.request("second"); }).find("no answer to 'second' in time"), std::string::npos);
-  EXPECT_NE(errorOf([&] { client.request("first"); }).find("has failed before"), std::string::npos);
+  EXPECT_NE(errorText<std::runtime_error>([&] { client.request("second"); }).find("no answer to 'second' in time"),
+            std::string::npos);
+  EXPECT_NE(errorText<std::runtime_error>([&] { client.request("first"); }).find("has failed before"),
+            std::string::npos);
 }
 
 TEST(EmulatorControlClient, SaysThatTheEmulatorHasGoneOrNeverWas) {
@@ -145,10 +151,12 @@ TEST(EmulatorControlClient, SaysThatTheEmulatorHasGoneOrNeverWas) {
     Answering server([](const std::string&) { return "hang up"; });
     gone = server.path();
     EmulatorControlClient client(server.path(), 5.0);
-    EXPECT_NE(errorOf([&] { client.request("state"); }).find("has aesop_emulator ended?"), std::string::npos);
-    EXPECT_NE(errorOf([&] { client.request("state"); }).find("has failed before"), std::string::npos);
+    EXPECT_NE(errorText<std::runtime_error>([&] { client.request("state"); }).find("has aesop_emulator ended?"),
+              std::string::npos);
+    EXPECT_NE(errorText<std::runtime_error>([&] { client.request("state"); }).find("has failed before"),
+              std::string::npos);
   }
-  const std::string error = errorOf([&] { EmulatorControlClient client(gone); });
+  const std::string error = errorText<std::runtime_error>([&] { EmulatorControlClient client(gone); });
   EXPECT_NE(error.find("control socket '" + gone + "'"), std::string::npos) << error;
   EXPECT_NE(error.find("is aesop_emulator running?"), std::string::npos) << error;
 }

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "support/contour_scene.h"
+#include "support/error_text.h"
 
 namespace laparoscope_servo::tracking {
 namespace {
@@ -146,12 +147,7 @@ TEST_F(ContourTextureTest, RefusesWhatItCannotFollowAndGoesOn) {
   ContourTextureTracker tracker;
   tracker.select(image, 0.0, ContourScene::selection(), {});
   const auto refusal = [&](const features::FeatureSelection& selection) -> std::string {
-    try {
-      tracker.select(image, 0.0, selection, {});
-      return "";
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
+    return test_support::errorText<std::invalid_argument>([&] { tracker.select(image, 0.0, selection, {}); });
   };
   features::FeatureSelection open = ContourScene::selection();
   open[0].closed = false;

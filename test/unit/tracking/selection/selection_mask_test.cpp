@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "support/error_text.h"
 #include "support/synthetic_instrument.h"
 
 namespace laparoscope_servo::tracking {
@@ -21,12 +22,7 @@ geometry::Rectangle rectangle(const cv::Rect& box) {
 }
 
 std::string refusal(const SelectionMask& selectable, const cv::Rect& box) {
-  try {
-    selectable.check(rectangle(box), nullptr);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "";
+  return test_support::errorText<std::invalid_argument>([&] { selectable.check(rectangle(box), nullptr); });
 }
 
 TEST(SelectionMask, LeavesOutInstrumentsAndRefusesWhatLiesOnThem) {
