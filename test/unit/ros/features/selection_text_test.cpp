@@ -91,6 +91,7 @@ TEST(SelectionText, NamesWhatIsWrongWithCornersAndPictures) {
             "selection: a, line 1: region, expected [x, y, width, height] in whole px, width and height of 1 or more");
   EXPECT_NE(errorOf("- {id: a, corners: {region: [1, 2, 0, 5]}}").find("region"), std::string::npos);
   EXPECT_NE(errorOf("- {id: a, corners: {region: [1, 2, 3000000, 5]}}").find("region"), std::string::npos);
+  EXPECT_NE(errorOf("- {id: a, corners: {region: [-2147483648, 2, 3, 5]}}").find("region"), std::string::npos);
   EXPECT_EQ(errorOf("- {id: a, corners: {count: many}}"),
             "selection: a, line 1: count = many, expected a whole number");
   EXPECT_NE(errorOf("- {id: a, corners: {number: 5}}").find("= number, expected region or count"), std::string::npos);
@@ -126,6 +127,23 @@ TEST(SelectionText, NamesFeatureLineValueAndExpectation) {
   EXPECT_NE(errorOf("- {id: a, pose: [1, 2, 3, 4, 5, up]}").find("pose = up"), std::string::npos);
   EXPECT_NE(errorOf("- {id: a, pose: [1, 2, .nan, 4, 5, 6]}").find("finite numbers"), std::string::npos);
   EXPECT_NE(errorOf("- seven").find("a feature = seven"), std::string::npos);
+}
+
+// More than OpenCV reads.
+TEST(SelectionText, RefusesAStoredPictureThatClaimsTooManyPixels) {
+  const test_support::TemporaryFolder folder;
+  const std::string file = folder.file("huge.ppm");
+  std::ofstream(file) << "P6\n100000 100000\n255\nxxx";
+  EXPECT_EQ(errorOf("- {id: a, point: [1, 2], stored: " + file + "}"),
+            "selection: a, line 1: stored = " + file + ", expected a picture that can be read: PNG, JPEG, ...");
+}
+
+TEST(SelectionText, RefusesAKeyThatStandsTwice) {
+  EXPECT_EQ(errorOf("- {id: a, point: [1, 2], point: [3, 4]}"),
+            "selection: a, line 1: key = point, expected each key once");
+  for (const char* text : {"- {id: a, id: b, point: [1, 2]}", "- {id: a, corners: {count: 3, count: 4}}",
+                           "- {id: a, ellipse: {centre: [9, 9], radii: [5, 5], radii: [6, 6]}}"})
+    EXPECT_NE(errorOf(text).find("expected each key once"), std::string::npos) << text;
 }
 
 TEST(SelectionText, TellsAllErrorsAtOnce) {
