@@ -1,4 +1,5 @@
 #include <Eigen/Geometry>
+#include <cmath>
 #include <fstream>
 #include <sstream>
 
@@ -10,7 +11,8 @@ namespace laparoscope_servo::model {
 
 namespace {
 
-constexpr int kMost = 100000;  // of anything: a count beyond is an error, not a reason to reserve memory
+constexpr int kMost = 100000;      // of anything: a count beyond is an error, not a reason to reserve memory
+constexpr double kFarthest = 1e3;  // m: as far as an object may be from the camera
 
 using Pair = std::pair<int, int>;
 
@@ -70,7 +72,11 @@ class Reader {
     const int points = count("points");
     for (int k = 0; k < points; ++k) {
       Eigen::Vector3d point;
-      for (int i = 0; i < 3; ++i) point[i] = words_.number("a finite coordinate of point " + std::to_string(k) + ", m");
+      for (int i = 0; i < 3; ++i) {
+        point[i] = words_.number("a finite coordinate of point " + std::to_string(k) + ", m");
+        if (!(std::abs(point[i]) < kFarthest))
+          words_.refuse("a coordinate of point " + std::to_string(k) + " below 1000 m");
+      }
       model_->points.push_back(point);
     }
   }
@@ -125,6 +131,7 @@ class Reader {
     const std::string expected = "a radius of the " + whose + " above 0 m";
     const double value = words_.number(expected);
     if (!(value > 0.0)) words_.refuse(expected);
+    if (!(value < kFarthest)) words_.refuse("a radius of the " + whose + " below 1000 m");
     return value;
   }
 

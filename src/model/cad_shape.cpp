@@ -46,13 +46,16 @@ std::string completeFace(const std::vector<Eigen::Vector3d>& points, Face& face)
   // Newell: twice the area, also of a polygon that is not convex.
   Eigen::Vector3d area = Eigen::Vector3d::Zero();
   double size = 0.0;
+  int alike = -1;
   for (std::size_t k = 0; k < face.points.size(); ++k) {
     const Eigen::Vector3d a = points[static_cast<std::size_t>(face.points[k])] - face.centre;
     const Eigen::Vector3d b = points[static_cast<std::size_t>(face.points[(k + 1) % face.points.size()])] - face.centre;
+    if (a == b) alike = face.points[k];
     area += a.cross(b);
     size = std::max(size, a.norm());
   }
   if (!(area.norm() > 1e-6 * size * size)) return "a face without area";
+  if (alike >= 0) return "a face whose side from point " + std::to_string(alike) + " has no length";
   face.normal = area.normalized();
   for (const int p : face.points) {
     const double out = face.normal.dot(points[static_cast<std::size_t>(p)] - face.centre);

@@ -1,5 +1,6 @@
 #include "model/cad_words.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstdlib>
@@ -9,6 +10,19 @@
 #include "laparoscope_servo/model/cad_model.h"
 
 namespace laparoscope_servo::model {
+
+namespace {
+
+constexpr std::size_t kLongest = 60;  // characters that an error shows: a file of another kind may have no words
+
+std::string shown(const std::string& value) {
+  std::string text = value.substr(0, kLongest);
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  return text + (value.size() > kLongest ? "..." : "");
+}
+
+}  // namespace
 
 CadWords::CadWords(std::istream& stream, std::string name) : name_(std::move(name)) {
   std::string line;
@@ -58,7 +72,7 @@ void CadWords::refuse(const std::string& value, const std::string& expected) con
 }
 
 void CadWords::fail(int line, const std::string& value, const std::string& expected) const {
-  throw CadFileError(name_ + ", line " + std::to_string(line) + ": " + value + ", expected " + expected);
+  throw CadFileError(name_ + ", line " + std::to_string(line) + ": " + shown(value) + ", expected " + expected);
 }
 
 }  // namespace laparoscope_servo::model

@@ -17,7 +17,18 @@ constexpr double kTolerance = 1.5;  // cells, of the edges
 // Beyond the edges' end nothing but colour holds it together, and tissue that is pale or shines lies next to the jaws:
 // what is taken for them has to be greyer, by this share of the threshold.
 constexpr double kStrict = 0.6;
+// Where the edges lie in the shade the shaft goes on beyond their end: for so many widths what is grey between them
+// leads on to wrist and jaws.
+constexpr double kCarriedOn = 1.0;
 constexpr uchar kHole = 254;  // in cells_: surrounded by it
+
+double beyondEdges(const Shaft& shaft, const Eigen::Vector2d& p) {  // along the axis
+  return shaft.axis.dot(p - shaft.entry) - shaft.length;
+}
+
+double outsideOf(const Shaft& shaft, const Eigen::Vector2d& p) {
+  return std::max(shaft.edges[0].distance(p), shaft.edges[1].distance(p));
+}
 
 double halfWidth(const Shaft& shaft, const Eigen::Vector2d& p) {
   return 0.5 * (-shaft.edges[0].distance(p) - shaft.edges[1].distance(p));
@@ -26,11 +37,9 @@ double halfWidth(const Shaft& shaft, const Eigen::Vector2d& p) {
 }  // namespace
 
 bool Silhouette::mayBe(const Shaft& shaft, const Eigen::Vector2d& p) const {
-  const double along = shaft.axis.dot(p - shaft.entry);
-  const double outside = std::max(shaft.edges[0].distance(p), shaft.edges[1].distance(p));
-  if (along <= shaft.length) return outside <= kTolerance;
+  const double beyond = beyondEdges(shaft, p);
+  if (beyond <= 0.0) return outsideOf(shaft, p) <= kTolerance;
   const double width = std::max(2.0 * halfWidth(shaft, shaft.entry + shaft.length * shaft.axis), 3.0);
-  const double beyond = along - shaft.length;
   const double aside = std::abs(-shaft.axis.y() * (p - shaft.entry).x() + shaft.axis.x() * (p - shaft.entry).y());
   return beyond <= kReach * width && aside <= std::min(0.5 * width + kTolerance + kSpread * beyond, kAside * width);
 }
@@ -43,8 +52,10 @@ void Silhouette::grow(const GreyMap& map, const image::FieldOfView& view, double
   const double strict = GreyMap::kZero + kStrict * (threshold - GreyMap::kZero);
   const auto isGrey = [&](int x, int y) {
     if (!map.contains(x, y) || !view.contains(x, y)) return false;
-    const double along = shaft.axis.dot(Eigen::Vector2d(x, y) - shaft.entry);
-    return map.colour()(y, x) < (along > shaft.length ? strict : threshold);
+    const Eigen::Vector2d p(x, y);
+    const double beyond = beyondEdges(shaft, p);
+    const bool between = beyond <= kCarriedOn * shaft.width && outsideOf(shaft, p) <= 0.0;
+    return map.colour()(y, x) < (beyond <= 0.0 || between ? threshold : strict);
   };
   const auto add = [&](int x, int y) {
     if (!isGrey(x, y) || cells_(y, x) || !mayBe(shaft, {static_cast<double>(x), static_cast<double>(y)})) return;
@@ -73,8 +84,29 @@ void Silhouette::grow(const GreyMap& map, const image::FieldOfView& view, double
       for (int dx = -1; dx <= 1; ++dx) add(p.x + dx, p.y + dy);
     }
   }
+  dropDeadEnds(map, strict, shaft);
   measure(map, threshold, shaft);
   fillHoles();
+}
+
+// Beyond the edges' end what is no greyer than pale tissue belongs to it only as far as it leads to what is.
+void Silhouette::dropDeadEnds(const GreyMap& map, double strict, const Shaft& shaft) {
+  const auto each = [&](const auto& look) {
+    for (int y = 0; y < map.rows(); ++y) {
+      for (int x = 0; x < map.columns(); ++x) {
+        if (!cells_(y, x)) continue;
+        const double beyond = beyondEdges(shaft, {static_cast<double>(x), static_cast<double>(y)});
+        if (beyond > 0.0) look(cells_(y, x), beyond, map.colour()(y, x) < strict);
+      }
+    }
+  };
+  double last = 0.0;
+  each([&](uchar&, double beyond, bool is_strict) { last = is_strict ? std::max(last, beyond) : last; });
+  each([&](uchar& cell, double beyond, bool is_strict) {
+    if (is_strict || beyond <= last) return;
+    cell = 0;
+    --count_;
+  });
 }
 
 void Silhouette::measure(const GreyMap& map, double threshold, const Shaft& shaft) {

@@ -29,6 +29,7 @@ class Silhouette {
   void draw(const GreyMap& map, double threshold, const Shaft& shaft, double margin, cv::Mat1b& mask);
 
  private:
+  void dropDeadEnds(const GreyMap& map, double strict, const Shaft& shaft);
   void measure(const GreyMap& map, double threshold, const Shaft& shaft);
   void fillHoles();
   bool mayBe(const Shaft& shaft, const Eigen::Vector2d& p) const;

@@ -3,16 +3,17 @@
 #include <yaml-cpp/yaml.h>
 
 #include <array>
-#include <cstdlib>
 #include <fstream>
 #include <map>
 #include <opencv2/imgcodecs.hpp>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 
 #include "laparoscope_servo/features/curve.h"
 #include "laparoscope_servo/geometry/se3.h"
 #include "laparoscope_servo/validation/error_report.h"
+#include "ros/common/picture_file.h"
 
 namespace laparoscope_servo {
 
@@ -34,7 +35,7 @@ class Pictures {
   cv::Mat read(const std::string& file) {
     const auto known = read_.find(file);
     if (known != read_.end()) return known->second;
-    return read_[file] = cv::imread(file, cv::IMREAD_COLOR);
+    return read_[file] = readPicture(file, cv::IMREAD_COLOR);
   }
 
  private:
@@ -55,6 +56,7 @@ class Reader {
     if (node_["id"] && node_["id"].IsScalar()) feature_.id = node_["id"].Scalar();
     if (feature_.id.empty()) refuse(node_["id"] ? node_["id"] : node_, "id", "a name");
     readShape();
+    refuseTwice(node_);
     for (const auto& entry : node_) readOther(entry.first.Scalar(), entry.second);
     return feature_;
   }
@@ -66,6 +68,14 @@ class Reader {
     if (where.IsScalar()) text << " = " << where.Scalar();
     text << ", expected " << expected;
     errors_.push_back(text.str());
+  }
+
+  // Of a key that stands in a map twice yaml-cpp gives the first value.
+  void refuseTwice(const YAML::Node& map) {
+    std::set<std::string> keys;
+    for (const auto& entry : map) {
+      if (!keys.insert(entry.first.Scalar()).second) refuse(entry.first, "key", "each key once");
+    }
   }
 
   double number(const YAML::Node& node, const std::string& what) {
@@ -91,6 +101,7 @@ class Reader {
   void readEllipse(const YAML::Node& node) {
     features::EllipseSelection ellipse;
     if (!node["centre"] || !node["radii"]) refuse(node, "ellipse", "centre: [x, y] and radii: [a, b], px, or points");
+    refuseTwice(node);
     for (const auto& entry : node) {
       const std::string key = entry.first.Scalar();
       if (key == "centre") {
@@ -111,6 +122,7 @@ class Reader {
   void readCorners(const YAML::Node& node) {
     features::CornerSelection corners;
     if (!node.IsMap()) refuse(node, "corners", "{region: [x, y, width, height], count: ...}, px, each may be left out");
+    if (node.IsMap()) refuseTwice(node);
     for (const auto& entry : node) {
       const std::string key = node.IsMap() ? entry.first.Scalar() : "";
       if (key == "region") {

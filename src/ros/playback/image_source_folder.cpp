@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "ros/common/picture_file.h"
 #include "ros/playback/image_sources.h"
 #include "ros/playback/jpeg_end.h"
 #include "ros/playback/natural_order.h"
@@ -68,7 +69,7 @@ class FolderSource : public ImageSource {
       image.error = "'" + file + "' breaks off before the end of its image";
       return image;
     }
-    image.decoded = cv::imread(file, kAsShown);
+    image.decoded = readPicture(file, kAsShown);
     if (image.decoded.empty()) image.error = "'" + file + "' cannot be read, expected a whole image";
     return image;
   }

@@ -70,6 +70,7 @@ TEST(CadFile, errorsNameLineValueAndExpectation) {
   EXPECT_EQ(errorOf("V1\n1\n0 nan 0\n"), "test.cao, line 3: nan, expected a finite coordinate of point 0, m");
   EXPECT_EQ(errorOf("V1\n1\n0 1e999 0\n"), "test.cao, line 3: 1e999, expected a finite coordinate of point 0, m");
   EXPECT_EQ(errorOf("V1\n1\n0 0.1x 0\n"), "test.cao, line 3: 0.1x, expected a finite coordinate of point 0, m");
+  EXPECT_EQ(errorOf("V1\n1\n0 -1e200 0\n"), "test.cao, line 3: -1e200, expected a coordinate of point 0 below 1000 m");
   EXPECT_EQ(errorOf(kPoints + "0\n0\n1\n3 0 1 4\n0\n0\n"),
             "test.cao, line 10: 4, expected the index of a point of the face, a whole number from 0 to 3");
   EXPECT_EQ(errorOf(kPoints + "1\n0 -1\n0\n0\n0\n0\n"),
@@ -78,6 +79,8 @@ TEST(CadFile, errorsNameLineValueAndExpectation) {
             "test.cao, line 8: a line without length, expected two different points");
   EXPECT_EQ(errorOf(kPoints + "0\n0\n0\n1\n0 1 0\n0\n"),
             "test.cao, line 11: 0, expected a radius of the cylinder above 0 m");
+  EXPECT_EQ(errorOf(kPoints + "0\n0\n0\n1\n0 1 1e200\n0\n"),
+            "test.cao, line 11: 1e200, expected a radius of the cylinder below 1000 m");
   EXPECT_EQ(errorOf(kPoints + "0\n0\n0\n1\n1 1 0.5\n0\n"),
             "test.cao, line 11: an axis without length, expected two different points on the cylinder's axis");
   EXPECT_EQ(errorOf(kPoints + "0\n0\n0\n0\n1\n-1 0 1 2\n"),
@@ -89,6 +92,9 @@ TEST(CadFile, errorsNameLineValueAndExpectation) {
             "test.cao, line 10: 2, expected the number of points of the face, a whole number from 3 to 100000");
   EXPECT_EQ(errorOf(kPoints + "0\n0\n1\n3 0 1 0\n0\n0\n"),
             "test.cao, line 10: a face without area, expected at least three points of one plane, not on one line");
+  EXPECT_EQ(errorOf(kPoints + "0\n0\n1\n4 0 1 1 2\n0\n0\n"),
+            "test.cao, line 10: a face whose side from point 1 has no length, expected at least three points of one "
+            "plane, not on one line");
   EXPECT_EQ(errorOf(kPoints + "0\n0\n1\n4 0 1 2 3\n0\n0\n").substr(0, 36), "test.cao, line 10: a face whose poin");
   EXPECT_EQ(errorOf(kPoints + "0\n1\n3 0 1 2\n0\n0\n0\n"), "test.cao, line 9: no lines, expected a line for the face");
   EXPECT_EQ(errorOf(kPoints + "0\n0\n0\n0\n0\n"),

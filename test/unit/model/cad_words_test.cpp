@@ -49,6 +49,11 @@ TEST(CadWords, aWholeNumberHasToBeOneWithinItsRange) {
   }
 }
 
+TEST(CadWords, whatIsNoTextIsShownInShort) {
+  EXPECT_EQ(refusal("\x7f\x01" + std::string(5000, 'x'), [](CadWords& words) { words.number("a length"); }),
+            "tool.cao, line 1: ??" + std::string(58, 'x') + "..., expected a length");
+}
+
 TEST(CadWords, aFileThatEndsNamesItsLastLine) {
   EXPECT_EQ(refusal("1\n2\n",
                     [](CadWords& words) {

@@ -104,6 +104,17 @@ TEST_F(SilhouetteOfAShaft, BeyondTheEdgesItHasToBeGreyer) {
   EXPECT_EQ(silhouette_.count(), 100 * 30) << "the pale ring of the shaft belongs to it, the pale tissue does not";
 }
 
+TEST_F(SilhouetteOfAShaft, AnEndInTheShadeLeadsToTheJaws) {
+  const cv::Scalar pale(100, 100, 122);
+  paint({100, 60, 12, 30}, pale);
+  paint({112, 66, 30, 10}, kSteel);
+  paint({100, 90, 30, 8}, pale);  // beside it
+  grow();
+  EXPECT_EQ(silhouette_.count(), 112 * 30 + 30 * 10);
+  EXPECT_NEAR(silhouette_.tip().x(), 141.5, 0.5);
+  EXPECT_EQ(drawn()(94, 115), 0);
+}
+
 TEST_F(SilhouetteOfAShaft, FillIsTheShareOfGreyBetweenTheEdges) {
   paint({0, 60, 50, 30}, kTissue);
   grow();

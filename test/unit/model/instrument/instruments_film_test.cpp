@@ -116,7 +116,7 @@ TEST(InstrumentsFilm, SilhouettesCoverTheInstrumentsOfTheStills) {
     RecordProperty("iou_" + std::to_string(n), std::to_string(both / either));
     sum += both / either;
   }
-  EXPECT_GE(sum / 5.0, 0.75);  // 0.776 when this was written; 0.85 is wanted
+  EXPECT_GE(sum / 5.0, 0.78);  // 0.790 when this was written; 0.85 is wanted
 }
 
 }  // namespace

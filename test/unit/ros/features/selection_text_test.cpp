@@ -125,6 +125,23 @@ TEST(SelectionText, NamesFeatureLineValueAndExpectation) {
   EXPECT_NE(errorOf("- seven").find("a feature = seven"), std::string::npos);
 }
 
+// More than OpenCV reads.
+TEST(SelectionText, RefusesAStoredPictureThatClaimsTooManyPixels) {
+  const test_support::TemporaryFolder folder;
+  const std::string file = folder.file("huge.ppm");
+  std::ofstream(file) << "P6\n100000 100000\n255\nxxx";
+  EXPECT_EQ(errorOf("- {id: a, point: [1, 2], stored: " + file + "}"),
+            "selection: a, line 1: stored = " + file + ", expected a picture that can be read: PNG, JPEG, ...");
+}
+
+TEST(SelectionText, RefusesAKeyThatStandsTwice) {
+  EXPECT_EQ(errorOf("- {id: a, point: [1, 2], point: [3, 4]}"),
+            "selection: a, line 1: key = point, expected each key once");
+  for (const char* text : {"- {id: a, id: b, point: [1, 2]}", "- {id: a, corners: {count: 3, count: 4}}",
+                           "- {id: a, ellipse: {centre: [9, 9], radii: [5, 5], radii: [6, 6]}}"})
+    EXPECT_NE(errorOf(text).find("expected each key once"), std::string::npos) << text;
+}
+
 TEST(SelectionText, TellsAllErrorsAtOnce) {
   const std::string error = errorOf("- {id: a, point: [x, y]}\n- {id: b}");
   for (const char* part : {"= x", "= y", "b, line 2"}) EXPECT_NE(error.find(part), std::string::npos) << error;

@@ -98,11 +98,13 @@ TEST_F(ImageSourceTest, BehindTheFirstImageItResumesLater) {
 TEST_F(ImageSourceTest, FolderNamesAFileThatCannotBeReadAndGoesOn) {
   cv::imwrite(folder_.file("a.png"), numbered(0));
   writeFile("b.png", "this is no image");
-  cv::imwrite(folder_.file("c.png"), numbered(2));
+  writeFile("c.ppm", "P6\n100000 100000\n255\nxxx");  // more pixels than OpenCV reads
+  cv::imwrite(folder_.file("d.png"), numbered(3));
   const auto images = readAll(folder_.path());
-  ASSERT_EQ(images.size(), 3u);
+  ASSERT_EQ(images.size(), 4u);
   EXPECT_TRUE(mentions(images[1].error, "b.png")) << images[1].error;
-  EXPECT_EQ(numberOf(images[2]), 2);
+  EXPECT_TRUE(mentions(images[2].error, "c.ppm")) << images[2].error;
+  EXPECT_EQ(numberOf(images[3]), 3);
 }
 
 TEST_F(ImageSourceTest, FolderWithoutImagesIsAnError) {
