@@ -72,8 +72,10 @@ SafetyFacts Controller::Implementation::facts(const ControllerInput& input) cons
     return facts;
   }
   const TaskErrorInput& task = seen(input);
-  facts.tracker = {task.problem,          task.age,         task.image_age, task.valid, task.region,
-                   task.visible_fraction, task.corner_error};
+  facts.tracker = {task.problem,      task.age,
+                   task.image_age,    task.valid,
+                   task.region,       task.visible_fraction,
+                   task.corner_error, usual_age_.share(task.image_age)};
   if (task.problem.empty() && task.valid) facts.tracker.problem = problemOf(task);
   if (task_ == Task::kParallel && facts.tracker.problem.empty()) facts.tracker.problem = planeProblem(input);
   return facts;
@@ -137,6 +139,7 @@ void Controller::Implementation::select(Task task) {
   leash_.restart();
   parallel_.restart();
   keyed_view_.restart();
+  usual_age_.restart();
   effect_.anotherTracker();
   servo_.setUse(servoUse(task, config_));
   servo_.restart(last_time_);
@@ -163,6 +166,7 @@ ControllerOutput Controller::Implementation::update(const ControllerInput& input
   }
   correctDepth(input);
   watchRepetition(seen(input));
+  watchAge(seen(input), input.time);
   watchEffect(input);
   watchLeash(input);
   watchTip(input.tip);

@@ -12,6 +12,7 @@
 #include "servo/safety/opposed_motion.h"
 #include "servo/safety/repeat_watch.h"
 #include "servo/safety/safety_machine.h"
+#include "servo/safety/usual_age.h"
 #include "servo/scope_servo.h"
 #include "servo/task/parallel/keyed_view.h"
 #include "servo/task/parallel/parallel_task.h"
@@ -50,6 +51,7 @@ class Controller::Implementation {
   ServoLimits limits(const SafetyOutput& safety, double time) const;
   ServoInput servoInput(const ControllerInput& input) const;
   void watchRepetition(const TaskErrorInput& task_error);
+  void watchAge(const TaskErrorInput& seen, double time);
   void watchTip(const TaskErrorInput& tip);
   void watchPlane(const ControllerInput& input);
   std::string planeProblem(const ControllerInput& input) const;
@@ -68,6 +70,7 @@ class Controller::Implementation {
   ParallelTask parallel_;
   KeyedView keyed_view_;
   RepeatWatch repeats_;
+  UsualAge usual_age_;
   EffectGuard effect_;
   OpposedMotion opposed_;
   Leash leash_;

@@ -72,6 +72,11 @@ void Controller::Implementation::watchRepetition(const TaskErrorInput& task_erro
   repeats_.take(*task_error.image_time, task_error.error, moves && task_ != Task::kManual);
 }
 
+// Also of images in which nothing is tracked.
+void Controller::Implementation::watchAge(const TaskErrorInput& seen, double time) {
+  if (seen.image_time) usual_age_.take(*seen.image_time, time - seen.age);
+}
+
 // Whether picture and pose may be compared.
 bool Controller::Implementation::isUsable(const ControllerInput& input) const {
   const TaskErrorInput& task = seen(input);

@@ -19,9 +19,10 @@ class RandomCartFaults : public CartSourceFaults {
   using CartSourceFaults::CartSourceFaults;
 
   // Two faults that begin within 0.6 s of `now` and last for 0.3 to 2.5 s. `manual`: the task is MANUAL. Two mirrors
-  // make a true picture, and who judges an effect has to know it.
-  std::vector<CartFault> pair(double now, bool manual) {
-    std::vector<CartFault> faults{one(manual), one(manual)};
+  // make a true picture, and who judges an effect has to know it. `strangers`: the first is one of a stranger.
+  std::vector<CartFault> pair(double now, bool manual, bool strangers) {
+    std::vector<CartFault> faults{strangers ? ofStranger(manual) : one(manual)};
+    faults.push_back(one(manual));
     const auto clash = [](const CartFault& a, const CartFault& b) {
       return a.of_picture && (b.of_picture || b.blinds);
     };

@@ -9,14 +9,14 @@
 #include <random>
 #include <string>
 
-#include "support/cart_fault.h"
+#include "support/cart_stranger_faults.h"
 
 namespace laparoscope_servo::test {
 
 // Each call draws one, with its numbers.
-class CartSourceFaults : public Draws {
+class CartSourceFaults : public CartStrangerFaults {
  public:
-  using Draws::Draws;
+  using CartStrangerFaults::CartStrangerFaults;
 
   CartFault ofSource() {
     static const Maker makers[] = {

@@ -160,14 +160,17 @@ void ControllerInputs::onOperatingState(const ros::MessageEvent<OperatingState c
   robot_ = robot;
   robot_stamp_ = message.header.stamp;
   robot_arrival_ = steadyNow();
+  if (engaged_ && stopped) calls_.step();
 }
 
 void ControllerInputs::onDeadMan(const ros::MessageEvent<std_msgs::Bool const>& event) {
   const InputOwner::Connection connection = event.getConnectionHeaderPtr();
   // Without a configured owner each connection may press, once it was seen released.
   const bool may_press = dead_man_input_.owner.name().empty() || counts(dead_man_input_, event, engaged_);
-  dead_man_.said({connection.get(), [connection](const void*) {}}, event.getConstMessage()->data != 0, may_press,
-                 steadyNow());
+  const double now = steadyNow();
+  const bool pressed = dead_man_.facts(now).pressed;
+  dead_man_.said({connection.get(), [connection](const void*) {}}, event.getConstMessage()->data != 0, may_press, now);
+  if (engaged_ && pressed && !dead_man_.facts(now).pressed) calls_.step();
 }
 
 // Sliders and command lines set no stamp. If there is one, it shows a delay on the way.

@@ -42,6 +42,7 @@ class ControllerInputs {
     // Rotation from a frame's axes to the shaft's; empty: unknown.
     std::function<std::optional<Eigen::Quaterniond>(const std::string& frame)> shaft_from;
     std::function<const servo::DepthInput&()> depth;  // of the last step
+    std::function<void()> step;  // called when a message has ended what moves the arm, not to wait for the next step
   };
 
   // Subscribes.

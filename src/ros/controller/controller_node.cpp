@@ -51,7 +51,7 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
       inputs_(node, private_node, config,
               {[this] { checkTime(); }, [this](const std::string& sender) { onStop(sender); },
                [this](const std::string& frame) { return scope_pose_.shaftFrom(frame); },
-               [this]() -> const servo::DepthInput& { return last_input_.depth; }}),
+               [this]() -> const servo::DepthInput& { return last_input_.depth; }, [this] { onTick(); }}),
       diagnostics_(node, private_node),
       command_publisher_(node.advertise<ScopeVelocity>("servo_command", 1)),
       state_publisher_(private_node.advertise<ControllerState>("state", 1, true)),

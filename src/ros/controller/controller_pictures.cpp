@@ -28,8 +28,10 @@ bool ControllerInputs::takes(Input& input, Picture& picture, const ros::MessageE
 
 // Converts the stamp to steady time once per image, since the clocks may drift.
 void ControllerInputs::keep(Picture& picture, const servo::TaskErrorInput& seen) {
+  const bool lost = picture.last.valid && !seen.valid;
   picture.last = seen;
   picture.last.image_time = steadyNow() - picture.watch.stampAge(ros::Time::now());
+  if (engaged_ && lost) calls_.step();
 }
 
 void ControllerInputs::onTaskError(const ros::MessageEvent<TaskError const>& event) {

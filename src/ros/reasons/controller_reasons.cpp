@@ -242,7 +242,7 @@ const std::vector<ReasonRow>& controllerReasons() {
       {{"slow: visible fraction below ", "not deeper: visible fraction below ", "not deeper: corner error above "},
        "What is followed is seen badly, so the scope goes slower, or no deeper.",
        "Take away what covers it, or wait."},
-      {{"slow: image older than "},
+      {{"slow: image older than ", "stands: no image came when the next one was due"},
        "The pictures come late, so the scope goes slower.",
        "Look at the delays in /diagnostics of the tracker: a slow camera, or a busy machine."},
       // Clocks, names, stops.

@@ -244,7 +244,8 @@ SafetyOutput SafetyMachine::output(const SafetyFacts& facts) const {
   const double visible = facts.tracker.visible_fraction;
   const double seen = share(visible, c.hold_below, c.slow_below);
   const double recent = share(-facts.tracker.image_age, -c.max_task_error_age, -c.slow_age * c.max_task_error_age);
-  output.speed_scale = std::min(seen, recent);
+  const double punctual = facts.tracker.punctual;
+  output.speed_scale = std::min({seen, recent, punctual});
   const bool sees_enough = visible >= c.min_visible_for_insertion;
   const bool knows_where = facts.tracker.corner_error <= c.max_corner_error_for_insertion;
   output.insertion_allowed = sees_enough && knows_where;
@@ -254,6 +255,8 @@ SafetyOutput SafetyMachine::output(const SafetyFacts& facts) const {
   if (seen < 1.0) add(text("slow: visible fraction below ", c.slow_below));
   // The age goes up and down with each image: said is only what halves the speed.
   if (recent < 0.5) add(text("slow: image older than ", 0.5 * (1.0 + c.slow_age) * c.max_task_error_age, " s"));
+  // Of an image that is dropped now and then nothing is said.
+  if (!(punctual > 0.0)) add("stands: no image came when the next one was due");
   if (!sees_enough) add(text("not deeper: visible fraction below ", c.min_visible_for_insertion));
   if (!knows_where) add(text("not deeper: corner error above ", c.max_corner_error_for_insertion, " px"));
   if (facts.residual == ResidualLevel::kWarning) add("the residual of the insertion point grows");

@@ -34,6 +34,7 @@ struct TrackerFacts {
   std::optional<double> region;                                   // identifies the region of interest
   double visible_fraction = 0.0;                                  // 0 to 1, visible share of the region of interest
   double corner_error = std::numeric_limits<double>::infinity();  // px, expected error of the worst corner
+  double punctual = 1.0;  // 0 to 1, share of the speed for the image's age by what is usual, see usual_age.h
 };
 
 struct EffectFacts {

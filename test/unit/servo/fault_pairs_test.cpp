@@ -44,9 +44,10 @@ ControllerConfig withDeadMan() {
 
 class PairRun {
  public:
-  // `task`: unless it is MANUAL, as a quarter of the runs are.
-  PairRun(unsigned seed, Task task)
+  // `task`: unless it is MANUAL, as a quarter of the runs are. `strangers`: one of the two is a stranger's.
+  PairRun(unsigned seed, Task task, bool strangers)
       : random_(seed),
+        strangers_(strangers),
         manual_(random_.whole(4) == 0),
         task_(manual_ ? Task::kManual : task),
         cart_(withDeadMan(),
@@ -117,7 +118,7 @@ class PairRun {
     cart_.pass(0.4);
     expect(!cart_.velocity().isZero(0.0), "it does not begin to move");
     begin_ = cart_.time();
-    faults_ = random_.pair(begin_, manual_);
+    faults_ = random_.pair(begin_, manual_, strangers_);
     cart_.interference.picture = [this](Eigen::Matrix3d& h) {
       for (const CartFault& fault : faults_) {
         if (fault.lasts(cart_.time()) && fault.interference.picture) fault.interference.picture(h);
@@ -229,6 +230,7 @@ class PairRun {
   }
 
   test::RandomCartFaults random_;
+  bool strangers_;
   bool manual_;
   Task task_;
   SimulatedCart cart_;
@@ -262,14 +264,14 @@ TEST(FaultPairs, ADepthThatCannotBeIsForgottenWithTheJumpOfTheClock) {
   EXPECT_EQ(cart.controller.engage(cart.input()), "");
 }
 
-void runPairs(Task task) {
+void runPairs(Task task, bool strangers = false) {
   const int first = setting("CART_FAULT_SEED", 1);
   const int count = setting("CART_FAULT_RUNS", 1000);
   ScopeTravel worst;
   double away = 0.0;
   int stopped = 0;
   for (int seed = first; seed < first + count; ++seed) {
-    PairRun run(static_cast<unsigned>(seed), task);
+    PairRun run(static_cast<unsigned>(seed), task, strangers);
     const std::string failure = run.run();
     worst.angle = std::max(worst.angle, run.worst().angle);
     worst.distance = std::max(worst.distance, run.worst().distance);
@@ -294,6 +296,10 @@ TEST(FaultPairs, NoneMovesTheScopeFurtherThanItMayAndItGoesOnByTheSteps) {
 
 TEST(FaultPairs, NoneMovesTheScopeFurtherWhereItFollowsAnObject) {
   runPairs(Task::kFollow);
+}
+
+TEST(FaultPairs, NoneOfAStrangerMovesTheScopeFurther) {
+  runPairs(Task::kHoldView, true);
 }
 
 }  // namespace

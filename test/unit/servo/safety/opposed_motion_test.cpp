@@ -55,6 +55,25 @@ TEST(OpposedMotion, NamesTheAxisThatGoesTheWrongWayUntilItIsRestarted) {
   }
 }
 
+// It was told the same for so long that no delay explains it.
+TEST(OpposedMotion, AnAxisThatTurnsRoundInAFastMotionIsNoticedSoon) {
+  const scope::Velocity motions[] = {
+      {0.1, 0.0, 0.0, 0.0}, {0.0, 0.1, 0.0, 0.0}, {0.0, 0.0, 0.1, 0.0}, {0.0, 0.0, 0.0, 0.01}};
+  for (const scope::Velocity& motion : motions) {
+    Arm arm;
+    arm.run(motion, 1.0, 1.0);
+    arm.run(motion, 0.04, -1.0);
+    EXPECT_EQ(arm.watch.words(), "") << "two reports may be wrong";
+    arm.run(motion, 0.04, -1.0);
+    EXPECT_NE(arm.watch.words(), "");
+    Arm slow;
+    const auto slowly = scope::Velocity::fromVector(0.3 * motion.vector());
+    slow.run(slowly, 1.0, 1.0);
+    slow.run(slowly, 0.1, -1.0);
+    EXPECT_EQ(slow.watch.words(), "");
+  }
+}
+
 // Held again and again, as by a dead-man switch that bounces: no motion lasts, and they add up.
 TEST(OpposedMotion, MotionsThatAreInterruptedAddUp) {
   Arm arm;
