@@ -77,17 +77,19 @@ void EdgeSearch::find(const cv::Mat& image, const Site& site, const EdgeWindow& 
   result.inside = profile_.read(image, site, window);
   if (!result.inside) return;
   const double bent = sag(window, site.curvature);
-  const int count = profile_.count();
+  const int last = profile_.count() - kReach;
   const float* p = profile_.levels();
   const auto answer = [p](int k) { return kNear * (p[k + 1] - p[k - 1]) + kFar * (p[k + 2] - p[k - 2]); };
+  const float least = static_cast<float>(min_contrast);
   float before = answer(kReach), here = answer(kReach + 1);
-  for (int k = kReach + 1; k < count - kReach - 1; ++k) {
-    const float after = answer(k + 1);
-    const float sign = here < 0.0f ? -1.0f : 1.0f;
-    const float middle = sign * here, left = sign * before, right = sign * after;
+  for (int k = kReach + 1; k < last - 1; ++k) {
+    const float after = answer(k + 1), left_of_it = before, at_it = here;
     before = here;
     here = after;
-    if (!(middle >= static_cast<float>(min_contrast) && middle > left && middle >= right)) continue;
+    if (!(std::abs(at_it) >= least)) continue;  // most samples lie on no edge
+    const float sign = at_it < 0.0f ? -1.0f : 1.0f;
+    const float middle = sign * at_it, left = sign * left_of_it, right = sign * after;
+    if (!(middle > left && middle >= right)) continue;
     const double samples = static_cast<double>(profile_.first() + k) + static_cast<double>(peak(left, middle, right));
     EdgeCandidate candidate;
     candidate.offset = static_cast<float>(samples * window.step + bent);

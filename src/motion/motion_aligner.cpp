@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "laparoscope_servo/image/warp.h"
-#include "laparoscope_servo/robust/median.h"
 #include "laparoscope_servo/robust/scale.h"
+#include "motion/float_median.h"
 #include "motion/square_weights.h"
 
 namespace laparoscope_servo::motion {
@@ -152,8 +152,7 @@ void MotionAligner::beginOffsets(int l, const Alignment& at) {
           if (weight(j, i) > 0.0f) differences_.push_back(plane.value(j, i) - gain * plane.warped(j, i));
         }
       }
-      if (differences_.size() >= kFewestDifferences)
-        plane.bias[block] = static_cast<double>(robust::median(differences_));
+      if (differences_.size() >= kFewestDifferences) plane.bias[block] = static_cast<double>(floatMedian(differences_));
     }
   }
 }
@@ -179,8 +178,8 @@ double MotionAligner::scaleOf(int l, const tracking::ResidualScale& scale, doubl
 }
 
 bool MotionAligner::step(const MotionImage& current, int l, const Unknowns& unknowns, Offsets offsets,
-                         tracking::ResidualScale& scale, Alignment& at) {
-  warpImage(current, l, at.g);
+                         tracking::ResidualScale& scale, Alignment& at, bool warped) {
+  if (!warped) warpImage(current, l, at.g);
   const bool local = offsets != Offsets::kOne;
   if (offsets == Offsets::kOne) setOffset(l, at.offset);
   if (offsets == Offsets::kBegin) beginOffsets(l, at);
@@ -262,8 +261,8 @@ Alignment MotionAligner::bestStart(const MotionImage& current, const std::vector
 
 // Two motions that are near each other look alike on coarse levels, and a fit to all pixels ends between them. So where
 // residuals are larger than expected, four motions compete: the one that was found, the expected one, and each of them
-// corrected by the votes of the cells.
-void MotionAligner::judgeAgain(const MotionImage& current, int l, const Eigen::Matrix3d& predicted, Alignment& at) {
+// corrected by the votes of the cells. Returns whether the level's image is warped by the motion that was chosen.
+bool MotionAligner::judgeAgain(const MotionImage& current, int l, const Eigen::Matrix3d& predicted, Alignment& at) {
   const EsmLevel& level = levels_[static_cast<std::size_t>(l)];
   const double expected = expected_[static_cast<std::size_t>(l)];
   const Eigen::Matrix<double, 8, 8> t = fieldFromSl3(tracking::halfSize(frame_));
@@ -286,7 +285,7 @@ void MotionAligner::judgeAgain(const MotionImage& current, int l, const Eigen::M
     const double sigma = look(base);
     if (expected > 0.0 && sigma < kAsExpected * expected) {
       at.g = base;
-      return;
+      return true;
     }
     equations_.sum(level, frame_, lightOf(config_), at.gain, 0.0);
     const double noise = std::min(sigma, std::max(kLeastBound, expected));
@@ -298,10 +297,12 @@ void MotionAligner::judgeAgain(const MotionImage& current, int l, const Eigen::M
     if (costOf(k, least, most) < costOf(best, least, most)) best = k;
   }
   at.g = candidates[best];
+  return best + 1 == count;
 }
 
-// Iterates until the remaining way, extrapolated from how the steps shrink, is short.
-void MotionAligner::refine(const MotionImage& current, int l, Alignment& at) {
+// Iterates until the remaining way, extrapolated from how the steps shrink, is short. `warped`: the level's image is
+// warped by the motion from which it begins.
+void MotionAligner::refine(const MotionImage& current, int l, bool warped, Alignment& at) {
   const double scale = levels_[static_cast<std::size_t>(l)].scale;
   const bool local = hasOwnOffsets(l);
   const double accuracy = scale * (l == 0 ? kAccuracy : kCoarseAccuracy);
@@ -309,7 +310,7 @@ void MotionAligner::refine(const MotionImage& current, int l, Alignment& at) {
   for (int k = 0; k < kIterations; ++k) {
     const double before = at.last_step;
     const Offsets offsets = !local ? Offsets::kOne : k == 0 ? Offsets::kBegin : Offsets::kGoOn;
-    if (!step(current, l, all(), offsets, residuals_[0], at)) return;
+    if (!step(current, l, all(), offsets, residuals_[0], at, warped && k == 0)) return;
     if (k > 0) contraction = std::min(at.last_step / std::max(before, 1e-9), kSlowest);
     if (at.last_step * contraction / (1.0 - contraction) < accuracy) break;
   }
@@ -322,10 +323,10 @@ Alignment MotionAligner::align(const MotionImage& current, const std::vector<Eig
   scales_.fill(0.0);
   Alignment at = bestStart(current, starts);
   for (int l = levels() - (levels() > 1 ? 2 : 1); l >= 0 && at.determined; --l) {
-    if (levels_[static_cast<std::size_t>(l)].width * levels_[static_cast<std::size_t>(l)].height < kMostJudged) {
-      judgeAgain(current, l, starts.front(), at);
-    }
-    refine(current, l, at);
+    const EsmLevel& level = levels_[static_cast<std::size_t>(l)];
+    const bool judged = level.width * level.height < kMostJudged;
+    const bool warped = judged && judgeAgain(current, l, starts.front(), at);
+    refine(current, l, warped, at);
   }
   return at;
 }

@@ -97,15 +97,15 @@ class MotionAligner {
   bool hasOwnOffsets(int l) const { return l == 0 && config_.light; }
   enum class Offsets { kOne, kBegin, kGoOn };  // one for all pixels; of each block, begun anew or as they are
   bool step(const MotionImage& current, int l, const Unknowns& unknowns, Offsets offsets,
-            tracking::ResidualScale& scale, Alignment& at);
+            tracking::ResidualScale& scale, Alignment& at, bool warped = false);
   void warpImage(const MotionImage& current, int l, const Eigen::Matrix3d& g);
   void setOffset(int l, double offset);
   void beginOffsets(int l, const Alignment& at);
   void stepOffsets(int l, const tracking::Vector10d& x, Alignment& at);
   double costOf(std::size_t start, double sigma, int most) const;
-  void judgeAgain(const MotionImage& current, int l, const Eigen::Matrix3d& predicted, Alignment& at);
+  bool judgeAgain(const MotionImage& current, int l, const Eigen::Matrix3d& predicted, Alignment& at);
   Alignment bestStart(const MotionImage& current, const std::vector<Eigen::Matrix3d>& starts);
-  void refine(const MotionImage& current, int l, Alignment& at);
+  void refine(const MotionImage& current, int l, bool warped, Alignment& at);
 
   MotionConfig config_;
   geometry::Rectangle frame_;

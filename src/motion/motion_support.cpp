@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "laparoscope_servo/robust/median.h"
 #include "laparoscope_servo/robust/scale.h"
+#include "motion/float_median.h"
 
 namespace laparoscope_servo::motion {
 
@@ -114,7 +114,7 @@ void MotionSupport::measureScale(const tracking::EsmLevel& level, double gain) {
   }
   sigma_ = magnitudes_.empty()
                ? 0.0
-               : std::max(kLeastSigma, robust::kMadToSigma * static_cast<double>(robust::median(magnitudes_)));
+               : std::max(kLeastSigma, robust::kMadToSigma * static_cast<double>(floatMedian(magnitudes_)));
 }
 
 }  // namespace laparoscope_servo::motion

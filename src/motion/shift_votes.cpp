@@ -1,6 +1,7 @@
 #include "motion/shift_votes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -13,37 +14,47 @@ namespace {
 constexpr int kBlock = 10;       // px of the level: enough for one place to differ from another
 constexpr double kShown = 0.75;  // of a block's pixels have to be in the image
 
+// Compares a row of the reference, piece by piece, with a row of the image from `lanes` places on, and adds the
+// differences and their squares to those of the pieces' blocks, `stride` numbers apart. `inside`: 0 for places that do
+// not count, else 1.
 LAPAROSCOPE_SERVO_CLONES
-void subtract(const float* __restrict image, const float* __restrict reference, int count, float* __restrict difference,
-              float* __restrict square) {
+void addDifferences(const float* __restrict image, const float* __restrict inside, const float* __restrict reference,
+                    int width, double* __restrict sum, double* __restrict squares, std::size_t stride) {
+  constexpr int kLanes = 8;
+  for (int first = 0; first < width; first += kBlock, sum += stride, squares += stride) {
+    float s[kLanes] = {}, q[kLanes] = {};
+    const int end = first + kBlock < width ? first + kBlock : width;
+    for (int i = first; i < end; ++i) {
 #pragma omp simd
-  for (int i = 0; i < count; ++i) {
-    const float d = image[i] - reference[i];
-    difference[i] = d;
-    square[i] = d * d;
+      for (int k = 0; k < kLanes; ++k) {
+        const float d = inside[i + k] * (image[i + k] - reference[i]);
+        s[k] += d;
+        q[k] += d * d;
+      }
+    }
+#pragma omp simd
+    for (int k = 0; k < kLanes; ++k) {
+      sum[k] += static_cast<double>(s[k]);
+      squares[k] += static_cast<double>(q[k]);
+    }
   }
 }
 
 }  // namespace
 
-void ShiftVotes::compare(const tracking::EsmLevel& reference, const cv::Mat1f& current, int shift) {
-  const int down = shift / kAlong - kReach, right = shift % kAlong - kReach;
-  const int begin = std::max(0, -right), end = std::min(reference.width, reference.width - right);
+void ShiftVotes::compare(const tracking::EsmLevel& reference, const cv::Mat1f& current, int down) {
+  const std::size_t place = static_cast<std::size_t>(down + kReach);
   for (int j = std::max(0, -down); j < std::min(reference.height, reference.height - down); ++j) {
-    subtract(current.ptr<float>(j + down) + begin + right, reference.planes[0].value.row(j) + begin, end - begin,
-             difference_.data() + begin, square_.data() + begin);
-    Block* row = blocks_.data() + j / kBlock * columns_;
-    for (int first = 0; first < reference.width; first += kBlock) {
-      Block& block = row[first / kBlock];
-      float sum = 0.0f, squares = 0.0f;
-      const int from = std::max(first, begin), to = std::min(first + kBlock, end);
-      for (int i = from; i < to; ++i) {
-        sum += difference_[static_cast<std::size_t>(i)];
-        squares += square_[static_cast<std::size_t>(i)];
+    std::copy_n(current.ptr<float>(j + down), reference.width, row_.begin() + kReach);
+    Block* const row = blocks_.data() + j / kBlock * columns_;
+    addDifferences(row_.data(), inside_.data(), reference.planes[0].value.row(j), reference.width, row->sum[place],
+                   row->squares[place], sizeof(Block) / sizeof(double));
+    for (int column = 0; column < columns_; ++column) {
+      const int first = column * kBlock, last = std::min(first + kBlock, reference.width);
+      for (int right = -kReach; right <= kReach; ++right) {
+        const int from = std::max(first, -right), to = std::min(last, reference.width - right);
+        row[column].pixels[place][right + kReach] += std::max(0, to - from);
       }
-      block.sum[shift] += static_cast<double>(sum);
-      block.squares[shift] += static_cast<double>(squares);
-      block.pixels[shift] += std::max(0, to - from);
     }
   }
 }
@@ -60,22 +71,23 @@ void ShiftVotes::vote(const tracking::EsmLevel& reference) {
       for (int i = column; i < column + width; ++i) weight += static_cast<double>(reference.weight(j, i));
     }
     if (weight < kShown * kBlock * kBlock) continue;
-    const auto misfit = [&](int shift) {
-      const int pixels = block.pixels[shift];
-      if (pixels < kShown * width * height) return std::numeric_limits<double>::infinity();
-      return (block.squares[shift] - block.sum[shift] * block.sum[shift] / pixels) / pixels;
-    };
-    int best = 0;
-    for (int shift = 1; shift < kAlong * kAlong; ++shift) {
-      if (misfit(shift) < misfit(best)) best = shift;
+    std::array<double, kAlong * kAlong> misfit;
+    for (int shift = 0; shift < kAlong * kAlong; ++shift) {
+      const int down = shift / kAlong, right = shift % kAlong, pixels = block.pixels[down][right];
+      const double sum = block.sum[down][right];
+      misfit[static_cast<std::size_t>(shift)] = pixels < kShown * width * height
+                                                    ? std::numeric_limits<double>::infinity()
+                                                    : (block.squares[down][right] - sum * sum / pixels) / pixels;
     }
+    const auto least = std::min_element(misfit.begin(), misfit.end());
+    const int best = static_cast<int>(least - misfit.begin());
     double second = std::numeric_limits<double>::infinity();
     for (int shift = 0; shift < kAlong * kAlong; ++shift) {
       const bool apart = std::abs(shift / kAlong - best / kAlong) > 1 || std::abs(shift % kAlong - best % kAlong) > 1;
-      if (apart) second = std::min(second, misfit(shift));
+      if (apart) second = std::min(second, misfit[static_cast<std::size_t>(shift)]);
     }
     if (!(second > 0.0) || !std::isfinite(second)) continue;
-    votes_.push_back({Eigen::Vector2d(best % kAlong - kReach, best / kAlong - kReach), 1.0 - misfit(best) / second});
+    votes_.push_back({Eigen::Vector2d(best % kAlong - kReach, best / kAlong - kReach), 1.0 - *least / second});
   }
 }
 
@@ -84,9 +96,11 @@ Eigen::Vector2d ShiftVotes::find(const tracking::EsmLevel& reference, const cv::
   const int rows = (reference.height + kBlock - 1) / kBlock;
   blocks_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows), Block{});
   votes_.reserve(blocks_.size());
-  difference_.resize(static_cast<std::size_t>(reference.width));
-  square_.resize(static_cast<std::size_t>(reference.width));
-  for (int shift = 0; shift < kAlong * kAlong; ++shift) compare(reference, current, shift);
+  const std::size_t width = static_cast<std::size_t>(reference.width);
+  row_.assign(width + kLanes, 0.0f);
+  inside_.assign(width + kLanes, 0.0f);
+  std::fill_n(inside_.begin() + kReach, width, 1.0f);
+  for (int down = -kReach; down <= kReach; ++down) compare(reference, current, down);
   vote(reference);
   Eigen::Vector2d best = Eigen::Vector2d::Zero();
   double most = 0.0;

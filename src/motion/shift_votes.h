@@ -22,21 +22,24 @@ class ShiftVotes {
 
  private:
   static constexpr int kAlong = 2 * kReach + 1;
+  // Of the differences, for each shift down, and along with it for each one to the right; the rest pads a vector.
+  static constexpr int kLanes = 8;
+  using Sums = double[kAlong][kLanes];
   struct Block {
-    double sum[kAlong * kAlong], squares[kAlong * kAlong];  // of the differences
-    int pixels[kAlong * kAlong];
+    Sums sum, squares;
+    int pixels[kAlong][kLanes];
   };
   struct Vote {
     Eigen::Vector2d shift;
     double weight;
   };
-  void compare(const tracking::EsmLevel& reference, const cv::Mat1f& current, int shift);
+  void compare(const tracking::EsmLevel& reference, const cv::Mat1f& current, int down);
   void vote(const tracking::EsmLevel& reference);
 
   int columns_ = 0;
   std::vector<Block> blocks_;
   std::vector<Vote> votes_;
-  std::vector<float> difference_, square_;
+  std::vector<float> row_, inside_;  // of the current image, kReach px longer at either end, where `inside_` is 0
 };
 
 }  // namespace laparoscope_servo::motion

@@ -18,6 +18,17 @@ void keepLarger(const unsigned char* __restrict from, int count, unsigned char* 
   for (int i = 0; i < count; ++i) to[i] = from[i] > to[i] ? from[i] : to[i];
 }
 
+// Each byte becomes the largest of the `count` ones from it on, but for the last ones, which have fewer.
+LAPAROSCOPE_SERVO_CLONES
+void lookAhead(unsigned char* row, int length, int count) {
+  for (int seen = 1; seen < count;) {
+    const int further = seen < count - seen ? seen : count - seen;
+    seen += further;
+#pragma omp simd
+    for (int i = 0; i <= length - seen; ++i) row[i] = row[i] > row[i + further] ? row[i] : row[i + further];
+  }
+}
+
 cv::Size squaresOf(const cv::Size& size, int side) {
   return {(size.width + side - 1) / side, (size.height + side - 1) / side};
 }
@@ -47,17 +58,15 @@ void UsablePixels::reduce(const cv::Mat& image, cv::Mat1b& brightest) {
   const int bytes = image.cols * image.channels();
   const int step = side_ * image.channels();
   brightest.create(squares_.size());
-  row_.resize(std::max(row_.size(), static_cast<std::size_t>(bytes)));
+  row_.assign(static_cast<std::size_t>(brightest.cols) * step, 0);  // longer than the image's where the last is cut off
   for (int j = 0; j < brightest.rows; ++j) {
     const int first = j * side_;
     std::copy_n(image.ptr<unsigned char>(first), bytes, row_.begin());
     for (int v = first + 1; v < std::min(first + side_, image.rows); ++v) {
       keepLarger(image.ptr<unsigned char>(v), bytes, row_.data());
     }
-    unsigned char* to = brightest[j];
-    for (int i = 0; i < brightest.cols; ++i) {
-      to[i] = *std::max_element(row_.begin() + i * step, row_.begin() + std::min((i + 1) * step, bytes));
-    }
+    lookAhead(row_.data(), static_cast<int>(row_.size()), step);
+    for (int i = 0; i < brightest.cols; ++i) brightest(j, i) = row_[static_cast<std::size_t>(i) * step];
   }
 }
 

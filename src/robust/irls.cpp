@@ -15,12 +15,38 @@ namespace {
 constexpr double kLeastPivot = 1e-12;
 
 // Adds a row's part of A'WA, of which the lower triangle is used, and of A'Wb: coefficients side by side.
+template <int kCount>
 void addBlock(const Row& row, double weight, Eigen::MatrixXd& normal, Eigen::VectorXd& right) {
-  for (int l = 0; l < row.count; ++l) {
-    const double scaled = weight * row.a[static_cast<std::size_t>(l)];
-    right[row.first + l] += scaled * row.b;
-    double* column = &normal(row.first, row.first + l);
-    for (int k = l; k < row.count; ++k) column[k] += scaled * row.a[static_cast<std::size_t>(k)];
+  const Eigen::Index rows = normal.rows();
+  double* const sums = right.data() + row.first;
+  double* column = normal.data() + row.first * (rows + 1);
+  for (std::size_t l = 0; l < kCount; ++l, column += rows) {
+    const double scaled = weight * row.a[l];
+    sums[l] += scaled * row.b;
+    for (std::size_t k = l; k < kCount; ++k) column[k] += scaled * row.a[k];
+  }
+}
+
+// Of the numbers of coefficients that there are, each has loops of its own.
+void addBlock(const Row& row, double weight, Eigen::MatrixXd& normal, Eigen::VectorXd& right) {
+  static_assert(Row::kMost == 8);
+  switch (row.count) {
+    case 1:
+      return addBlock<1>(row, weight, normal, right);
+    case 2:
+      return addBlock<2>(row, weight, normal, right);
+    case 3:
+      return addBlock<3>(row, weight, normal, right);
+    case 4:
+      return addBlock<4>(row, weight, normal, right);
+    case 5:
+      return addBlock<5>(row, weight, normal, right);
+    case 6:
+      return addBlock<6>(row, weight, normal, right);
+    case 7:
+      return addBlock<7>(row, weight, normal, right);
+    case 8:
+      return addBlock<8>(row, weight, normal, right);
   }
 }
 
@@ -39,7 +65,12 @@ void addRound(const Row& row, double weight, Eigen::MatrixXd& normal, Eigen::Vec
 
 double product(const Row& row, const Eigen::VectorXd& x) {
   double sum = 0.0;
-  for (int k = 0; k < row.count; ++k) sum += row.a[static_cast<std::size_t>(k)] * x[columnOf(row.first, k, x.size())];
+  if (row.first + row.count <= x.size()) {
+    const double* const own = x.data() + row.first;
+    for (int k = 0; k < row.count; ++k) sum += row.a[static_cast<std::size_t>(k)] * own[k];
+  } else {
+    for (int k = 0; k < row.count; ++k) sum += row.a[static_cast<std::size_t>(k)] * x[columnOf(row.first, k, x.size())];
+  }
   return sum;
 }
 
@@ -71,7 +102,7 @@ bool Irls::step(const std::vector<Row>& rows, double variance, const Eigen::Matr
     const Row& row = rows[i];
     const double weight = row.weight * weights_[i];
     if (!(weight > 0.0)) continue;
-    if (row.first + row.count <= unknowns) {
+    if (row.first + row.count <= x.size()) {
       addBlock(row, weight, normal_, right_);
     } else {
       addRound(row, weight, normal_, right_);

@@ -51,6 +51,19 @@ TEST(UsablePixels, OneChannelIsEnoughForAHighlight) {
   EXPECT_EQ(lookedAt(image).squares()(5, 5), 1);
 }
 
+TEST(UsablePixels, AnyPixelOfASquareIsEnough) {
+  for (int pixel = 0; pixel < 16; ++pixel) {
+    for (int channel = 0; channel < 3; ++channel) {
+      cv::Mat image(120, 160, CV_8UC3, cv::Scalar(90, 100, 150));
+      image.at<cv::Vec3b>(40 + pixel / 4, 80 + pixel % 4)[channel] = 255;
+      const Squares squares = lookedAt(image).squares();
+      EXPECT_EQ(cv::countNonZero(squares == 0), 9) << pixel << ", " << channel;
+      EXPECT_EQ(squares(10, 20), 0) << pixel << ", " << channel;
+      EXPECT_EQ(squares(9, 19) + squares(11, 21), 0) << pixel << ", " << channel;
+    }
+  }
+}
+
 TEST(UsablePixels, DarkIsWhereEveryChannelIs) {
   cv::Mat image(120, 160, CV_8UC3, cv::Scalar(5, 5, 60));
   image(cv::Rect(0, 0, 40, 40)).setTo(cv::Scalar(5, 5, 20));
