@@ -41,7 +41,7 @@ double shareInView(const Eigen::Matrix3d& g, const geometry::Rectangle& frame) {
 class AnchoredMotion::Implementation {
  public:
   explicit Implementation(const MotionConfig& config)
-      : keeper_(config.state), sequence_(config), estimator_(config), config_(config) {
+      : keeper_(config.state), sequence_(config), estimator_(config, true), config_(config) {
     starts_.reserve(MotionAligner::kMostStarts);
   }
 

@@ -84,6 +84,7 @@ void MotionImage::take(const cv::Mat& image, const cv::Mat& mask, const MotionCo
 }
 
 void MotionAligner::setReference(const MotionImage& image) {
+  shading_.forget();
   const cv::Size size = image.pyramid.region().size();
   const bool known = static_cast<int>(levels_.size()) == image.pyramid.levels() && frame_.width == size.width &&
                      frame_.height == size.height;
@@ -116,8 +117,15 @@ void MotionAligner::warpImage(const MotionImage& current, int l, const Eigen::Ma
   tracking::EsmPlane& plane = level.planes[0];
   level.all_valid = image::warpBilinear(
       current.pyramid.level(l), current.pyramid.levelFromImage(l) * g * level.image_T_patch, plane.warped, level.valid);
+  if (shaded_) shading_.correct(level);
   plane.warped.extrapolate();
   if (!level.all_valid) level.useValid();
+}
+
+void MotionAligner::fitShading(const MotionImage& current, int l, const Eigen::Matrix3d& g) {
+  shading_.forget();
+  warpImage(current, l, g);
+  shading_.fit(levels_[static_cast<std::size_t>(l)]);
 }
 
 void MotionAligner::setOffset(int l, double offset) {
@@ -323,6 +331,8 @@ Alignment MotionAligner::align(const MotionImage& current, const std::vector<Eig
   scales_.fill(0.0);
   Alignment at = bestStart(current, starts);
   for (int l = levels() - (levels() > 1 ? 2 : 1); l >= 0 && at.determined; --l) {
+    // The finest level would tell no more than the one before.
+    if (shaded_ && (l > 0 || levels() == 1)) fitShading(current, l, at.g);
     const EsmLevel& level = levels_[static_cast<std::size_t>(l)];
     const bool judged = level.width * level.height < kMostJudged;
     const bool warped = judged && judgeAgain(current, l, starts.front(), at);

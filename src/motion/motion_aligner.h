@@ -17,6 +17,7 @@
 #include "laparoscope_servo/image/pyramid.h"
 #include "laparoscope_servo/motion/motion_config.h"
 #include "motion/cell_votes.h"
+#include "motion/shading.h"
 #include "motion/shift_votes.h"
 #include "motion/usable_pixels.h"
 #include "tracking/esm/esm_level.h"
@@ -54,7 +55,9 @@ class MotionAligner {
   static constexpr int kMostStarts = 4;
   using Scales = std::array<double, kMostLevels>;
 
-  explicit MotionAligner(const MotionConfig& config) : config_(config) {}
+  // `shaded`: the images may lie so far apart that the light differs from place to place, see Shading.
+  explicit MotionAligner(const MotionConfig& config, bool shaded = false)
+      : config_(config), shaded_(shaded && config.light) {}
 
   // Allocates for the first image, and for one of another size.
   void setReference(const MotionImage& image);
@@ -99,6 +102,7 @@ class MotionAligner {
   bool step(const MotionImage& current, int l, const Unknowns& unknowns, Offsets offsets,
             tracking::ResidualScale& scale, Alignment& at, bool warped = false);
   void warpImage(const MotionImage& current, int l, const Eigen::Matrix3d& g);
+  void fitShading(const MotionImage& current, int l, const Eigen::Matrix3d& g);
   void setOffset(int l, double offset);
   void beginOffsets(int l, const Alignment& at);
   void stepOffsets(int l, const tracking::Vector10d& x, Alignment& at);
@@ -108,6 +112,8 @@ class MotionAligner {
   void refine(const MotionImage& current, int l, bool warped, Alignment& at);
 
   MotionConfig config_;
+  bool shaded_;
+  Shading shading_;
   geometry::Rectangle frame_;
   geometry::Sl3Steps steps_;
   std::vector<tracking::EsmLevel> levels_;

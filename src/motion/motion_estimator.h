@@ -22,7 +22,11 @@ struct MotionEstimate {
 
 class MotionEstimator {
  public:
-  explicit MotionEstimator(const MotionConfig& config) : config_(config), aligner_(config) { again_.reserve(1); }
+  // `shaded`: see MotionAligner.
+  explicit MotionEstimator(const MotionConfig& config, bool shaded = false)
+      : config_(config), aligner_(config, shaded) {
+    again_.reserve(1);
+  }
 
   void setReference(const MotionImage& image);
   // `region`: px of the reference image; `whole`: it is all of the image. `starts`: the expected motion first.

@@ -62,7 +62,7 @@ Eigen::Vector2d middleOf(const cv::Rect& box) {
 }  // namespace
 
 MotionSequence::MotionSequence(const MotionConfig& config)
-    : config_(config), keeper_(config.state), estimator_(config) {
+    : config_(config), keeper_(config.state), estimator_(config), anchor_(config) {
   starts_.reserve(MotionAligner::kMostStarts);
 }
 
@@ -83,13 +83,14 @@ void MotionSequence::start(const cv::Mat& image, double stamp, const std::option
   reset(reason);
   sequence_.begin(image, stamp);
   box_ = cv::Rect({}, image.size());
-  if (region) {
-    window_.emplace(*region, image.size());
-    keep(image, mask);
-  }
   region_ =
       region.value_or(geometry::Rectangle{0.0, 0.0, static_cast<double>(image.cols), static_cast<double>(image.rows)})
           .corners();
+  if (region) {
+    window_.emplace(*region, image.size());
+    anchor_.begin(image, mask, window_->about(region_), region_);
+    keep(image, mask);
+  }
   result_.region = region_;
   result_.field.centre = Eigen::Vector2d(0.5 * (image.cols - 1), 0.5 * (image.rows - 1));
 }
@@ -138,7 +139,8 @@ Reason MotionSequence::estimate(const std::optional<Eigen::Matrix3d>& motion) {
   if (given) starts_.push_back(*motion / std::cbrt(motion->determinant()));
   starts_.push_back(predicted(result_.interval));
   starts_.push_back(Eigen::Matrix3d::Identity());
-  const Eigen::Matrix3d expected = starts_.front(), image_from_box = imageFromBox(box_);
+  expected_ = starts_.front();
+  const Eigen::Matrix3d image_from_box = imageFromBox(box_);
   const Eigen::Matrix3d box_from_image = image_from_box.inverse();
   for (Eigen::Matrix3d& g : starts_) g = box_from_image * g * image_from_box;
   estimator_.setReference(last_);
@@ -147,7 +149,12 @@ Reason MotionSequence::estimate(const std::optional<Eigen::Matrix3d>& motion) {
   believed_ = found.why == Reason::kNone;
   const Eigen::Matrix<double, 8, 8> to_image = fieldAbout(result_.field.centre - middleOf(box_));
   covariance_ = to_image * found.covariance * to_image.transpose();
-  result_.g = believed_ ? image_from_box * found.at.g * box_from_image : expected;
+  result_.g = believed_ ? image_from_box * found.at.g * box_from_image : expected_;
+  tell(found);
+  return found.why;
+}
+
+void MotionSequence::tell(const MotionEstimate& found) {
   result_.field = fieldOf(result_.g, result_.field.centre);
   result_.covariance = covariance_;
   result_.gain = found.at.gain;
@@ -157,12 +164,29 @@ Reason MotionSequence::estimate(const std::optional<Eigen::Matrix3d>& motion) {
   result_.share = found.share;
   result_.expected_error = found.expected_error;
   result_.iterations = found.at.iterations;
+}
+
+// The region by its anchor. Once a step was not seen, further steps may be those of what lies in its place: only the
+// anchor tells, and it may do so where the step from the last image is not seen.
+Reason MotionSequence::compare(Reason why) {
+  const Eigen::Matrix3d before = anchor_.motion();
+  const bool is_step = believed_ && anchor_.isKnown();
+  anchor_.goOn(is_step ? result_.g : expected_, is_step ? result_.expected_error : kInfinite);
+  const bool is_compared = anchor_.compare(current_, box_);
+  region_ = anchor_.region();
+  believed_ = is_compared || anchor_.isKnown();
   if (!believed_) {
-    velocity_ *= config_.velocity_damping;
-  } else if (result_.interval > 0.0) {
-    velocity_ = result_.field.a / result_.interval;
+    result_.g = expected_;
+    result_.field = fieldOf(result_.g, result_.field.centre);
+    return why == Reason::kNone ? Reason::kNotSeen : why;
   }
-  return found.why;
+  if (is_step) return Reason::kNone;
+  result_.g = anchor_.motion() * before.inverse();
+  result_.g /= std::cbrt(result_.g.determinant());
+  const Eigen::Matrix<double, 8, 8> to_image = fieldAbout(result_.field.centre - anchor_.middle());
+  covariance_ = to_image * anchor_.found().covariance * to_image.transpose();
+  tell(anchor_.found());
+  return Reason::kNone;
 }
 
 const MotionResult& MotionSequence::track(const cv::Mat& image, double stamp,
@@ -180,11 +204,16 @@ const MotionResult& MotionSequence::track(const cv::Mat& image, double stamp,
   result_.interval = stamp - sequence_.stamp();
   const bool first = keeper_.state() == State::kIdle;
   if (first) keeper_.select(stamp);
-  const Reason why = estimate(motion);
+  Reason why = estimate(motion);
+  if (window_) why = compare(why);
+  if (!believed_) {
+    velocity_ *= config_.velocity_damping;
+  } else if (result_.interval > 0.0) {
+    velocity_ = result_.field.a / result_.interval;
+  }
   keeper_.step(why, stamp);
   result_.state = keeper_.state();
   result_.reason = keeper_.reason();
-  if (window_) region_ = geometry::apply(result_.g, region_);
   result_.region = region_;
   if (result_.state != State::kTracking) {
     result_.expected_error = kInfinite;

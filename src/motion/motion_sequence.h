@@ -9,6 +9,7 @@
 #include "laparoscope_servo/features/image_sequence.h"
 #include "laparoscope_servo/motion/dominant_motion.h"
 #include "motion/motion_estimator.h"
+#include "motion/region_anchor.h"
 #include "motion/region_window.h"
 
 namespace laparoscope_servo::motion {
@@ -39,10 +40,13 @@ class MotionSequence {
   void keep(const cv::Mat& image, const cv::Mat& mask);
   Eigen::Matrix3d predicted(double interval) const;
   features::Reason estimate(const std::optional<Eigen::Matrix3d>& motion);
+  void tell(const MotionEstimate& found);
+  features::Reason compare(features::Reason why);
 
   MotionConfig config_;
   features::StateKeeper keeper_;
   MotionEstimator estimator_;
+  RegionAnchor anchor_;  // where there is a window
   MotionImage last_, current_;
   features::ImageSequence sequence_;
   std::optional<RegionWindow> window_;  // none: all of the image
@@ -53,6 +57,7 @@ class MotionSequence {
   bool believed_ = false;
   tracking::Matrix8d covariance_ = tracking::Matrix8d::Zero();
   std::vector<Eigen::Matrix3d> starts_;
+  Eigen::Matrix3d expected_ = Eigen::Matrix3d::Identity();  // the step to this image, before it was looked at
   MotionResult result_;
 };
 

@@ -72,8 +72,9 @@ class RandomCartFaults : public CartSourceFaults {
           seen = first->front();
           if (!(noise > 0.0)) return;
           std::normal_distribution<double> normal(0.0, noise);
-          for (double* value : {&seen.error.x, &seen.error.y, &seen.error.log_depth, &seen.error.alpha})
-            *value += normal(*random);
+          const double x = normal(*random);
+          shift(seen, x, normal(*random));
+          for (double* value : {&seen.error.log_depth, &seen.error.alpha}) *value += normal(*random);
         });
       }
       case 1:

@@ -35,6 +35,16 @@ class CartSourceFaults : public CartStrangerFaults {
  protected:
   static constexpr double kFocalLength = 400.0;  // px, of the simulated cart
 
+  // By so much of the focal length.
+  static void shift(servo::TaskErrorInput& seen, double x, double y) {
+    seen.error.x += x;
+    seen.error.y += y;
+    if (!seen.motion) return;
+    Eigen::Matrix3d change = Eigen::Matrix3d::Identity();
+    change.topRightCorner<2, 1>() << x, y;
+    seen.motion->h = change * seen.motion->h;
+  }
+
  private:
   using Seen = servo::TaskErrorInput;
   using Maker = CartFault (CartSourceFaults::*)();
@@ -42,6 +52,7 @@ class CartSourceFaults : public CartStrangerFaults {
   // Only the errors: each image has a stamp of its own.
   static void showInstead(Seen& seen, const Seen& other) {
     seen.error = other.error;
+    seen.motion = other.motion;
     seen.valid = other.valid;
   }
 
@@ -55,12 +66,12 @@ class CartSourceFaults : public CartStrangerFaults {
   }
 
   CartFault twoViews() {
-    const double shift = sign() * real(20.0, 120.0) / kFocalLength;
+    const double aside = sign() * real(20.0, 120.0) / kFocalLength;
     const double deeper = real(-0.2, 0.2);
     const auto count = std::make_shared<int>(0);
     return withTracker("two views in turn", [=](Seen& seen) {
       if (++*count % 2 != 0) return;
-      seen.error.x += shift;
+      shift(seen, aside, 0.0);
       seen.error.log_depth += deeper;
     });
   }
@@ -112,6 +123,10 @@ class CartSourceFaults : public CartStrangerFaults {
     return withTracker("focal length " + std::to_string(factor) + " times as long", [factor](Seen& seen) {
       for (double* value : {&seen.error.x, &seen.error.y, &seen.error.desired_x, &seen.error.desired_y})
         *value *= factor;
+      if (!seen.motion) return;
+      const Eigen::DiagonalMatrix<double, 3> longer(factor, factor, 1.0);
+      seen.motion->h = longer * seen.motion->h * longer.inverse();
+      for (Eigen::Vector2d& corner : seen.motion->corners) corner *= factor;
     });
   }
 
@@ -119,8 +134,8 @@ class CartSourceFaults : public CartStrangerFaults {
     const double most = real(2.0, 10.0) / kFocalLength;
     const auto random = std::make_shared<Draws>(static_cast<unsigned>(whole(1000000)));
     return withTracker("trembles by " + std::to_string(most * kFocalLength) + " px", [=](Seen& seen) {
-      seen.error.x += random->real(-most, most);
-      seen.error.y += random->real(-most, most);
+      const double x = random->real(-most, most);
+      shift(seen, x, random->real(-most, most));
     });
   }
 

@@ -17,6 +17,7 @@
 #include "laparoscope_servo/geometry/homography.h"
 #include "laparoscope_servo/scope/insertion_point.h"
 #include "laparoscope_servo/servo/controller.h"
+#include "laparoscope_servo/servo/view_region.h"
 #include "laparoscope_servo/sim/scope_actuator.h"
 #include "laparoscope_servo/sim/scope_body.h"
 
@@ -145,6 +146,12 @@ class SimulatedCart {
     return geometry::fromPlane(body_.pose().inverse(), Eigen::Vector3d::UnitZ(), kDistance);
   }
 
+  // Of the whole view, whose larger part has less noise.
+  servo::ViewMotion viewMotion(const Eigen::Matrix3d& h, double error) const {
+    const geometry::Rectangle view = servo::viewRegion(2.0 * camera_.cx + 1.0, 2.0 * camera_.cy + 1.0);
+    return {h, geometry::apply(camera_.inverseMatrix(), view.corners()), error / camera_.fx};
+  }
+
   void expose() {
     servo::TaskErrorInput task;
     task.problem.clear();
@@ -161,6 +168,7 @@ class SimulatedCart {
         for (Eigen::Vector2d& corner : corners) corner += Eigen::Vector2d(noise(random_), noise(random_));
         task.error = servo::taskError(
             geometry::normalisedFromPixels(geometry::fromCorners(roi_.corners(), corners), camera_), roi_, camera_);
+        task.motion = viewMotion(h, task.corner_error);
       } catch (const std::invalid_argument&) {
         task.valid = false;
       }

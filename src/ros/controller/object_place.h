@@ -10,9 +10,9 @@
 
 namespace laparoscope_servo {
 
-// The object's place is the middle of its region, which goes along with its motion from image to image. So its expected
-// error grows from the selection on, and an image in which the motion was not seen ends what is known of it: the region
-// may lie on something else from then on.
+// The object's place is the middle of its region, which goes along with its motion from image to image and is compared
+// with the first one. Where it cannot be compared its expected error grows, as is counted from the selection on, and an
+// image in which the motion was not seen ends what is known of it.
 class ObjectPlace {
  public:
   explicit ObjectPlace(const servo::FollowConfig& config) : config_(config) {}

@@ -1,4 +1,4 @@
-// The controller through random pairs of faults, in simulated time: CART_FAULT_RUNS of them (1000 unless set), from
+// The controller through random pairs of faults, in simulated time, in each task: CART_FAULT_RUNS of them, from
 // CART_FAULT_SEED on; CART_FAULT_VERBOSE prints each. The same is done to the nodes in test/system/cart.
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "laparoscope_servo/servo/place_error.h"
 #include "support/cart_faults.h"
+#include "unit/servo/pair_task.h"
 
 namespace laparoscope_servo::servo {
 namespace {
@@ -45,11 +45,11 @@ ControllerConfig withDeadMan() {
 class PairRun {
  public:
   // `task`: unless it is MANUAL, as a quarter of the runs are. `strangers`: one of the two is a stranger's.
-  PairRun(unsigned seed, Task task, bool strangers)
+  PairRun(unsigned seed, const PairTask& task, bool strangers)
       : random_(seed),
         strangers_(strangers),
         manual_(random_.whole(4) == 0),
-        task_(manual_ ? Task::kManual : task),
+        task_(manual_ ? kManualPairs : task),
         cart_(withDeadMan(),
               {random_.sign() * random_.real(0.08, 0.15), random_.real(-0.1, 0.1), random_.real(-0.1, 0.1),
                random_.real(-0.006, 0.006)},
@@ -68,7 +68,7 @@ class PairRun {
   }
 
   std::string text() const {
-    std::string all = manual_ ? "MANUAL" : task_ == Task::kFollow ? "FOLLOW" : "HOLD_VIEW";
+    std::string all = task_.name;
     for (const CartFault& fault : faults_) {
       all += "; " + fault.name + ", " + std::to_string(fault.from - begin_) + " to " +
              std::to_string(fault.until - begin_) + " s";
@@ -99,24 +99,15 @@ class PairRun {
            "the switch does not lead to SERVO");
   }
 
-  // Of the picture: the region's middle is an object's. A number that is none, in whatever the region has and an object
-  // does not have, becomes one of its place.
-  void tell(ControllerInput& input) const {
-    if (task_ != Task::kFollow) return;
-    const TaskError& error = input.task_error.error;
-    input.object = input.task_error;
-    const double x = isFinite(error) ? error.x : std::numeric_limits<double>::quiet_NaN();
-    input.object.error = placeError({x, error.y}, {error.desired_x, error.desired_y});
-  }
-
   void begin() {
-    cart_.interference.input = [this](ControllerInput& input, double) { tell(input); };
+    cart_.interference.input = [this](ControllerInput& input, double) { task_.tell(input); };
     cart_.pass(0.2);
-    cart_.controller.select(task_);
+    cart_.controller.select(task_.task);
     engage();
     if (manual_) cart_.manual = {random_.real(-0.1, 0.1), random_.real(-0.1, 0.1), 0.05, 0.0};
     cart_.pass(0.4);
-    expect(!cart_.velocity().isZero(0.0), "it does not begin to move");
+    const auto moves = [&] { return !cart_.velocity().isZero(0.0); };
+    expect(cart_.until(moves, task_.until_moving), "it does not begin to move");
     begin_ = cart_.time();
     faults_ = random_.pair(begin_, manual_, strangers_);
     cart_.interference.picture = [this](Eigen::Matrix3d& h) {
@@ -133,7 +124,7 @@ class PairRun {
       for (const CartFault& fault : faults_) {
         if (fault.lasts(time) && fault.interference.input) fault.interference.input(input, time);
       }
-      tell(input);
+      task_.tell(input);
     };
   }
 
@@ -214,7 +205,7 @@ class PairRun {
   // the switch.
   void recover() {
     cart_.interference = {};
-    cart_.interference.input = [this](ControllerInput& input, double) { tell(input); };
+    cart_.interference.input = [this](ControllerInput& input, double) { task_.tell(input); };
     cart_.controller.disengage("for a test");
     const scope::Velocity stick = cart_.manual;
     cart_.manual = {};
@@ -226,13 +217,14 @@ class PairRun {
       return;
     }
     expect(cart_.seesRegion(), "the region is out of view");
-    expect(cart_.until([&] { return cart_.offset() < 3.0; }, 20.0), "it does not come back to the region");
+    const auto is_there = [&] { return cart_.offset() < task_.there; };
+    expect(cart_.until(is_there, 20.0), "it does not come back to the region");
   }
 
   test::RandomCartFaults random_;
   bool strangers_;
   bool manual_;
-  Task task_;
+  PairTask task_;
   SimulatedCart cart_;
   std::vector<CartFault> faults_;
   double begin_ = 0.0;
@@ -264,9 +256,9 @@ TEST(FaultPairs, ADepthThatCannotBeIsForgottenWithTheJumpOfTheClock) {
   EXPECT_EQ(cart.controller.engage(cart.input()), "");
 }
 
-void runPairs(Task task, bool strangers = false) {
+void runPairs(const PairTask& task, bool strangers = false) {
   const int first = setting("CART_FAULT_SEED", 1);
-  const int count = setting("CART_FAULT_RUNS", 1000);
+  const int count = setting("CART_FAULT_RUNS", task.runs);
   ScopeTravel worst;
   double away = 0.0;
   int stopped = 0;
@@ -290,16 +282,17 @@ void runPairs(Task task, bool strangers = false) {
             << std::endl;
 }
 
-TEST(FaultPairs, NoneMovesTheScopeFurtherThanItMayAndItGoesOnByTheSteps) {
-  runPairs(Task::kHoldView);
+class EachTask : public testing::TestWithParam<PairTask> {};
+
+TEST_P(EachTask, NoPairMovesTheScopeFurtherThanItMayAndItGoesOnByTheSteps) {
+  runPairs(GetParam());
 }
 
-TEST(FaultPairs, NoneMovesTheScopeFurtherWhereItFollowsAnObject) {
-  runPairs(Task::kFollow);
-}
+INSTANTIATE_TEST_SUITE_P(FaultPairs, EachTask, testing::ValuesIn(kPairTasks),
+                         [](const testing::TestParamInfo<PairTask>& pair) { return std::string(pair.param.name); });
 
 TEST(FaultPairs, NoneOfAStrangerMovesTheScopeFurther) {
-  runPairs(Task::kHoldView, true);
+  runPairs(kPairTasks[0], true);
 }
 
 }  // namespace
