@@ -102,7 +102,7 @@ bool Irls::step(const std::vector<Row>& rows, double variance, const Eigen::Matr
     const Row& row = rows[i];
     const double weight = row.weight * weights_[i];
     if (!(weight > 0.0)) continue;
-    if (row.first + row.count <= x.size()) {
+    if (row.first + row.count <= unknowns) {
       addBlock(row, weight, normal_, right_);
     } else {
       addRound(row, weight, normal_, right_);
