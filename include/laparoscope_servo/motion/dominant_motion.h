@@ -48,10 +48,10 @@ class DominantMotion {
   DominantMotion& operator=(DominantMotion&&) noexcept;
   ~DominantMotion();
 
-  // Begins with this image, in place of what was. `region`: px, whose motion is wanted. It goes along with its motion, and
-  // is compared with this image, so that it does not drift; once an image does not show it, only that finds it again.
-  // None: all of the image. Throws std::invalid_argument for an image that it cannot use, and for a region that is not
-  // in the image or has less than 48 px in width or height; it then goes on as before.
+  // Begins with this image, in place of what was. `region`: px, whose motion is wanted. It goes along with its motion,
+  // and is compared with this image, so that it does not drift; once an image does not show it, only that finds it
+  // again. None: all of the image. Throws std::invalid_argument for an image that it cannot use, and for a region that
+  // is not in the image or has less than 48 px in width or height; it then goes on as before.
   const MotionResult& begin(const cv::Mat& image, double stamp,
                             const std::optional<geometry::Rectangle>& region = std::nullopt,
                             const cv::Mat& mask = cv::Mat());
