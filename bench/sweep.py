@@ -32,7 +32,7 @@ from constants import DECLARATION, FOLDER, NUMBER, NUMBERS, numbers_of
 
 TREE = pathlib.Path(__file__).resolve().parent.parent
 COPIED = ["CMakeLists.txt", "package.xml", "nodelet_plugins.xml", "rviz_plugins.xml", "LICENSE", "cmake", "src", "include", "bench",
-          "config", "msg", "srv", "launch", "linux", "scripts", "env-hooks", "rviz", "demo"]
+          "config", "msg", "srv", "launch", "linux", "scripts", "env-hooks", "rviz", "demo", "test/support"]
 REGIONS = pathlib.Path(__file__).with_name("swept_regions.csv")
 FACTORS = (0.7, 1.4)
 SCENARIOS = {  # name: seeds
@@ -160,7 +160,7 @@ class Controller:
         parameters = [tree / "config" / f for f in ("controller.yaml", "simulate_servo.yaml", f"scenarios/{scenario}.yaml")]
         run([program, *[part for p in parameters for part in ("--params", p)], "--runs", seeds, "--summary", file], env=env)
         with file.open() as lines:
-            return [{k: float(v) for k, v in row.items()} for row in csv.DictReader(lines)]
+            return [{k: float(row[k]) for k in ("settled", "centre_rms", "holds", "stopped", "turned")} for row in csv.DictReader(lines)]
 
     def measure(self, build, tree, env):
         healthy = [row for scenario, seeds in SCENARIOS.items() for row in self.runs(build, tree, env, scenario, seeds)]
