@@ -5,7 +5,7 @@ Works in a copy of the tree, in which each number of a `constexpr double|float|i
 `constexpr TYPE k... = {NUMBERS};`, asks for its value when the program starts. So all variants but a few come of one build: a constant
 that has to be known when it is compiled (the size of an array) is built anew with another number. A count changes by at least one.
   tracker     bench_compare on the sequences that are given: images kept, lies, mean error of the worst corner; and bench_film on the regions of
-              regions.csv, so many images of each: share that says TRACKING, images that say so in one of the two runs only, and
+              swept_regions.csv, so many images of each: share that says TRACKING, images that say so in one of the two runs only, and
               how far the worst corner lies from where it is with the numbers as they are (95 %)
   controller  simulate_servo on scenarios, several seeds: settled [s], rest [px], runs held and stopped, and how far a wrong picture
               leads the scope [degrees]
@@ -32,7 +32,8 @@ from constants import DECLARATION, FOLDER, NUMBER, NUMBERS, numbers_of
 
 TREE = pathlib.Path(__file__).resolve().parent.parent
 COPIED = ["CMakeLists.txt", "package.xml", "nodelet_plugins.xml", "rviz_plugins.xml", "LICENSE", "cmake", "src", "include", "bench",
-          "config", "msg", "srv", "launch", "linux", "scripts", "env-hooks", "rviz", "demo"]
+          "config", "msg", "srv", "launch", "linux", "scripts", "env-hooks", "rviz", "demo", "test/support"]
+REGIONS = pathlib.Path(__file__).with_name("swept_regions.csv")
 FACTORS = (0.7, 1.4)
 SCENARIOS = {  # name: seeds
     "small_start": 5, "large_starts": 20, "breathing_rate_searched": 3, "effect_pulling": 3}
@@ -115,9 +116,7 @@ class Tracker:
 
     def __init__(self, arguments):
         self.sequences = arguments.sequence
-        self.regions = footage.read_regions(footage.REGIONS, arguments.data) if arguments.data else []
-        if arguments.film:
-            self.regions = [region for region in self.regions if region.film.stem in arguments.film]
+        self.regions = footage.read_regions(arguments.regions, arguments.data) if arguments.data else []
         self.limit = arguments.limit
         self.usual = None
         if not self.sequences and not self.regions:
@@ -161,7 +160,7 @@ class Controller:
         parameters = [tree / "config" / f for f in ("controller.yaml", "simulate_servo.yaml", f"scenarios/{scenario}.yaml")]
         run([program, *[part for p in parameters for part in ("--params", p)], "--runs", seeds, "--summary", file], env=env)
         with file.open() as lines:
-            return [{k: float(v) for k, v in row.items()} for row in csv.DictReader(lines)]
+            return [{k: float(row[k]) for k in ("settled", "centre_rms", "holds", "stopped", "turned")} for row in csv.DictReader(lines)]
 
     def measure(self, build, tree, env):
         healthy = [row for scenario, seeds in SCENARIOS.items() for row in self.runs(build, tree, env, scenario, seeds)]
@@ -258,8 +257,8 @@ def main():
     parser.add_argument("--build", type=pathlib.Path, help="the build of that copy, with the bench; saves building all of it anew")
     parser.add_argument("--part", choices=list(FOLDER), required=True)
     parser.add_argument("--sequence", action="append", default=[], help="folder with frames/, truth.csv, scene.json; may be repeated")
-    parser.add_argument("--data", type=pathlib.Path, help="folder of the films of regions.csv")
-    parser.add_argument("--film", action="append", help="only the regions of this film, without its ending; may be repeated")
+    parser.add_argument("--data", type=pathlib.Path, help="folder of films")
+    parser.add_argument("--regions", type=pathlib.Path, default=REGIONS, help=f"table of regions of these films (default {REGIONS.name})")
     parser.add_argument("--limit", type=int, default=40, help="images of each film")
     parser.add_argument("--only", action="append", help="name of a constant; may be repeated")
     parser.add_argument("--under", action="append", help="of the part: a folder or a file, as align or align/quality.cpp; may be repeated, in this order")

@@ -1,5 +1,6 @@
 #include "features/points/point_flow.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
