@@ -1,7 +1,6 @@
 #include "laparoscope_servo/image/warp.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <opencv2/imgproc.hpp>
 
@@ -36,38 +35,6 @@ int locate(const Row& row, int stride, int width, int height, int first, int cou
     inside_count += inside;
   }
   return inside_count;
-}
-
-// Whether locateInside() may be used: both ends of the run lie inside of the image by more than rounding can amount to,
-// and with them the straight line between them. So the terms of each sum must not be far larger than the sum.
-bool isInside(const Row& row, int width, int height, int first, int count) {
-  constexpr float kMargin = 0.1f;                        // px
-  constexpr float kFarthest = 1e4f, kCancelled = 10.0f;  // each rounds by less than a tenth of kMargin
-  const float last = static_cast<float>(first + count - 1);
-  const RowPoint a = pointOf(row, static_cast<float>(first)), b = pointOf(row, last);
-  const auto holds = [&](const RowPoint& p) {
-    return p.w > 0.0f && p.x > kMargin && p.y > kMargin && p.x < static_cast<float>(width - 2) - kMargin &&
-           p.y < static_cast<float>(height - 2) - kMargin;
-  };
-  const float least = std::min(a.w, b.w);
-  return holds(a) && holds(b) && std::abs(row.u0) + last * std::abs(row.u1) < kFarthest * least &&
-         std::abs(row.v0) + last * std::abs(row.v1) < kFarthest * least &&
-         std::abs(row.w0) + last * std::abs(row.w1) < kCancelled * least;
-}
-
-// locate() for points that are known to lie inside.
-LAPAROSCOPE_SERVO_CLONES
-void locateInside(const Row& row, int stride, int first, int count, int* __restrict offset, float* __restrict right_of,
-                  float* __restrict below) {
-  const Row r = row;
-#pragma omp simd
-  for (int i = 0; i < count; ++i) {
-    const auto [u, v, w] = pointOf(r, static_cast<float>(first + i));
-    const int iu = static_cast<int>(u), iv = static_cast<int>(v);
-    right_of[i] = u - static_cast<float>(iu);
-    below[i] = v - static_cast<float>(iv);
-    offset[i] = iv * stride + iu;
-  }
 }
 
 // locate() for points computed by locateRaw.
@@ -133,11 +100,7 @@ int warpRow(const cv::Mat1f& image, int width, const Row& row, const LensLoop* l
   int inside = 0;
   for (int first = 0; first < count; first += kChunk) {
     const int n = std::min(kChunk, count - first);
-    if (lens == nullptr && isInside(row, width, image.rows, first, n)) {
-      locateInside(row, stride, first, n, offset, right_of, below);
-      std::fill_n(valid + first, n, 1.0f);
-      inside += n;
-    } else if (lens == nullptr) {
+    if (lens == nullptr) {
       inside += locate(row, stride, width, image.rows, first, n, offset, right_of, below, valid + first);
     } else {
       locateRaw(*lens, row, first, n, u, v);

@@ -55,10 +55,6 @@ Products product(const float* block, int block_stride, const float* window, int 
   return sums;
 }
 
-int squared(int value) {
-  return value * value;
-}
-
 double vertex(double left, double middle, double right) {
   return 0.5 * (left - right) / std::min(left - 2.0 * middle + right, -1e-6);
 }
@@ -87,7 +83,7 @@ void BlockMatching::setReference(const image::RegionPyramid& reference, const ge
   for (cv::Mat1f* buffer : {&valid_, &in_image_}) buffer->create(size);
   for (cv::Mat1b* buffer : {&covered_.blue, &covered_.valid}) buffer->create(size);
   detail_.create(size);
-  column_sums_.assign(6 * static_cast<std::size_t>(size.width), 0.0f);
+  column_sums_.assign(3 * static_cast<std::size_t>(size.width), 0.0f);
   blocks_.clear();
   has_room_ = std::min(inner.width, inner.height) >= kSide + kAlong - 1;
   if (std::min(inner.width, inner.height) < kSide) return;
@@ -150,9 +146,6 @@ void BlockMatching::contrast() {
   float* const count = column_sums_.data();
   float* const sum = count + width;
   float* const squares = sum + width;
-  float* const counts = squares + width;  // of the windows about the pixels of a row
-  float* const sums = counts + width;
-  float* const square_sums = sums + width;
   std::fill(column_sums_.begin(), column_sums_.end(), 0.0f);
   const auto add = [&](int j, float sign) {
     const float* value = warped_[j];
@@ -173,21 +166,9 @@ void BlockMatching::contrast() {
     for (int i = 0; i < width; ++i) {
       if (i + kAround < width) n += count[i + kAround], s += sum[i + kAround], q += squares[i + kAround];
       if (i - kAround > 0) n -= count[i - kAround - 1], s -= sum[i - kAround - 1], q -= squares[i - kAround - 1];
-      counts[i] = n;
-      sums[i] = s;
-      square_sums[i] = q;
-    }
-    const float* const value = warped_[j];
-    const float* const valid = valid_[j];
-    float* const detail = detail_[j];
-#pragma omp simd
-    for (int i = 0; i < width; ++i) {
-      const float pixels = counts[i] > 1.0f ? counts[i] : 1.0f;
-      const float mean = sums[i] / pixels;
-      const float variance = square_sums[i] / pixels - mean * mean;
-      const float deviation = std::sqrt(variance > kFloor * kFloor ? variance : kFloor * kFloor);
-      const float ratio = (value[i] - mean) / deviation;
-      detail[i] = valid[i] * (ratio < -kMost ? -kMost : ratio > kMost ? kMost : ratio);
+      const float mean = s / std::max(n, 1.0f);
+      const float deviation = std::sqrt(std::max(q / std::max(n, 1.0f) - mean * mean, kFloor * kFloor));
+      detail_(j, i) = valid_(j, i) * std::clamp((warped_(j, i) - mean) / deviation, -kMost, kMost);
     }
   }
 }
@@ -227,7 +208,7 @@ BlockMatching::Peak BlockMatching::find(const cv::Point& block) {
   }
   for (int j = 0; j < kPlaces; ++j) {
     for (int i = 0; i < kPlaces; ++i) {
-      if (squared(j - row) + squared(i - column) > kApart * kApart)
+      if (std::hypot(j - row, i - column) > kApart)
         peak.second = std::max(peak.second, static_cast<double>(score[j][i]));
     }
   }

@@ -158,11 +158,6 @@ std::string doubt(const Evidence& e, const QualityConfig& q) {
   }
   const geometry::Quadrilateral predicted = geometry::apply(e.predicted, e.roi.corners());
   const double jump = geometry::largestDistance(corners, predicted);
-  // A few blocks in one place vouch for that place alone. What the rest of the region does, ESM and the prediction
-  // tell; where they contradict each other by as much as makes an estimate wrong, one of them is.
-  const bool vouched = blocks.confident >= kEnoughBlocks || blocks.spread >= kSpread;
-  if (e.from_track && blocks.seen >= kTellingBlocks && !vouched && !(jump <= kWrong * unit))
-    return text("unexpected motion that too few pieces show [px]", jump, "at most", kWrong * unit);
   const double max_jump = allowedJump(e.record, q, e.roi, e.visible_fraction, e.esm.corner_error);
   if (!(jump <= max_jump)) return text("jump [px]", jump, "at most", max_jump);
   return "";

@@ -22,22 +22,27 @@ constexpr std::array<Monomial, 8> kP = {
 constexpr std::array<Monomial, 8> kQ = {
     {{0, 0, 0}, {1, 0, 0}, {0, 0, 0}, {1, 1, 0}, {-1, 0, 1}, {-2, 0, 1}, {-1, 1, 1}, {-1, 0, 2}}};
 
-double product(const Monomial& s, const Monomial& t, const double* moments) {
-  const double c = s.c * t.c;
-  return c == 0.0 ? 0.0 : c * moments[CellMoments::indexOf(s.a + t.a, s.b + t.b)];
+// Index of the moment of u^a v^b; monomials are ordered by a, then by b.
+constexpr int indexOfDegree4(int a, int b) {
+  return a * 5 - a * (a - 1) / 2 + b;
 }
 
-// The order of CellSums' members.
-enum Sum { kXX, kXY, kYY, kXR, kYR, kX, kY, kXM, kYM, kW, kR, kM, kMM, kMR };
+double product(const Monomial& s, const Monomial& t, const double* moments) {
+  const double c = s.c * t.c;
+  return c == 0.0 ? 0.0 : c * moments[indexOfDegree4(s.a + t.a, s.b + t.b)];
+}
 
-// The sum of the rows of J for the gradients of which the moments are `x` and `y`, times `scale`.
-Vector10d rowOf(const CellMoments& moments, Sum x, Sum y, double scale) {
-  const auto times = [&](Sum sum, int a, int b) { return moments.low[CellMoments::indexOf(a, b)][sum]; };
-  Vector10d row;
-  row << times(x, 0, 0), times(y, 0, 0), times(x, 0, 1), times(y, 1, 0), times(x, 1, 0) - times(y, 0, 1),
-      -times(x, 1, 0) - 2.0 * times(y, 0, 1), -times(x, 2, 0) - times(y, 1, 1), -times(x, 1, 1) - times(y, 0, 2), 0.0,
-      0.0;
-  return scale * row;
+// Adds the row of J for the gradient (gx, gy).
+inline void addRow(double gx, double gy, double u, double v, Vector10d& sum) {
+  const double g3 = -(u * gx + v * gy);
+  sum[0] += gx;
+  sum[1] += gy;
+  sum[2] += gx * v;
+  sum[3] += gy * u;
+  sum[4] += gx * u - gy * v;
+  sum[5] += g3 - gy * v;
+  sum[6] += g3 * u;
+  sum[7] += g3 * v;
 }
 
 }  // namespace
@@ -61,10 +66,9 @@ Eigen::Matrix3d templateFromPixels(const geometry::Rectangle& roi) {
 }
 
 Eigen::Matrix<double, 1, 8> esmJacobianRow(double gx, double gy, double u, double v) {
-  const double g3 = -(u * gx + v * gy);
-  Eigen::Matrix<double, 1, 8> j;
-  j << gx, gy, gx * v, gy * u, gx * u - gy * v, g3 - gy * v, g3 * u, g3 * v;
-  return j;
+  Vector10d j = Vector10d::Zero();
+  addRow(gx, gy, u, v, j);
+  return j.head<8>().transpose();
 }
 
 Eigen::Matrix<double, 2, 8> pointJacobian(const Eigen::Vector2d& p) {
@@ -75,47 +79,57 @@ Eigen::Matrix<double, 2, 8> pointJacobian(const Eigen::Vector2d& p) {
 }
 
 void NormalEquations::reset(Light light, double gradient_scale) {
-  *this = NormalEquations();
   light_ = light;
   gradient_scale_ = gradient_scale;
+  moments_ = {};
   matrix_.setZero();
+  vector_.setZero();
+  gain_column_.setZero();
+  block_jacobian_.setZero();
+  block_weight_ = block_residual_ = 0.0;
+  block_open_ = false;
 }
 
-void NormalEquations::addCells(const CellSums* cells, int stride, int count, double u, const double* v) {
-  addMoments(cells, stride, count, u, v, block_);
+void NormalEquations::addCell(const CellSums& cell, double u, double v) {
+  if (!block_open_) {
+    block_jacobian_.setZero();
+    block_weight_ = block_residual_ = 0.0;
+    vector_before_ = vector_;
+    block_open_ = true;
+  }
+  const double f = gradient_scale_;
+  double u_power = 1.0;
+  for (int a = 0; a <= 4; ++a, u_power *= u) {
+    double power = f * f * u_power;  // u^a v^b
+    for (int b = 0; a + b <= 4; ++b, power *= v) {
+      const int k = indexOfDegree4(a, b);
+      moments_.xx[k] += power * cell.xx;
+      moments_.xy[k] += power * cell.xy;
+      moments_.yy[k] += power * cell.yy;
+    }
+  }
+  addRow(f * cell.xr, f * cell.yr, u, v, vector_);
+  block_weight_ += cell.w;
+  block_residual_ += cell.r;
+  if (light_ == Light::kConstant) return;
+  addRow(f * cell.xm, f * cell.ym, u, v, gain_column_);
+  matrix_(8, 8) += cell.mm;
+  vector_[8] += cell.mr;
+  addRow(f * cell.x, f * cell.y, u, v, block_jacobian_);
+  block_jacobian_[8] += cell.m;
 }
 
 void NormalEquations::endBlock() {
-  const double f = gradient_scale_;
-  for (int k = 0; k < kMonomials; ++k) {
-    const double* const sums = k < CellMoments::kLow ? block_.low[k] : block_.high[k - CellMoments::kLow];
-    products_.xx[k] += f * f * sums[kXX];
-    products_.xy[k] += f * f * sums[kXY];
-    products_.yy[k] += f * f * sums[kYY];
-  }
-  const double* const sums = block_.low[0];
-  block_weight_ = sums[kW];
-  block_residual_ = sums[kR];
-  block_score_ = rowOf(block_, kXR, kYR, f);
-  if (light_ != Light::kConstant) {
-    gain_column_ += rowOf(block_, kXM, kYM, f);
-    matrix_(8, 8) += sums[kMM];
-    block_score_[8] = sums[kMR];
-    block_jacobian_ = rowOf(block_, kX, kY, f);
-    block_jacobian_[8] = sums[kM];
-  }
+  block_open_ = false;
   if (light_ == Light::kGlobal) {
     matrix_.col(9).head<9>() += block_jacobian_.head<9>();
     matrix_(9, 9) += block_weight_;
-    block_score_[9] = block_residual_;
+    vector_[9] += block_residual_;
   } else if (light_ == Light::kLocal && block_weight_ > 0.0) {
-    for (int k = 0; k < 9; ++k) {
-      matrix_.col(k).head(k + 1) -= block_jacobian_[k] / block_weight_ * block_jacobian_.head(k + 1);
-    }
-    block_score_.head<9>() -= block_jacobian_.head<9>() * (block_residual_ / block_weight_);
+    matrix_.topLeftCorner<9, 9>() -=
+        block_jacobian_.head<9>() * (block_jacobian_.head<9>() / block_weight_).transpose();
+    vector_.head<9>() -= block_jacobian_.head<9>() * (block_residual_ / block_weight_);
   }
-  vector_ += block_score_;
-  block_ = CellMoments();
 }
 
 Matrix10d NormalEquations::matrix() const {
@@ -123,8 +137,8 @@ Matrix10d NormalEquations::matrix() const {
   m.col(8).head<8>() += gain_column_.head<8>();
   for (int k = 0; k < 8; ++k) {
     for (int l = k; l < 8; ++l) {
-      m(k, l) += product(kP[k], kP[l], products_.xx) + product(kP[k], kQ[l], products_.xy) +
-                 product(kQ[k], kP[l], products_.xy) + product(kQ[k], kQ[l], products_.yy);
+      m(k, l) += product(kP[k], kP[l], moments_.xx) + product(kP[k], kQ[l], moments_.xy) +
+                 product(kQ[k], kP[l], moments_.xy) + product(kQ[k], kQ[l], moments_.yy);
     }
   }
   if (light_ == Light::kConstant) m(8, 8) = 1.0;
@@ -173,19 +187,18 @@ void LevelEquations::sumLightBlockRow(const EsmLevel& level, const Eigen::Matrix
     sumCells(input, row, std::min(level.cell_rows, end - row), per_strip, strip_bias_.data(),
              cells + k * strips * per_strip);
   }
-  row_centres_.clear();
-  for (int k = 0; k < cell_rows; ++k) {
-    const int row = begin + k * level.cell_rows;
-    const int rows = std::min(level.cell_rows, end - row);
-    row_centres_.push_back(unit_T_patch(1, 2) + unit_T_patch(1, 1) * (row + 0.5 * (rows - 1)));
-  }
   const int cell_columns = image::Patch::kStrip / per_strip;
   for (int strip = 0; strip < strips; ++strip) {
     for (int cell = strip * per_strip; cell < (strip + 1) * per_strip; ++cell) {
       const int columns = std::min(cell_columns, level.width - cell * cell_columns);
       if (columns <= 0) break;
       const double u = unit_T_patch(0, 2) + unit_T_patch(0, 0) * (cell * cell_columns + 0.5 * (columns - 1));
-      equations_.addCells(cells + cell, strips * per_strip, cell_rows, u, row_centres_.data());
+      for (int k = 0; k < cell_rows; ++k) {
+        const int row = begin + k * level.cell_rows;
+        const int rows = std::min(level.cell_rows, end - row);
+        const double v = unit_T_patch(1, 2) + unit_T_patch(1, 1) * (row + 0.5 * (rows - 1));
+        equations_.addCell(cells[k * strips * per_strip + cell], u, v);
+      }
     }
     if (strip + 1 < strips && level.light_column_of_strip[strip + 1] == level.light_column_of_strip[strip]) continue;
     equations_.endBlock();

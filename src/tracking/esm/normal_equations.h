@@ -49,27 +49,15 @@ struct CellSums {
   float xm, ym;      // products of gradient and intensity (image + template) / 2, the derivative for the gain
   float w, r;        // weight, residual
   float m, mm, mr;   // intensity, its square, its product with the residual
-  float none[2] = {0.0f, 0.0f};  // whole vectors of sums are added up
-};
-
-// Sums over cells of CellSums' members, in their order, each times a monomial u^a v^b of the cell's centre.
-struct CellMoments {
-  static constexpr int kSums = sizeof(CellSums) / sizeof(float);
-  static constexpr int kLow = 6, kHigh = 9;  // monomials with a + b <= 2, and further ones with a + b <= 4
-  static constexpr int kSecond = 4;          // the first sums, which have the products of the gradient with itself
-  // Index of u^a v^b, in `high` from kLow on: ordered by a + b, then by a.
-  static constexpr int indexOf(int a, int b) { return (a + b) * (a + b + 1) / 2 + a; }
-  double low[kLow][kSums] = {};
-  double high[kHigh][kSecond] = {};
 };
 
 class NormalEquations {
  public:
-  // Starts a sum. For each block, call addCells() for its cells, then endBlock(). `gradient_scale` takes the cells'
+  // Starts a sum. For each block, call addCell() for its cells, then endBlock(). `gradient_scale` takes the cells'
   // gradients to normalised units.
   void reset(Light light, double gradient_scale);
-  // Cells below one another, `stride` apart. (u, v[k]): normalised template coordinates of the centre of the k-th.
-  void addCells(const CellSums* cells, int stride, int count, double u, const double* v);
+  // (u, v): normalised template coordinates of the cell's centre.
+  void addCell(const CellSums& cell, double u, double v);
   // Ends the block of the cells since the last call. With Light::kLocal the block's own bias is eliminated, which
   // leaves the equations of the other unknowns (Schur complement).
   void endBlock();
@@ -82,24 +70,24 @@ class NormalEquations {
   double blockResidual() const { return block_residual_; }
   const Vector10d& blockJacobian() const { return block_jacobian_; }
   // The last block's contribution to vector().
-  const Vector10d& blockScore() const { return block_score_; }
+  Vector10d blockScore() const { return vector_ - vector_before_; }
 
  private:
-  static constexpr int kMonomials = CellMoments::kLow + CellMoments::kHigh;
-  struct Products {
-    double xx[kMonomials], xy[kMonomials], yy[kMonomials];  // times the square of the gradient's scale
+  static constexpr int kSecond = 15;  // number of monomials u^a v^b with a + b <= 4
+  struct Moments {
+    double xx[kSecond], xy[kSecond], yy[kSecond];
   };
-  Products products_ = {};  // of all blocks
-  CellMoments block_;       // of the block that is open
+  Moments moments_ = {};  // sums over all cells
   Light light_ = Light::kConstant;
   double gradient_scale_ = 1.0;
   Matrix10d matrix_ = Matrix10d::Identity();
   Vector10d gain_column_ = Vector10d::Zero();  // column of matrix_ for the gain, without the parts that blocks subtract
   Vector10d vector_ = Vector10d::Zero();
-  Vector10d block_score_ = Vector10d::Zero();
+  Vector10d vector_before_ = Vector10d::Zero();  // vector_ without the last block
   Vector10d block_jacobian_ = Vector10d::Zero();
   double block_weight_ = 0.0;
   double block_residual_ = 0.0;
+  bool block_open_ = false;
 };
 
 // Sums of one block of a plane, see NormalEquations: weight, weighted residual, weighted Jacobian, and its part of
@@ -136,7 +124,6 @@ class LevelEquations {
   NormalEquations equations_;
   std::vector<LightBlockSums> blocks_;
   std::vector<float> strip_bias_;
-  std::vector<double> row_centres_;  // v of the cells of a row of blocks
   std::vector<CellSums> cells_;
   std::size_t next_cell_ = 0;  // of the next row of blocks
 };

@@ -251,33 +251,6 @@ TEST(Doubt, PiecesInOnePlaceDoNotMakeUpForUncertainCorners) {
   EXPECT_EQ(doubt(e, config), "");
 }
 
-// Where ESM and the prediction contradict each other, blocks decide; a few in one place know nothing of the rest.
-TEST(Doubt, AJumpThatMakesAnEstimateWrongHasToBeShownByBlocks) {
-  const auto refused = [](double jump, const BlockEvidence& blocks, bool from_track) {
-    Evidence e = good();
-    e.visible_fraction = 0.45;
-    e.esm.state.g(0, 2) = jump;
-    e.blocks = blocks;
-    e.from_track = from_track;
-    return doubt(e, QualityConfig()).find("too few pieces show [px]") != std::string::npos;
-  };
-  BlockEvidence few = {20, 5, 0.3, 2};
-  few.spread = 0.2;
-  EXPECT_TRUE(refused(6.0, few, true));
-  EXPECT_FALSE(refused(4.0, few, true)) << "prediction and estimate agree";
-  EXPECT_FALSE(refused(6.0, few, false)) << "a search starts where it does not know the motion";
-  BlockEvidence none = {20, 0, std::numeric_limits<double>::quiet_NaN(), 2};
-  EXPECT_TRUE(refused(6.0, none, true));
-  none.seen = 7;
-  EXPECT_FALSE(refused(6.0, none, true)) << "fewer than can tell";
-  BlockEvidence spread = few;
-  spread.spread = 0.4;
-  EXPECT_FALSE(refused(6.0, spread, true));
-  BlockEvidence many = few;
-  many.confident = 6;
-  EXPECT_FALSE(refused(6.0, many, true));
-}
-
 // Where more is visible, more of the blocks have to be found; a search has to find some in any case.
 TEST(Doubt, AsksForMoreBlocksTheMoreIsVisible) {
   const auto refused = [](double visible, int confident, bool from_track) {

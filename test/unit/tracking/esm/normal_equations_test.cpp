@@ -70,10 +70,9 @@ void addAll(const Pixels& p, int row_begin, int row_end, NormalEquations& equati
     for (int i = 0; i < p.width; ++i) {
       const std::size_t k = static_cast<std::size_t>(j) * p.width + i;
       const float x = p.gx[k] / kScale, y = p.gy[k] / kScale, r = p.residual[k], m = p.intensity[k], w = p.weight[k];
-      const CellSums cell = {w * x * x, w * x * y, w * y * y, w * x * r, w * y * r, w * x,     w * y,
-                             w * x * m, w * y * m, w,         w * r,     w * m,     w * m * m, w * m * r};
-      const double v = p.v(j);
-      equations.addCells(&cell, 1, 1, p.u(i), &v);
+      equations.addCell({w * x * x, w * x * y, w * y * y, w * x * r, w * y * r, w * x, w * y, w * x * m, w * y * m, w,
+                         w * r, w * m, w * m * m, w * m * r},
+                        p.u(i), p.v(j));
     }
   }
   equations.endBlock();
