@@ -29,7 +29,7 @@ class FeaturesNodelets : public testing::TestWithParam<std::string> {
   void SetUp() override {
     ASSERT_TRUE(bench().ready()) << "the nodelets are not there";
     // Whatever the test before did to time and size.
-    ASSERT_TRUE(bench().trackUntil(kind(), [](const TrackedFeatures&) { return true; }));
+    ASSERT_TRUE(bench().settle(kind()));
     for (const char* const each : {"dots", "points", "edges"}) ASSERT_TRUE(bench().reset(each));
   }
 
@@ -146,7 +146,7 @@ TEST_P(FeaturesNodelets, SaysOfTheFirstImageOfAnotherKindThatNothingIsSeenAndGoe
 TEST_P(FeaturesNodelets, EndsWithAnotherSizeAndWithAnotherColour) {
   const cv::Mat small(120, 160, CV_8UC1, cv::Scalar(90)), colour(240, 320, CV_8UC3, cv::Scalar::all(90));
   for (const cv::Mat& other : {small, colour}) {
-    ASSERT_TRUE(bench().trackUntil(kind(), [](const TrackedFeatures&) { return true; }));
+    ASSERT_TRUE(bench().settle(kind()));
     select();
     TrackedFeaturesConstPtr told;
     ASSERT_TRUE(waitFor([&] {

@@ -71,7 +71,7 @@ class ModelNodelet : public testing::Test {
                          bench().quiet_poses.connected() && bench().tf_subscriber.getNumPublishers() > 0;
                 }));
     // Whatever the test before did to time and size.
-    ASSERT_TRUE(bench().trackUntil(kKind, [](const TrackedFeatures&) { return true; }));
+    ASSERT_TRUE(bench().settle(kKind));
     for (const char* const each : {kKind, kWithoutTf, "edges"}) ASSERT_TRUE(bench().reset(each));
   }
 

@@ -36,8 +36,7 @@ class MotionNodelet : public testing::Test {
 
   void SetUp() override {
     ASSERT_TRUE(bench().ready() && waitFor([] { return bench().masks.connected(); }));
-    ASSERT_TRUE(bench().trackUntil(kKind, [](const TrackedFeatures&) { return true; }))
-        << "the nodelet does not answer";
+    ASSERT_TRUE(bench().settle(kKind)) << "the nodelet does not answer";
     ASSERT_TRUE(bench().reset(kKind));
   }
 
