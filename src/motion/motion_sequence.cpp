@@ -174,7 +174,8 @@ Reason MotionSequence::compare(Reason why) {
   anchor_.goOn(is_step ? result_.g : expected_, is_step ? result_.expected_error : kInfinite);
   const bool is_compared = anchor_.compare(current_, box_);
   region_ = anchor_.region();
-  believed_ = is_compared || anchor_.isKnown();
+  // A part of the region that is left in the image is not compared: it may be what has come in its place.
+  believed_ = why != Reason::kOutside && (is_compared || anchor_.isKnown());
   if (!believed_) {
     result_.g = expected_;
     result_.field = fieldOf(result_.g, result_.field.centre);
