@@ -16,8 +16,6 @@ using features::State;
 
 constexpr double kEnoughInView = 0.25;  // share of the anchor, to be compared with
 constexpr double kMostDrift = 5.0;      // px: a larger expected error of what was integrated is not believed
-// Px, and standard deviations of what was integrated: a comparison that is further off found something else.
-constexpr double kSurprise = 2.0, kDeviations = 4.0;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 // Share of points, spread over the frame, that g takes into it.
@@ -131,7 +129,7 @@ Reason AnchoredMotion::Implementation::compare() {
   if (found.why != Reason::kNone) return found.why;
   if (shareInView(found.at.g, frame_) < kEnoughInView) return Reason::kOutside;
   const double surprise = geometry::cornerDistance(found.at.g, g_, frame_);
-  if (known_ && !(surprise <= kSurprise + kDeviations * expectedError())) return Reason::kJump;
+  if (known_ && !(surprise <= mostSurprise(expectedError()))) return Reason::kJump;
   g_ = found.at.g;
   covariance_ = found.covariance;
   result_.share = found.share;

@@ -16,7 +16,6 @@ using tracking::EsmLevel;
 using tracking::Matrix10d;
 using tracking::Vector10d;
 
-constexpr int kLeastSide = 48;  // px of the coarsest level: enough for a quadratic motion
 constexpr int kCoarseIterations = 8;
 constexpr int kShifts = 2;               // of these, the first so many change the shift alone
 constexpr int kIterations = 6;           // at most, on each further level
@@ -59,29 +58,7 @@ tracking::Light lightOf(const MotionConfig& config) {
   return config.light ? tracking::Light::kGlobal : tracking::Light::kConstant;
 }
 
-int levelsFor(const cv::Size& finest) {
-  int levels = 1;
-  for (int side = std::min(finest.width, finest.height) / 2; side >= kLeastSide && levels < MotionAligner::kMostLevels;
-       side /= 2) {
-    ++levels;
-  }
-  return levels;
-}
-
 }  // namespace
-
-int finestScale(const cv::Size& size, int max_pixels) {
-  int scale = 1;
-  while (static_cast<double>(size.width) * size.height / (scale * scale) > max_pixels) scale *= 2;
-  return scale;
-}
-
-void MotionImage::take(const cv::Mat& image, const cv::Mat& mask, const MotionConfig& config) {
-  const int finest = finestScale(image.size(), config.max_pixels);
-  const int levels = levelsFor(image.size() / finest);
-  pyramid.build(image, cv::Rect(0, 0, image.cols, image.rows), levels, image::kLuma, finest);
-  usable.look(image, mask, config.saturation, config.darkness);
-}
 
 void MotionAligner::setReference(const MotionImage& image) {
   shading_.forget();

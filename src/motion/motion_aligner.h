@@ -9,14 +9,13 @@
 #include <Eigen/Core>
 #include <array>
 #include <limits>
-#include <opencv2/core.hpp>
 #include <optional>
 #include <vector>
 
 #include "laparoscope_servo/geometry/sl3.h"
-#include "laparoscope_servo/image/pyramid.h"
 #include "laparoscope_servo/motion/motion_config.h"
 #include "motion/cell_votes.h"
+#include "motion/motion_image.h"
 #include "motion/shading.h"
 #include "motion/shift_votes.h"
 #include "motion/usable_pixels.h"
@@ -25,19 +24,6 @@
 #include "tracking/esm/residual.h"
 
 namespace laparoscope_servo::motion {
-
-// What the estimator needs of an image.
-struct MotionImage {
-  image::RegionPyramid pyramid;  // of the whole image
-  UsablePixels usable;
-
-  // Throws std::invalid_argument for an image of a type that it cannot use. Does not allocate for a further image of
-  // the same size and type.
-  void take(const cv::Mat& image, const cv::Mat& mask, const MotionConfig& config);
-};
-
-// px of the image per pixel of the finest level that is used.
-int finestScale(const cv::Size& size, int max_pixels);
 
 struct Alignment {
   Eigen::Matrix3d g = Eigen::Matrix3d::Identity();  // pixels of the reference to those of the image, determinant 1
@@ -51,9 +37,8 @@ struct Alignment {
 
 class MotionAligner {
  public:
-  static constexpr int kMostLevels = 8;
   static constexpr int kMostStarts = 4;
-  using Scales = std::array<double, kMostLevels>;
+  using Scales = std::array<double, MotionImage::kMostLevels>;
 
   // `shaded`: the images may lie so far apart that the light differs from place to place, see Shading.
   explicit MotionAligner(const MotionConfig& config, bool shaded = false)

@@ -20,6 +20,12 @@ struct MotionEstimate {
   double expected_error = std::numeric_limits<double>::infinity();  // px, at the worst corner of the region
 };
 
+// px, by which a comparison with an image of a while ago may be off what the steps since then have led to. `error`: px,
+// expected of these. One that is further off found something else.
+inline double mostSurprise(double error) {
+  return 2.0 + 4.0 * error;
+}
+
 class MotionEstimator {
  public:
   // `shaded`: see MotionAligner.

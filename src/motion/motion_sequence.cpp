@@ -48,17 +48,6 @@ cv::Mat cut(const cv::Mat& image, const cv::Rect& box) {
   return image.empty() ? image : image(box);
 }
 
-// Takes pixels of the box to those of the image.
-Eigen::Matrix3d imageFromBox(const cv::Rect& box) {
-  Eigen::Matrix3d m = Eigen::Matrix3d::Identity();
-  m.topRightCorner<2, 1>() << box.x, box.y;
-  return m;
-}
-
-Eigen::Vector2d middleOf(const cv::Rect& box) {
-  return {box.x + 0.5 * (box.width - 1), box.y + 0.5 * (box.height - 1)};
-}
-
 }  // namespace
 
 MotionSequence::MotionSequence(const MotionConfig& config)

@@ -1,21 +1,15 @@
 #include "motion/region_anchor.h"
 
+#include <Eigen/LU>
 #include <cmath>
+
+#include "motion/region_window.h"
 
 namespace laparoscope_servo::motion {
 
 namespace {
 
-// Px, and standard deviations of what the steps have led to: a comparison that is further off found something else. As
-// AnchoredMotion has them.
-constexpr double kSurprise = 2.0, kDeviations = 4.0;
 constexpr double kGrown = 1.5;  // factor on the region's area, by which a comparison may differ from what is expected
-
-Eigen::Matrix3d shiftBy(const cv::Point& by) {
-  Eigen::Matrix3d m = Eigen::Matrix3d::Identity();
-  m.topRightCorner<2, 1>() << by.x, by.y;
-  return m;
-}
 
 }  // namespace
 
@@ -37,7 +31,7 @@ void RegionAnchor::begin(const cv::Mat& image, const cv::Mat& mask, const cv::Re
 }
 
 Eigen::Vector2d RegionAnchor::middle() const {
-  return {box_.x + 0.5 * (box_.width - 1), box_.y + 0.5 * (box_.height - 1)};
+  return middleOf(box_);
 }
 
 void RegionAnchor::goOn(const Eigen::Matrix3d& step, double error) {
@@ -52,12 +46,12 @@ bool RegionAnchor::isPlausible(const Eigen::Matrix3d& g) const {
   if (!geometry::isConvex(there)) return false;
   const double grown = geometry::signedArea(there) / geometry::signedArea(expected);
   if (!(grown > 1.0 / kGrown && grown < kGrown)) return false;
-  return !known_ || geometry::largestDistance(there, expected) <= kSurprise + kDeviations * std::sqrt(variance_);
+  return !known_ || geometry::largestDistance(there, expected) <= mostSurprise(std::sqrt(variance_));
 }
 
 bool RegionAnchor::compare(const MotionImage& current, const cv::Rect& box) {
-  const Eigen::Matrix3d box_from_image = shiftBy(-box.tl()), image_from_box = shiftBy(box.tl());
-  const Eigen::Matrix3d image_from_anchor = shiftBy(box_.tl()), anchor_from_image = shiftBy(-box_.tl());
+  const Eigen::Matrix3d image_from_box = imageFromBox(box), box_from_image = image_from_box.inverse();
+  const Eigen::Matrix3d image_from_anchor = imageFromBox(box_), anchor_from_image = image_from_anchor.inverse();
   starts_.assign(1, box_from_image * g_ * image_from_anchor);
   if (!known_) starts_.push_back(box_from_image * compared_ * image_from_anchor);
   found_ = estimator_.estimate(anchor_, current, starts_, geometry::apply(anchor_from_image, region_), false);

@@ -22,6 +22,16 @@ int firstOf(double middle, int side, int image) {
 
 }  // namespace
 
+Eigen::Matrix3d imageFromBox(const cv::Rect& box) {
+  Eigen::Matrix3d m = Eigen::Matrix3d::Identity();
+  m.topRightCorner<2, 1>() << box.x, box.y;
+  return m;
+}
+
+Eigen::Vector2d middleOf(const cv::Rect& box) {
+  return {box.x + 0.5 * (box.width - 1), box.y + 0.5 * (box.height - 1)};
+}
+
 RegionWindow::RegionWindow(const geometry::Rectangle& region, const cv::Size& image)
     : size_(sideOf(region.width, image.width), sideOf(region.height, image.height)), image_(image) {}
 

@@ -2,11 +2,17 @@
 // of its pyramid go with the size of the region. On those of the whole image a small region would have no pixels left.
 #pragma once
 
+#include <Eigen/Core>
 #include <opencv2/core.hpp>
 
 #include "laparoscope_servo/geometry/homography.h"
 
 namespace laparoscope_servo::motion {
+
+// Takes pixels of the box to those of the image.
+Eigen::Matrix3d imageFromBox(const cv::Rect& box);
+// Of the box's pixels, px of the image.
+Eigen::Vector2d middleOf(const cv::Rect& box);
 
 class RegionWindow {
  public:
