@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "support/cart_fault.h"
+#include "support/slow_stamps.h"
 
 namespace laparoscope_servo::test {
 
@@ -41,18 +43,10 @@ class CartStrangerFaults : public Draws {
         }));
   }
 
-  // The images themselves are true, and come in time.
   CartFault slowStamps() {
     const double rate = real(0.0, 0.6);
-    const auto first = std::make_shared<std::optional<double>>();
-    return withInput("stamps that go " + std::to_string(rate) + " times as fast", [=](Input& input) {
-      servo::TaskErrorInput& seen = input.task_error;
-      if (!seen.image_time) return;
-      if (!*first) *first = *seen.image_time;
-      const double stamp = **first + rate * (*seen.image_time - **first);
-      seen.image_age += *seen.image_time - stamp;
-      seen.image_time = stamp;
-    });
+    return withInput("stamps that go " + std::to_string(rate) + " times as fast",
+                     std::function<void(Input&)>(SlowStamps(rate)));
   }
 
   CartFault slowCamera() {

@@ -15,7 +15,7 @@ TEST_P(ControllerAtOnce, StopsBetweenTwoSteps) {
   std::vector<double> times;
   for (int k = 0; k < kRepetitions; ++k) {
     ASSERT_NO_FATAL_FAILURE(move());
-    std::this_thread::sleep_for(std::chrono::milliseconds(100 * k / kRepetitions));
+    waitForAPhase(k, kRepetitions, 100);
     ASSERT_NO_FATAL_FAILURE(expectStop([this] { return cart_.strike(GetParam().change); }, times));
   }
   printStoppingTimes(GetParam().name, GetParam().state, times);

@@ -9,9 +9,9 @@
 
 namespace laparoscope_servo {
 
-// A cause does not wait for the controller's step of 20 ms: the repetitions are spread over one.
-inline void waitForAPhase(int repetition, int repetitions) {
-  std::this_thread::sleep_for(std::chrono::milliseconds(20 * repetition / repetitions));
+// A cause does not wait for the controller's step, of `period` ms: the repetitions are spread over one.
+inline void waitForAPhase(int repetition, int repetitions, int period = 20) {
+  std::this_thread::sleep_for(std::chrono::milliseconds(period * repetition / repetitions));
 }
 
 // s each; a line of the table "cause, state, median, worst".

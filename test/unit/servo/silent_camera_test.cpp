@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "support/simulated_cart.h"
+#include "support/slow_stamps.h"
 
 namespace laparoscope_servo::servo {
 namespace {
@@ -45,17 +46,6 @@ Change silent() {
   };
 }
 
-// The stamps go at `rate` of the clock.
-Change slowlyStamped(double rate) {
-  return [rate, first = std::optional<double>()](ControllerInput& input) mutable {
-    TaskErrorInput& seen = input.task_error;
-    if (!first) first = *seen.image_time;
-    const double stamp = *first + rate * (*seen.image_time - *first);
-    seen.image_age += *seen.image_time - stamp;
-    seen.image_time = stamp;
-  };
-}
-
 TEST(SilentCamera, StopsTheScopeByThePeriodOfItsImages) {
   EXPECT_LT(furthest(silent), 1.6);
 }
@@ -66,8 +56,8 @@ TEST(SilentCamera, TogetherWithAnArmThatIsLater) {
 }
 
 TEST(SilentCamera, StampsThatLoseTimeStopTheScopeBeforeItsImagesAreOld) {
-  EXPECT_LT(furthest([] { return slowlyStamped(0.5); }), 1.9);
-  EXPECT_LT(furthest([] { return slowlyStamped(0.75); }), 3.0);
+  EXPECT_LT(furthest([] { return test::SlowStamps(0.5); }), 1.9);
+  EXPECT_LT(furthest([] { return test::SlowStamps(0.75); }), 3.0);
 }
 
 }  // namespace
